@@ -1,0 +1,95 @@
+//! Where a triangular lattice lies in the plane.
+
+use glam::DVec2;
+
+use crate::axial::Axial;
+
+/// Half the square root of three: the height of an equilateral triangle of edge one.
+pub const ROW_HEIGHT: f64 = 0.866_025_403_784_438_6;
+
+/// A triangular lattice in the plane: an origin, the angle of its direction 0, an edge length.
+///
+/// Algorithms work in *lattice units*: coordinates with the origin at a lattice point, the first
+/// axis along direction 0 and an edge length of one. [`Lattice::to_units`] and
+/// [`Lattice::from_units`] convert.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lattice {
+    /// Position of the lattice point (0, 0).
+    pub origin: DVec2,
+    /// Angle of direction 0 against the first axis, in radians.
+    pub angle: f64,
+    /// Length of an edge, in the units of the drawing.
+    pub edge_length: f64,
+}
+
+impl Lattice {
+    /// The position of a lattice point, in lattice units.
+    pub fn units(point: Axial) -> DVec2 {
+        DVec2::new(f64::from(point.q) + 0.5 * f64::from(point.r), ROW_HEIGHT * f64::from(point.r))
+    }
+
+    /// The real axial coordinates `(q, r)` of a position in lattice units.
+    pub fn axial_of(units: DVec2) -> DVec2 {
+        let r = units.y / ROW_HEIGHT;
+        DVec2::new(units.x - 0.5 * r, r)
+    }
+
+    /// The nearest lattice point of a position in lattice units.
+    pub fn nearest(units: DVec2) -> Axial {
+        let a = Self::axial_of(units);
+        let (q, r, s) = (a.x.round(), a.y.round(), (-a.x - a.y).round());
+        let (dq, dr, ds) = ((q - a.x).abs(), (r - a.y).abs(), (s + a.x + a.y).abs());
+        if dq > dr && dq > ds {
+            Axial::new((-r - s) as i32, r as i32)
+        } else if dr > ds {
+            Axial::new(q as i32, (-q - s) as i32)
+        } else {
+            Axial::new(q as i32, r as i32)
+        }
+    }
+
+    /// From the units of the drawing to lattice units.
+    pub fn to_units(&self, point: DVec2) -> DVec2 {
+        let (sin, cos) = self.angle.sin_cos();
+        let d = (point - self.origin) / self.edge_length;
+        DVec2::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x)
+    }
+
+    /// From lattice units to the units of the drawing.
+    pub fn from_units(&self, units: DVec2) -> DVec2 {
+        let (sin, cos) = self.angle.sin_cos();
+        self.origin
+            + self.edge_length * DVec2::new(cos * units.x - sin * units.y, sin * units.x + cos * units.y)
+    }
+
+    /// The edge length at which a lattice covers `area` with `triangles` triangles.
+    pub fn edge_length_for(area: f64, triangles: f64) -> f64 {
+        (area / (triangles * 0.5 * ROW_HEIGHT)).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_and_drawing_are_inverse() {
+        let lattice = Lattice { origin: DVec2::new(3.0, -1.0), angle: 0.4, edge_length: 0.25 };
+        let p = DVec2::new(1.7, 2.9);
+        assert!(lattice.from_units(lattice.to_units(p)).distance(p) < 1e-14);
+    }
+
+    #[test]
+    fn nearest_point_is_nearest() {
+        for i in 0..40 {
+            for j in 0..40 {
+                let p = DVec2::new(0.17 * f64::from(i) - 3.0, 0.13 * f64::from(j) - 2.5);
+                let n = Lattice::nearest(p);
+                let d = Lattice::units(n).distance(p);
+                for m in n.neighbours() {
+                    assert!(Lattice::units(m).distance(p) >= d - 1e-12);
+                }
+            }
+        }
+    }
+}

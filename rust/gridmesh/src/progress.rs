@@ -1,0 +1,66 @@
+//! Progress reports and cancelling.
+
+use crate::error::{Error, Result};
+
+/// Hands fractions of the work done to a callback, which may ask to stop.
+///
+/// [`Progress::part`] gives a stage its share of the whole, so that stages report from 0 to 1 and
+/// need not know of each other.
+#[derive(Clone, Copy)]
+pub struct Progress<'a> {
+    callback: Option<&'a (dyn Fn(f64) -> bool + Sync)>,
+    start: f64,
+    length: f64,
+}
+
+impl<'a> Progress<'a> {
+    /// Reports to nobody and is never cancelled.
+    pub const NONE: Progress<'static> = Progress { callback: None, start: 0.0, length: 1.0 };
+
+    /// Reports to `callback`, which returns false to cancel.
+    pub fn new(callback: &'a (dyn Fn(f64) -> bool + Sync)) -> Self {
+        Progress { callback: Some(callback), start: 0.0, length: 1.0 }
+    }
+
+    /// The share from `start` to `end` (both 0 to 1) of this progress.
+    pub fn part(&self, start: f64, end: f64) -> Progress<'a> {
+        Progress {
+            callback: self.callback,
+            start: self.start + start * self.length,
+            length: (end - start) * self.length,
+        }
+    }
+
+    /// Reports that `fraction` (0 to 1) of this part is done.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`] if the callback asks to stop.
+    pub fn report(&self, fraction: f64) -> Result<()> {
+        match self.callback {
+            Some(callback) if !callback(self.start + fraction * self.length) => Err(Error::Cancelled),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    #[test]
+    fn parts_nest_and_false_cancels() {
+        let seen = Mutex::new(Vec::new());
+        let callback = |f: f64| {
+            if let Ok(mut seen) = seen.lock() {
+                seen.push(f);
+            }
+            f < 0.5
+        };
+        let progress = Progress::new(&callback);
+        assert!(progress.part(0.2, 0.4).report(0.5).is_ok());
+        assert!(matches!(progress.part(0.4, 0.8).part(0.5, 1.0).report(0.0), Err(Error::Cancelled)));
+        drop(seen);
+        assert!(Progress::NONE.report(1.0).is_ok());
+    }
+}
