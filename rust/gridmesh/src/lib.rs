@@ -2,8 +2,10 @@
 #![forbid(unsafe_code)]
 
 pub mod axial;
+pub mod curve;
 pub mod dir;
 pub mod error;
 pub mod lattice;
 pub mod patch;
 pub mod progress;
+mod segments;
