@@ -24,8 +24,6 @@ pub struct ClosedCurve {
     points: Vec<DVec2>,
     /// Arc length at each point, and the whole length at the end.
     arc: Vec<f64>,
-    /// Input index of each point.
-    index: Vec<u32>,
     /// Input segment under each segment: where repetitions were dropped, the longest of them.
     input_segment: Vec<u32>,
     n_input: usize,
@@ -105,17 +103,23 @@ impl ClosedCurve {
             s += p.distance(points[(i + 1) % points.len()]);
         }
         arc.push(s);
-        let mut curve = Self {
+        // The first input point itself, or the kept one that it repeats.
+        let first = (0..points.len())
+            .min_by(|&i, &j| {
+                points[i]
+                    .distance_squared(input[0])
+                    .total_cmp(&points[j].distance_squared(input[0]))
+            })
+            .map_or(0.0, |i| arc[i]);
+        let curve = Self {
             points,
             arc,
             input_segment: input_segments(&kept, reversed, input),
-            index: kept.into_iter().map(|i| i as u32).collect(),
             n_input,
             reversed,
-            first: 0.0,
+            first,
             area,
         };
-        curve.first = curve.arc_of_first_input();
         curve.check_area(what)?;
         curve.check_simple(what)?;
         Ok(curve)
@@ -162,20 +166,6 @@ impl ClosedCurve {
             second: first.max(second),
             at: at.to_array(),
         })
-    }
-
-    fn arc_of_first_input(&self) -> f64 {
-        // Dropped repetitions of a point stand at the kept one before them in input order.
-        let found = if self.reversed {
-            self.index.iter().enumerate().min_by_key(|&(_, &i)| i)
-        } else {
-            let zero = self.index.iter().position(|&i| i == 0);
-            match zero {
-                Some(at) => return self.arc[at],
-                None => self.index.iter().enumerate().max_by_key(|&(_, &i)| i),
-            }
-        };
-        found.map_or(0.0, |(at, _)| self.arc[at])
     }
 
     /// The cleaned points.
