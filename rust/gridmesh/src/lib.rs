@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod axial;
+pub mod band;
 pub mod curve;
 pub mod dir;
 pub mod error;
@@ -9,3 +10,4 @@ pub mod lattice;
 pub mod patch;
 pub mod progress;
 mod segments;
+pub mod target;
