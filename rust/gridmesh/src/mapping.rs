@@ -259,7 +259,7 @@ mod tests {
     #[test]
     fn snapped_vertices_sit_on_corners_and_keep_the_order() {
         let mut arcs: Vec<f64> = (0..20).map(|i| 0.5 + f64::from(i)).collect();
-        let corners = [5.1, 5.4, 19.9, 0.05].map(|arc| Corner { arc, angle: 1.0 });
+        let corners = [5.1, 5.4, 19.9, 0.35].map(|arc| Corner { arc, angle: 1.0 });
         let angle = snap(&mut arcs, &corners, 20.0, 1.0);
         assert!(arcs.windows(2).all(|w| w[0] < w[1]) && arcs[19] < arcs[0] + 20.0);
         assert!(arcs.contains(&5.1));
