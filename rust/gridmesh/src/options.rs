@@ -175,11 +175,9 @@ pub struct SketchReport {
     pub optimal: bool,
     /// Greatest distance that the boundary was allowed, in edges.
     pub max_distance_used: f64,
-    /// Greatest distance from the drawn curve to the mesh boundary beside it, in edges.
+    /// Greatest distance from the drawn curve to the mesh boundary, in edges; at most 2, or the
+    /// drawing is refused.
     pub max_deviation: f64,
-    /// Parts of the drawing that lie more than two edges outside the mesh (growth stops at necks
-    /// that the lattice does not fit through).
-    pub lost_parts: usize,
     /// Smallest angle of the flat patch, in radians.
     pub min_angle: f64,
     /// Drawn corners sharper than `corner_angle`.

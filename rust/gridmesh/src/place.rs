@@ -12,7 +12,7 @@ use crate::outline::{Obstacle, Outline};
 use crate::patch::{Loop, Patch};
 use crate::progress::Progress;
 use crate::relax::{Contour, RelaxOptions, Rim, first_inverted, relax};
-use crate::segments::nearest_on_segment;
+use crate::segments::{SegmentGrid, nearest_on_segment};
 
 /// Half the length over which a corner's turning angle is measured, in edges.
 const CORNER_WINDOW: f64 = 0.5;
@@ -162,30 +162,51 @@ pub(crate) fn min_angle(patch: &Patch) -> f64 {
     least
 }
 
-/// The greatest distance from a contour to the boundary edge beside it, and the number of edges
-/// from which it strays by more than `limit`. An upper bound of the one-sided Hausdorff distance.
-pub(crate) fn deviation(contours: &[ClosedCurve], patch: &Patch, limit: f64) -> (f64, usize) {
-    let mut worst: f64 = 0.0;
-    let mut strayed = 0;
+/// The greatest distance from the drawn points to the mesh boundary, and where.
+///
+/// Each point is measured against the boundary edge beside it, which bounds the distance of all
+/// the curve between its points; only where that exceeds `limit`, against all edges nearby.
+pub(crate) fn deviation(contours: &[ClosedCurve], patch: &Patch, limit: f64) -> (f64, DVec2) {
+    let mut worst = (0.0f64, contours[0].points()[0]);
+    let mut far: Vec<DVec2> = Vec::new();
     for (contour, rim) in contours.iter().zip(&patch.loops) {
         let n = rim.len();
         let vertices = &patch.vertices[rim.start as usize..rim.start as usize + n];
         let first = contour.input_arc(0.0);
-        let start = (0..n)
-            .min_by(|&i, &j| rim.arc[i].total_cmp(&rim.arc[j]))
-            .unwrap_or(0);
+        let start = (0..n).min_by(|&i, &j| rim.arc[i].total_cmp(&rim.arc[j])).unwrap_or(0);
         let sorted: Vec<f64> = (0..n).map(|i| rim.arc[(start + i) % n]).collect();
-        let mut edge_worst = vec![0.0f64; n];
-        // The drawn points between two boundary vertices are the candidates for the farthest.
         for (&point, &s) in contour.points().iter().zip(contour.arc()) {
-            let s = (s + first) % contour.length();
-            let before = sorted.partition_point(|&a| a <= s);
+            let before = sorted.partition_point(|&a| a <= (s + first) % contour.length());
             let i = (start + before + n - 1) % n;
-            let (_, squared) = nearest_on_segment(point, vertices[i], vertices[(i + 1) % n]);
-            edge_worst[i] = edge_worst[i].max(squared.sqrt());
+            let squared = nearest_on_segment(point, vertices[i], vertices[(i + 1) % n]).1;
+            if squared > limit * limit {
+                far.push(point);
+            } else if squared > worst.0 * worst.0 {
+                worst = (squared.sqrt(), point);
+            }
         }
-        strayed += edge_worst.iter().filter(|&&d| d > limit).count();
-        worst = edge_worst.into_iter().fold(worst, f64::max);
     }
-    (worst, strayed)
+    if far.is_empty() {
+        return worst;
+    }
+    let edges: Vec<[DVec2; 2]> = patch
+        .loops
+        .iter()
+        .flat_map(|rim| (0..rim.len()).map(move |i| [i, (i + 1) % rim.len()].map(|k| rim.start as usize + k)))
+        .map(|edge| edge.map(|v| patch.vertices[v]))
+        .collect();
+    let grid = SegmentGrid::new(&edges);
+    for point in far {
+        let mut squared = f64::INFINITY;
+        grid.near(point - limit, point + limit, |i| {
+            squared = squared.min(nearest_on_segment(point, edges[i][0], edges[i][1]).1);
+        });
+        if squared > limit * limit {
+            squared = edges.iter().map(|e| nearest_on_segment(point, e[0], e[1]).1).fold(f64::INFINITY, f64::min);
+        }
+        if squared > worst.0 * worst.0 {
+            worst = (squared.sqrt(), point);
+        }
+    }
+    worst
 }

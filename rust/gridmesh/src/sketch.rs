@@ -160,7 +160,13 @@ impl Job<'_> {
             )?;
             self.lap("placement", started);
             match placed {
-                Ok(placed) => return Ok(Ok(self.report(&outline, placed))),
+                Ok(placed) => {
+                    let (sketch, lost) = self.report(&outline, placed);
+                    match lost {
+                        None => return Ok(Ok(sketch)),
+                        Some(at) => obstacle = Some(Obstacle { reason: "a part of the drawing is lost", at }),
+                    }
+                }
                 Err(found) => obstacle = Some(found),
             }
         }
@@ -181,7 +187,7 @@ impl Job<'_> {
         const CORRECTIONS: usize = 6;
         let mut edge_length = match asked {
             Asked::EdgeLength(h) => h,
-            Asked::Triangles(n) => Lattice::edge_length_for(self.area, n as f64),
+            Asked::Triangles(n) => self.first_guess(n),
         };
         let started = Instant::now();
         let mut best: Option<(f64, Lattice, Outline)> = None;
@@ -224,6 +230,15 @@ impl Job<'_> {
         })
     }
 
+    /// The edge length at which a grown patch has about `n` triangles: growth stops inside the
+    /// curve, on average 0.28 triangles for each edge length of curve short of its area.
+    fn first_guess(&self, n: usize) -> f64 {
+        const SHORT: f64 = 0.28;
+        let area = self.area / (0.5 * crate::lattice::ROW_HEIGHT);
+        let short = SHORT * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
+        2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
+    }
+
     fn lattice(&self, edge_length: f64, shift: DVec2) -> Lattice {
         let angle = self
             .options
@@ -239,43 +254,47 @@ impl Job<'_> {
         }
     }
 
-    /// The error for a drawing that has no patch of the size asked for: the next size that works,
-    /// found by meshing at ever more triangles, 1.1 times each.
+    /// The error for a drawing that has no patch of the size asked for: the least number of
+    /// triangles that works, searched in steps of a tenth.
     fn least_that_works(
         &mut self,
         asked: f64,
         obstacle: Obstacle,
         progress: Progress<'_>,
     ) -> Result<Error> {
-        const STEPS: i32 = 60;
-        for step in 1..=STEPS {
-            progress
-                .part(0.9, 1.0)
-                .report(f64::from(step) / f64::from(STEPS))?;
-            let triangles = asked.max(6.0) * 1.1f64.powi(step);
-            if triangles > MAX_TRIANGLES.min(1e6) {
-                break;
+        const LARGEST: f64 = 1e6;
+        let at = |step: i32| (asked.max(6.0) * 1.1f64.powi(step)).ceil() as usize;
+        let (mut fails, mut works, mut stride) = (0, None, 1);
+        while works.is_none() && (at(fails + stride) as f64) < LARGEST {
+            progress.part(0.9, 1.0).report(0.0)?;
+            let step = fails + stride;
+            match self.attempt(Asked::Triangles(at(step)), Progress::NONE)? {
+                Ok(_) => works = Some(step),
+                Err(_) => fails = step,
             }
-            if let Ok(sketch) =
-                self.attempt(Asked::Triangles(triangles.ceil() as usize), Progress::NONE)?
-            {
-                return Ok(Error::TooCoarse {
-                    triangles: asked.round() as usize,
-                    least: sketch.report.triangles,
-                });
+            // Small steps first, for drawings that nearly fit; larger ones after them.
+            stride = 1 + fails / 4;
+        }
+        let Some(mut works) = works else {
+            return Ok(Error::NoPatch { reason: obstacle.reason.to_owned(), at: obstacle.at.to_array() });
+        };
+        while works - fails > 1 {
+            progress.part(0.9, 1.0).report(0.5)?;
+            let step = (works + fails) / 2;
+            match self.attempt(Asked::Triangles(at(step)), Progress::NONE)? {
+                Ok(_) => works = step,
+                Err(_) => fails = step,
             }
         }
-        Ok(Error::NoPatch {
-            reason: obstacle.reason.to_owned(),
-            at: obstacle.at.to_array(),
-        })
+        Ok(Error::TooCoarse { triangles: asked.round() as usize, least: at(works) })
     }
 
-    fn report(&mut self, outline: &Outline, placed: Placed) -> Sketch {
+    /// The patch with its numbers, and a place of the drawing that it loses, if it loses any.
+    fn report(&mut self, outline: &Outline, placed: Placed) -> (Sketch, Option<DVec2>) {
         let started = Instant::now();
         let patch = placed.patch;
         let h = patch.lattice.edge_length;
-        let (max_deviation, lost_parts) = deviation(&self.contours, &patch, STRAY * h);
+        let (max_deviation, at) = deviation(&self.contours, &patch, STRAY * h);
         let mut report = SketchReport {
             triangles: patch.triangles.len(),
             irregular: outline.irregular(),
@@ -287,7 +306,6 @@ impl Job<'_> {
             optimal: outline.optimal,
             max_distance_used: outline.max_distance_used,
             max_deviation: max_deviation / h,
-            lost_parts,
             min_angle: min_angle(&patch),
             corners: placed.corners,
             released_corners: placed.released_corners,
@@ -297,7 +315,8 @@ impl Job<'_> {
         };
         self.lap("report", started);
         report.seconds = self.seconds.clone();
-        Sketch { patch, report }
+        let lost = (max_deviation > STRAY * h).then_some(at);
+        (Sketch { patch, report }, lost)
     }
 }
 
