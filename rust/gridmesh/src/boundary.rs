@@ -40,10 +40,7 @@ impl Cell {
             INTERIOR => Cell::Interior,
             _ => {
                 let code = i32::from(code) - 2;
-                Cell::Boundary {
-                    enter: Dir::new(code / 6),
-                    leave: Dir::new(code % 6),
-                }
+                Cell::Boundary { enter: Dir::new(code / 6), leave: Dir::new(code % 6) }
             }
         }
     }
@@ -105,20 +102,11 @@ impl Boundary {
         let mut cells = Cells::new(layout, OUTSIDE);
         let mut complete = cells.set(centre, INTERIOR);
         for dir in Dir::ALL {
-            let cell = Cell::Boundary {
-                enter: dir.rotate(1),
-                leave: dir.rotate(2),
-            };
+            let cell = Cell::Boundary { enter: dir.rotate(1), leave: dir.rotate(2) };
             complete &= cells.set(centre + dir, cell.pack());
         }
         let some = centre + Dir::new(0);
-        complete.then_some(Self {
-            cells,
-            some,
-            length: 6,
-            triangles: 6,
-            bend: 6,
-        })
+        complete.then_some(Self { cells, some, length: 6, triangles: 6, bend: 6 })
     }
 
     /// The points that the boundary can reach.
@@ -201,8 +189,7 @@ impl Boundary {
             }
             vertices += 1;
             // The path runs clockwise round an outside point: from neighbour i to neighbour i - 1.
-            let leaves_along =
-                |i: usize| codes[i] > INTERIOR && (codes[i] as usize - 2) % 6 == (i + 4) % 6;
+            let leaves_along = |i: usize| codes[i] > INTERIOR && (codes[i] as usize - 2) % 6 == (i + 4) % 6;
             if leaves_along(i) {
                 edges += 1;
                 if !leaves_along((i + 1) % 6) {
@@ -211,11 +198,7 @@ impl Boundary {
             }
         }
         match first {
-            Some(first) if vertices == edges + 1 => Some(Expansion {
-                point,
-                edges,
-                first,
-            }),
+            Some(first) if vertices == edges + 1 => Some(Expansion { point, edges, first }),
             _ => None,
         }
     }
@@ -236,13 +219,7 @@ impl Boundary {
         let p = expansion.point;
         let (first, last) = (expansion.arc(0), expansion.arc(expansion.edges));
         if let Cell::Boundary { enter, .. } = self.cell(p + first) {
-            self.put(
-                p + first,
-                Cell::Boundary {
-                    enter,
-                    leave: first.opposite(),
-                },
-            );
+            self.put(p + first, Cell::Boundary { enter, leave: first.opposite() });
         }
         for i in 1..expansion.edges {
             self.put(p + expansion.arc(i), Cell::Interior);
@@ -250,13 +227,7 @@ impl Boundary {
         if let Cell::Boundary { leave, .. } = self.cell(p + last) {
             self.put(p + last, Cell::Boundary { enter: last, leave });
         }
-        self.put(
-            p,
-            Cell::Boundary {
-                enter: first.opposite(),
-                leave: last,
-            },
-        );
+        self.put(p, Cell::Boundary { enter: first.opposite(), leave: last });
         self.some = p;
         self.length = (self.length as i64 + 2 - i64::from(expansion.edges)) as usize;
         self.triangles += expansion.edges as usize;
@@ -264,9 +235,7 @@ impl Boundary {
 
     /// Like [`Boundary::expand`], remembering what was there.
     pub(crate) fn expand_logged(&mut self, expansion: &Expansion, journal: &mut Journal) {
-        journal
-            .state
-            .get_or_insert((self.some, self.length, self.triangles, self.bend));
+        journal.state.get_or_insert((self.some, self.length, self.triangles, self.bend));
         let p = expansion.point;
         journal.changed.push((p, self.cells.get(p)));
         for i in 0..=expansion.edges {
@@ -335,26 +304,13 @@ impl Boundary {
             turns += turn;
             bend += i64::from(turn.abs());
         }
-        let on_boundary = self
-            .cells
-            .layout()
-            .points()
-            .filter(|&p| self.is_boundary(p))
-            .count();
-        let interior = self
-            .cells
-            .layout()
-            .points()
-            .filter(|&p| self.cell(p) == Cell::Interior)
-            .count();
+        let on_boundary = self.cells.layout().points().filter(|&p| self.is_boundary(p)).count();
+        let interior = self.cells.layout().points().filter(|&p| self.cell(p) == Cell::Interior).count();
         let euler = 2 * (on_boundary + interior) - 2 - self.length;
         let facts = [
             ("turn sum", turns == 6),
             ("bend", bend == self.bend),
-            (
-                "length",
-                on_boundary == self.length && path.len() == self.length,
-            ),
+            ("length", on_boundary == self.length && path.len() == self.length),
             ("triangles", euler == self.triangles),
         ];
         match facts.iter().find(|fact| !fact.1) {

@@ -31,11 +31,8 @@ impl Layout {
             let span = &mut spans[(p.r - low) as usize];
             *span = (span.0.min(p.q), span.1.max(p.q));
         }
-        let (first_row, n_rows) = if spans.is_empty() {
-            (0, 0)
-        } else {
-            (low - margin, spans.len() + 2 * margin as usize)
-        };
+        let (first_row, n_rows) =
+            if spans.is_empty() { (0, 0) } else { (low - margin, spans.len() + 2 * margin as usize) };
         let mut rows = Vec::with_capacity(n_rows);
         let mut len = 0i64;
         for i in 0..n_rows as i32 {
@@ -43,18 +40,10 @@ impl Layout {
             let near = (i - 2 * margin).max(0) as usize..=(i as usize).min(spans.len() - 1);
             let start = spans[near.clone()].iter().map(|s| s.0).min().unwrap_or(0) - margin;
             let end = spans[near].iter().map(|s| s.1).max().unwrap_or(-1) + margin + 1;
-            rows.push(Row {
-                start,
-                end,
-                base: len - i64::from(start),
-            });
+            rows.push(Row { start, end, base: len - i64::from(start) });
             len += i64::from(end - start);
         }
-        Self {
-            first_row,
-            rows,
-            len: len as usize,
-        }
+        Self { first_row, rows, len: len as usize }
     }
 
     /// Number of cells.
@@ -70,8 +59,7 @@ impl Layout {
     /// The cell number of a point, if it has one. Constant time.
     pub fn index(&self, point: Axial) -> Option<usize> {
         let row = self.rows.get((point.r - self.first_row) as usize)?;
-        (row.start <= point.q && point.q < row.end)
-            .then(|| (row.base + i64::from(point.q)) as usize)
+        (row.start <= point.q && point.q < row.end).then(|| (row.base + i64::from(point.q)) as usize)
     }
 
     /// All points that have a cell, in the order of their numbers.
@@ -94,18 +82,12 @@ pub struct Cells<T> {
 impl<T: Copy> Cells<T> {
     /// All cells hold `value`.
     pub fn new(layout: Arc<Layout>, value: T) -> Self {
-        Self {
-            values: vec![value; layout.len()],
-            layout,
-            elsewhere: value,
-        }
+        Self { values: vec![value; layout.len()], layout, elsewhere: value }
     }
 
     /// The value of a point; the one that all cells began with where there is no cell.
     pub fn get(&self, point: Axial) -> T {
-        self.layout
-            .index(point)
-            .map_or(self.elsewhere, |i| self.values[i])
+        self.layout.index(point).map_or(self.elsewhere, |i| self.values[i])
     }
 
     /// The cell of a point, if it has one.
@@ -130,12 +112,7 @@ mod tests {
 
     #[test]
     fn every_point_within_the_margin_has_a_cell_of_its_own() {
-        let points = [
-            Axial::new(0, 0),
-            Axial::new(9, -3),
-            Axial::new(-2, 4),
-            Axial::new(5, 2),
-        ];
+        let points = [Axial::new(0, 0), Axial::new(9, -3), Axial::new(-2, 4), Axial::new(5, 2)];
         let layout = Layout::around(points.into_iter(), 2);
         for p in points {
             for q in -2i32..=2 {

@@ -73,18 +73,14 @@ pub fn grow(
 /// # Errors
 /// Only if cancelled.
 pub fn grow_inside(raster: &Raster, progress: Progress<'_>) -> Result<Option<Boundary>> {
-    let seed = raster
-        .seed()
-        .and_then(|seed| Boundary::hexagon(raster.layout().clone(), seed));
+    let seed = raster.seed().and_then(|seed| Boundary::hexagon(raster.layout().clone(), seed));
     let Some(mut boundary) = seed else {
         return Ok(None);
     };
     let within = |boundary: &Boundary, expansion: &Expansion| {
         let p = expansion.point;
         raster.is_inside(p)
-            && Dir::ALL
-                .into_iter()
-                .all(|dir| !raster.is_crossed(p, dir) || !boundary.is_boundary(p + dir))
+            && Dir::ALL.into_iter().all(|dir| !raster.is_crossed(p, dir) || !boundary.is_boundary(p + dir))
     };
     grow(&mut boundary, within, progress)?;
     Ok(Some(boundary))
@@ -108,10 +104,7 @@ pub fn clear_chords(boundary: &mut Boundary, admit: impl Fn(Axial) -> bool) -> R
         let mut ends = [vertex, other];
         ends.sort_by_key(|&end| boundary.outer_neighbours(end).count());
         let mut changed = Vec::new();
-        if ends
-            .iter()
-            .any(|&end| enclose(boundary, end, &admit, &mut changed))
-        {
+        if ends.iter().any(|&end| enclose(boundary, end, &admit, &mut changed)) {
             // New chords can only start at the points that joined; the old ones of this vertex may stay.
             waiting.extend(changed);
             waiting.push_back(vertex);
@@ -120,10 +113,7 @@ pub fn clear_chords(boundary: &mut Boundary, admit: impl Fn(Axial) -> bool) -> R
             stuck.push(vertex);
         }
     }
-    match stuck
-        .into_iter()
-        .find(|&vertex| boundary.chord(vertex).is_some())
-    {
+    match stuck.into_iter().find(|&vertex| boundary.chord(vertex).is_some()) {
         Some(vertex) => Err(vertex),
         None => Ok(()),
     }
@@ -219,9 +209,7 @@ fn fill_step(boundary: &mut Boundary, p1: Axial, admit: &impl Fn(Axial) -> bool)
     for i in 1..=first_steps {
         for j in 1..=second_steps {
             let point = p2 - first_dir.offset() * i + second_dir.offset() * j;
-            let expansion = boundary
-                .expansion(point)
-                .filter(|e| e.edges >= 2 && admit(point));
+            let expansion = boundary.expansion(point).filter(|e| e.edges >= 2 && admit(point));
             match expansion {
                 Some(expansion) => boundary.expand_logged(&expansion, &mut journal),
                 None => {

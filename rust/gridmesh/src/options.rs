@@ -98,11 +98,7 @@ impl SketchOptions {
     /// [`Error::InvalidOption`].
     pub fn check(&self) -> Result<()> {
         let refuse = |name, value: f64, allowed| {
-            Err(Error::InvalidOption {
-                name,
-                value: format!("{value}"),
-                allowed,
-            })
+            Err(Error::InvalidOption { name, value: format!("{value}"), allowed })
         };
         if self.edge_length.is_some() && self.triangles.is_some() {
             return Err(Error::InvalidOption {
@@ -121,10 +117,7 @@ impl SketchOptions {
                 return refuse("triangles", n as f64, "at least 6");
             }
             if n as f64 > MAX_TRIANGLES {
-                return Err(Error::TooLarge {
-                    triangles: n as f64,
-                    limit: MAX_TRIANGLES,
-                });
+                return Err(Error::TooLarge { triangles: n as f64, limit: MAX_TRIANGLES });
             }
         }
         if !(0.5..=4.0).contains(&self.max_distance) {
@@ -144,11 +137,7 @@ impl SketchOptions {
         if let Some(Mirror::Axis { point, direction }) = self.mirror
             && !(point.is_finite() && direction.is_finite() && direction.length() > 0.0)
         {
-            return refuse(
-                "mirror",
-                direction.length(),
-                "a finite point and a direction other than zero",
-            );
+            return refuse("mirror", direction.length(), "a finite point and a direction other than zero");
         }
         Ok(())
     }

@@ -47,55 +47,29 @@ pub(crate) fn place(
     let drawn: Vec<(Vec<DVec2>, Vec<f64>)> = contours
         .iter()
         .map(|contour| {
-            let points = contour
-                .points()
-                .iter()
-                .map(|&p| lattice.to_units(p))
-                .collect();
+            let points = contour.points().iter().map(|&p| lattice.to_units(p)).collect();
             (points, contour.arc().iter().map(|&s| s / h).collect())
         })
         .collect();
-    let lines: Vec<Contour<'_>> = drawn
-        .iter()
-        .map(|(points, arc)| Contour { points, arc })
-        .collect();
+    let lines: Vec<Contour<'_>> = drawn.iter().map(|(points, arc)| Contour { points, arc }).collect();
     let mut start = 0;
     let mut rims: Vec<Rim> = Vec::new();
     for (arcs, angle) in outline.arcs.into_iter().zip(&angles) {
         let pinned = angle.iter().map(|&a| a != 0.0).collect();
         let n = arcs.len();
-        rims.push(Rim {
-            start,
-            s: arcs,
-            pinned,
-        });
+        rims.push(Rim { start, s: arcs, pinned });
         start += n;
     }
     if options.relax {
-        relax(
-            &region.triangles,
-            &mut positions,
-            &lines,
-            &mut rims,
-            &RelaxOptions::default(),
-            progress,
-        )?;
+        relax(&region.triangles, &mut positions, &lines, &mut rims, &RelaxOptions::default(), progress)?;
     }
     let mut vertices: Vec<DVec2> = positions.iter().map(|&p| lattice.from_units(p)).collect();
     let mut loops = Vec::new();
     for ((contour, rim), angle) in contours.iter().zip(&rims).zip(&angles) {
-        let mut placed = Loop {
-            start: rim.start as u32,
-            length: contour.length(),
-            ..Loop::default()
-        };
+        let mut placed = Loop { start: rim.start as u32, length: contour.length(), ..Loop::default() };
         for (i, &s) in rim.s.iter().enumerate() {
             let on_corner = rim.pinned[i];
-            let s = if on_corner {
-                nearest_drawn(contour, s * h)
-            } else {
-                contour.wrap(s * h)
-            };
+            let s = if on_corner { nearest_drawn(contour, s * h) } else { contour.wrap(s * h) };
             vertices[rim.start + i] = contour.point_at(s);
             placed.arc.push(contour.input_arc(s));
             placed.source.push(contour.source(s));
@@ -107,40 +81,18 @@ pub(crate) fn place(
         && let Some(triangle) = first_inverted(&vertices, &region.triangles, lattice.origin)
     {
         let at = vertices[region.triangles[triangle][0] as usize];
-        return Ok(Err(Obstacle {
-            reason: "a triangle stays inverted",
-            at,
-        }));
+        return Ok(Err(Obstacle { reason: "a triangle stays inverted", at }));
     }
-    let pinned = rims
-        .iter()
-        .flat_map(|rim| &rim.pinned)
-        .filter(|&&pinned| pinned)
-        .count();
-    let patch = Patch {
-        vertices,
-        triangles: region.triangles,
-        loops,
-        lattice: *lattice,
-    };
-    Ok(Ok(Placed {
-        patch,
-        corners: n_corners,
-        released_corners: n_corners - pinned,
-    }))
+    let pinned = rims.iter().flat_map(|rim| &rim.pinned).filter(|&&pinned| pinned).count();
+    let patch = Patch { vertices, triangles: region.triangles, loops, lattice: *lattice };
+    Ok(Ok(Placed { patch, corners: n_corners, released_corners: n_corners - pinned }))
 }
 
 /// The corners of a contour, with arc lengths in edges.
 fn corners_of(contour: &ClosedCurve, angle: f64, h: f64) -> Vec<Corner> {
     let arcs: Vec<f64> = contour.arc().iter().map(|&s| s / h).collect();
     let turning = contour.turning(CORNER_WINDOW * h);
-    corners(
-        &arcs[..turning.len()],
-        &turning,
-        contour.length() / h,
-        angle,
-        1.0,
-    )
+    corners(&arcs[..turning.len()], &turning, contour.length() / h, angle, 1.0)
 }
 
 /// Arc length of the drawn point nearest to arc length `s`, along the curve.
@@ -202,7 +154,8 @@ pub(crate) fn deviation(contours: &[ClosedCurve], patch: &Patch, limit: f64) -> 
             squared = squared.min(nearest_on_segment(point, edges[i][0], edges[i][1]).1);
         });
         if squared > limit * limit {
-            squared = edges.iter().map(|e| nearest_on_segment(point, e[0], e[1]).1).fold(f64::INFINITY, f64::min);
+            squared =
+                edges.iter().map(|e| nearest_on_segment(point, e[0], e[1]).1).fold(f64::INFINITY, f64::min);
         }
         if squared > worst.0 * worst.0 {
             worst = (squared.sqrt(), point);

@@ -29,9 +29,7 @@ impl Raster {
     pub fn new(target: &Target, margin: i32) -> Self {
         let points = target.points.iter().map(|&p| Lattice::nearest(p));
         let layout = Arc::new(Layout::around(points, margin + 1));
-        let mut raster = Self {
-            cells: Cells::new(layout, 0),
-        };
+        let mut raster = Self { cells: Cells::new(layout, 0) };
         let mut crossings: Vec<(i32, i32, i32)> = Vec::new();
         for i in 0..target.len() {
             let (a, b) = target.segment(i);
@@ -107,11 +105,7 @@ impl Raster {
     /// same patch, and the deepest lies in the widest chamber.
     pub fn seed(&self) -> Option<Axial> {
         let mut depth: Cells<u16> = Cells::new(self.layout().clone(), 0);
-        let points: Vec<Axial> = self
-            .layout()
-            .points()
-            .filter(|&p| self.is_inside(p))
-            .collect();
+        let points: Vec<Axial> = self.layout().points().filter(|&p| self.is_inside(p)).collect();
         for (forward, dirs) in [(true, [3, 4, 5]), (false, [0, 1, 2])] {
             let mut sweep = |p: Axial| {
                 let near = dirs.map(|d| depth.get(p + Dir::new(d)));

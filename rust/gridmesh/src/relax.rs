@@ -119,14 +119,7 @@ pub fn relax(
         }
         let eps = (0.04 + min.min(0.0) * min.min(0.0)).sqrt().max(0.05);
         report.untangle_sweeps += 1;
-        sweep(
-            &Regularised { eps },
-            &mut band,
-            &mut slide,
-            options.slide,
-            &mut active,
-            0.001,
-        );
+        sweep(&Regularised { eps }, &mut band, &mut slide, options.slide, &mut active, 0.001);
         if round == 199 {
             report.inverted = Some(0);
         }
@@ -136,15 +129,7 @@ pub fn relax(
         let mut active = Active::all(n);
         for _ in 0..options.barrier {
             report.barrier_sweeps += 1;
-            if sweep(
-                &Barrier,
-                &mut band,
-                &mut slide,
-                options.slide,
-                &mut active,
-                options.tolerance,
-            ) == 0
-            {
+            if sweep(&Barrier, &mut band, &mut slide, options.slide, &mut active, options.tolerance) == 0 {
                 break;
             }
         }

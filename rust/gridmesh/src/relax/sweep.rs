@@ -23,12 +23,7 @@ pub(super) struct Slide<'a> {
 }
 
 impl<'a> Slide<'a> {
-    pub fn new(
-        contours: &'a [Contour<'a>],
-        rims: &[Rim],
-        stiffness: f64,
-        min_gap: f64,
-    ) -> Slide<'a> {
+    pub fn new(contours: &'a [Contour<'a>], rims: &[Rim], stiffness: f64, min_gap: f64) -> Slide<'a> {
         let mut slide = Slide {
             contours,
             s: Vec::new(),
@@ -93,10 +88,7 @@ impl<'a> Slide<'a> {
     /// How far the vertex may slide back and ahead.
     fn room(&self, vertex: usize) -> (f64, f64) {
         let (back, ahead) = self.spacing(vertex);
-        (
-            (back - self.gap[vertex]).max(0.0),
-            (ahead - self.gap[vertex]).max(0.0),
-        )
+        ((back - self.gap[vertex]).max(0.0), (ahead - self.gap[vertex]).max(0.0))
     }
 }
 
@@ -107,15 +99,11 @@ pub(super) struct Active {
 
 impl Active {
     pub fn all(n: usize) -> Active {
-        Active {
-            dirty: vec![true; n],
-        }
+        Active { dirty: vec![true; n] }
     }
 
     pub fn none(n: usize) -> Active {
-        Active {
-            dirty: vec![false; n],
-        }
+        Active { dirty: vec![false; n] }
     }
 
     pub fn mark(&mut self, vertex: usize) {
@@ -237,11 +225,7 @@ fn move_along<E: Energy>(energy: &E, band: &mut Band, slide: &mut Slide, v: usiz
     let gradient = here.gradient.dot(tangent) + 2.0 * pull;
     let curvature = here.along(tangent) + 2.0 * slide.stiffness;
     let scale = here.xx + here.yy;
-    let mut step = if curvature > 1e-3 * scale {
-        -gradient / curvature
-    } else {
-        -gradient.signum() * 0.2
-    };
+    let mut step = if curvature > 1e-3 * scale { -gradient / curvature } else { -gradient.signum() * 0.2 };
     if !step.is_finite() {
         return 0.0;
     }
@@ -253,8 +237,7 @@ fn move_along<E: Energy>(energy: &E, band: &mut Band, slide: &mut Slide, v: usiz
         }
         let s1 = s + step;
         let x1 = slide.place(v, s1);
-        let then =
-            value(energy, x1, ring, &band.positions) + slide.stiffness * (s1 - home) * (s1 - home);
+        let then = value(energy, x1, ring, &band.positions) + slide.stiffness * (s1 - home) * (s1 - home);
         if then < now {
             band.positions[v] = x1;
             slide.s[v] = s1;
@@ -273,9 +256,7 @@ pub(super) fn extend(band: &mut Band, displacement: &[DVec2], sweeps: usize) {
     for _ in 0..sweeps {
         for v in rim..band.n_free {
             let around = &band.around(v)[1..];
-            let sum = around
-                .iter()
-                .fold(DVec2::ZERO, |sum, &w| sum + moved[w as usize]);
+            let sum = around.iter().fold(DVec2::ZERO, |sum, &w| sum + moved[w as usize]);
             moved[v] = sum / around.len() as f64;
         }
     }
