@@ -1,4 +1,5 @@
 //! The boundary and its one move: identities that hold after every expansion.
+#![allow(clippy::unwrap_used)]
 
 use std::sync::Arc;
 
