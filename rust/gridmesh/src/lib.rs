@@ -7,3 +7,4 @@ pub mod error;
 pub mod lattice;
 pub mod patch;
 pub mod progress;
+pub mod relax;
