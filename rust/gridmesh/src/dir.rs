@@ -78,7 +78,10 @@ mod tests {
                 assert_eq!(dir.turn_to(dir.rotate(turn)), turn);
             }
             assert_eq!(dir.offset() + dir.opposite().offset(), Axial::default());
-            assert_eq!(dir.offset() + dir.rotate(2).offset(), dir.rotate(1).offset());
+            assert_eq!(
+                dir.offset() + dir.rotate(2).offset(),
+                dir.rotate(1).offset()
+            );
         }
     }
 }

@@ -110,23 +110,44 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Error::NotFinite { what, point } => {
-                write!(f, "point {point} of the {what} is NaN or infinite; all coordinates must be finite")
+                write!(
+                    f,
+                    "point {point} of the {what} is NaN or infinite; all coordinates must be finite"
+                )
             }
             Error::TooFewPoints { what, distinct } => {
-                write!(f, "the {what} has {distinct} distinct points; at least 3 are needed, draw a closed shape")
+                write!(
+                    f,
+                    "the {what} has {distinct} distinct points; at least 3 are needed, draw a closed shape"
+                )
             }
             Error::ZeroArea { what } => {
-                write!(f, "the {what} encloses no area: its points lie on one line; draw a closed shape")
+                write!(
+                    f,
+                    "the {what} encloses no area: its points lie on one line; draw a closed shape"
+                )
             }
-            Error::SelfIntersecting { what, first, second, at: [x, y] } => write!(
+            Error::SelfIntersecting {
+                what,
+                first,
+                second,
+                at: [x, y],
+            } => write!(
                 f,
                 "the {what} meets itself: segments {first} and {second} cross or touch at ({x:.6}, {y:.6}); \
                  draw an outline that does not cross itself"
             ),
             Error::HoleMisplaced { hole, reason } => {
-                write!(f, "hole {hole} {reason}; each hole must lie inside the outline and apart from the others")
+                write!(
+                    f,
+                    "hole {hole} {reason}; each hole must lie inside the outline and apart from the others"
+                )
             }
-            Error::InvalidOption { name, value, allowed } => {
+            Error::InvalidOption {
+                name,
+                value,
+                allowed,
+            } => {
                 write!(f, "{name} is {value}; allowed: {allowed}")
             }
             Error::TooCoarse { triangles, least } => write!(
@@ -139,9 +160,14 @@ impl fmt::Display for Error {
                  use a larger edge length"
             ),
             Error::NoPatch { reason, at: [x, y] } => {
-                write!(f, "no valid mesh was found: {reason} near ({x:.6}, {y:.6}); simplify the drawing there")
+                write!(
+                    f,
+                    "no valid mesh was found: {reason} near ({x:.6}, {y:.6}); simplify the drawing there"
+                )
             }
-            Error::Solver { stage, reason } => write!(f, "the linear solve of the {stage} failed: {reason}"),
+            Error::Solver { stage, reason } => {
+                write!(f, "the linear solve of the {stage} failed: {reason}")
+            }
             Error::Cancelled => write!(f, "cancelled"),
         }
     }
