@@ -112,9 +112,7 @@ fn fans(triangles: &[[u32; 3]], n_rim: usize, n_free: usize) -> Result<(Vec<u32>
         around.push(fan[0].0);
         around.push(fan[0].1);
         for i in 1..fan.len() {
-            let Some(next) = (i..fan.len()).find(|&j| fan[j].0 == fan[i - 1].1) else {
-                return Err(v);
-            };
+            let Some(next) = (i..fan.len()).find(|&j| fan[j].0 == fan[i - 1].1) else { return Err(v) };
             fan.swap(i, next);
             around.push(fan[i].1);
         }
