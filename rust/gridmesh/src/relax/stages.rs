@@ -148,7 +148,8 @@ impl Motion<'_> {
 
     /// Least angle of the triangles of the band, in radians.
     pub fn least_angle(&self) -> f64 {
-        let angles = self.band.triangles.iter().map(|t| least_angle(t.map(|v| self.band.positions[v as usize])));
+        let angles =
+            self.band.triangles.iter().map(|t| least_angle(t.map(|v| self.band.positions[v as usize])));
         angles.fold(std::f64::consts::FRAC_PI_3, f64::min)
     }
 }
