@@ -56,10 +56,17 @@ impl Energy for Barrier {
     }
 }
 
-/// The fourth power of (a third of) a barrier with less weight on the area: what counts is the
-/// worst triangle.
-pub(super) struct Worst {
-    pub area: f64,
+/// The fourth power of a barrier with little weight on the area, one for a unit equilateral
+/// triangle: what counts is the worst triangle.
+///
+/// Above [`Worst::LINEAR`] (a least angle below some 18 degrees) it goes on linearly, so that the
+/// sharp tip of a drawing, which nothing can mend, does not blow up the triangle in it.
+pub(super) struct Worst;
+
+impl Worst {
+    const LINEAR: f64 = 2.0;
+    const AREA: f64 = 0.07;
+    const SCALE: f64 = 1.0 / (2.0 + 2.0 * Worst::AREA);
 }
 
 impl Energy for Worst {
@@ -69,21 +76,22 @@ impl Energy for Worst {
         if det <= 0.0 {
             return f64::INFINITY;
         }
-        let e = ((stretch + self.area) / det + self.area * det) / (2.0 + 2.0 * self.area);
-        let e2 = e * e;
-        e2 * e2
+        let e = ((stretch + Self::AREA) / det + Self::AREA * det) * Self::SCALE;
+        let low = e.min(Self::LINEAR);
+        low * low * low * (low + 4.0 * (e - low))
     }
 
     fn derivatives(&self, stretch: f64, det: f64) -> Derivatives {
-        let scale = 1.0 / (2.0 + 2.0 * self.area);
-        let inverse = 1.0 / det;
-        let ratio = (stretch + self.area) * inverse * scale;
-        let e = ratio + self.area * det * scale;
-        let (eu, ed) = (inverse * scale, self.area * scale - ratio * inverse);
-        let (eud, edd) = (-inverse * inverse * scale, 2.0 * ratio * inverse * inverse);
-        let (first, second) = (4.0 * e * e * e, 12.0 * e * e);
+        let inverse = Self::SCALE / det;
+        let ratio = (stretch + Self::AREA) / det;
+        let e = (ratio + Self::AREA * det) * Self::SCALE;
+        let (eu, ed) = (inverse, Self::AREA * Self::SCALE - ratio * inverse);
+        let (eud, edd) = (-inverse / det, 2.0 * ratio * inverse / det);
+        let low = e.min(Self::LINEAR);
+        let first = 4.0 * low * low * low;
+        let second = if e > low { 0.0 } else { 12.0 * low * low };
         Derivatives {
-            value: e * e * e * e,
+            value: low * low * low * (low + 4.0 * (e - low)),
             u: first * eu,
             d: first * ed,
             uu: second * eu * eu,
@@ -243,7 +251,7 @@ mod tests {
     fn derivatives_are_those_of_the_value() {
         for x in [DVec2::ZERO, DVec2::new(0.2, -0.1), DVec2::new(-0.3, 0.25)] {
             derivatives_match_differences(&Barrier, x);
-            derivatives_match_differences(&Worst { area: 0.25 }, x);
+            derivatives_match_differences(&Worst, x);
             derivatives_match_differences(&Regularised { eps: 0.3 }, x);
         }
         // Outside the ring: two inverted triangles.
@@ -258,6 +266,6 @@ mod tests {
         let l = local(&Barrier, DVec2::ZERO, &ring, &hexagon);
         assert!((l.value - 18.0).abs() < 1e-12);
         assert!(l.gradient.length() < 1e-12);
-        assert!(local(&Worst { area: 0.25 }, DVec2::ZERO, &ring, &hexagon).gradient.length() < 1e-12);
+        assert!(local(&Worst, DVec2::ZERO, &ring, &hexagon).gradient.length() < 1e-12);
     }
 }

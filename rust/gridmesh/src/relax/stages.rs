@@ -101,9 +101,8 @@ impl Motion<'_> {
     pub fn improve(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<usize> {
         let n = self.band.n_free;
         let even = self.settle(&Barrier, &mut Active::all(n), 8, tolerance, progress.part(0.0, 0.4))?;
-        let worst = &Worst { area: 0.07 };
         let all = &mut Active::all(n);
-        Ok(even + self.settle(worst, all, 12, 0.5 * tolerance, progress.part(0.4, 1.0))?)
+        Ok(even + self.settle(&Worst, all, 12, 0.5 * tolerance, progress.part(0.4, 1.0))?)
     }
 
     /// Frees the pinned vertices at which a triangle starves, and lets their surroundings settle.
@@ -126,7 +125,7 @@ impl Motion<'_> {
                 self.slide.home[v as usize] = self.slide.s[v as usize];
             }
             let mut active = Active::near(&self.band, starved.iter().copied(), 2);
-            self.settle(&Worst { area: 0.07 }, &mut active, 30, 0.25 * tolerance, progress)?;
+            self.settle(&Worst, &mut active, 30, 0.25 * tolerance, progress)?;
             released.extend(starved);
         }
         released.sort_unstable();
