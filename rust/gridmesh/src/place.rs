@@ -11,7 +11,7 @@ use crate::options::SketchOptions;
 use crate::outline::{Obstacle, Outline};
 use crate::patch::{Loop, Patch};
 use crate::progress::Progress;
-use crate::relax::{Contour, RelaxOptions, Rim, first_inverted, relax};
+use crate::relax::{Contour, RelaxOptions, Rim, first_inverted, relax, settle_corners};
 use crate::segments::{SegmentGrid, nearest_on_segment};
 
 /// Half the length over which a corner's turning angle is measured, in edges.
@@ -61,6 +61,7 @@ pub(crate) fn place(
         start += n;
     }
     if options.relax {
+        settle_corners(&region.triangles, &lines, &mut rims, &mut angles);
         relax(&region.triangles, &mut positions, &lines, &mut rims, &RelaxOptions::default(), progress)?;
     }
     let mut vertices: Vec<DVec2> = positions.iter().map(|&p| lattice.from_units(p)).collect();

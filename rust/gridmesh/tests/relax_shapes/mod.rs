@@ -35,10 +35,7 @@ impl Shape {
 /// Named analytic outlines, counter-clockwise.
 pub fn outline(name: &str) -> Vec<DVec2> {
     let polar = |r: &dyn Fn(f64) -> f64| -> Vec<DVec2> {
-        (0..720)
-            .map(|i| TAU * f64::from(i) / 720.0)
-            .map(|t| r(t) * DVec2::from_angle(t))
-            .collect()
+        (0..720).map(|i| TAU * f64::from(i) / 720.0).map(|t| r(t) * DVec2::from_angle(t)).collect()
     };
     match name {
         "circle" => polar(&|_| 1.0),
@@ -67,9 +64,9 @@ pub fn outline(name: &str) -> Vec<DVec2> {
                 }
             })
             .collect(),
-        "square" => [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-            .map(|(x, y)| DVec2::new(x, y))
-            .to_vec(),
+        "square" => {
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec()
+        }
         _ => panic!("no outline called {name}"),
     }
 }
@@ -338,7 +335,14 @@ fn assemble(curve: Vec<DVec2>, arc: Vec<f64>, path: &[Axial], target: &[f64], co
             }
         }
     }
-    Shape { curve, arc, triangles: triangles.into_iter().collect(), positions, rim: Rim { start: 0, s, pinned }, corner }
+    Shape {
+        curve,
+        arc,
+        triangles: triangles.into_iter().collect(),
+        positions,
+        rim: Rim { start: 0, s, pinned },
+        corner,
+    }
 }
 
 /// Least-squares increasing sequence with gaps of at least `gap` (pool adjacent violators).
