@@ -11,3 +11,4 @@ pub mod patch;
 pub mod progress;
 mod segments;
 pub mod target;
+pub mod trace;
