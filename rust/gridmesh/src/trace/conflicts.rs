@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::axial::Axial;
 use crate::dir::Dir;
 
-use super::graph::Graph;
+use super::dive::Contour;
 use super::search::Walk;
 
 /// A vertex of one of several paths.
@@ -31,16 +31,16 @@ pub(super) struct Finder {
 }
 
 impl Finder {
-    pub fn find(&mut self, graphs: &[Graph], walks: &[Walk]) -> Vec<Conflict> {
+    pub fn find(&mut self, contours: &[Contour], walks: &[Walk]) -> Vec<Conflict> {
         let mut found = Vec::new();
         self.at.clear();
-        for (contour, (graph, walk)) in (0..).zip(graphs.iter().zip(walks)) {
+        for (contour, (Contour { graph, .. }, walk)) in (0..).zip(contours.iter().zip(walks)) {
             for i in 0..walk.len() {
                 let a = Vertex {
                     contour,
                     index: i as u32,
                 };
-                let point = graph.points[walk.node(graph, i) as usize];
+                let point = graph.points[walk.node(i) as usize];
                 let first = *self.at.entry(point).or_insert(a);
                 if first != a {
                     found.push(Conflict {
@@ -51,13 +51,13 @@ impl Finder {
                 }
             }
         }
-        for (contour, (graph, walk)) in (0..).zip(graphs.iter().zip(walks)) {
+        for (contour, (Contour { graph, .. }, walk)) in (0..).zip(contours.iter().zip(walks)) {
             for i in 0..walk.len() {
                 let a = Vertex {
                     contour,
                     index: i as u32,
                 };
-                let point = graph.points[walk.node(graph, i) as usize];
+                let point = graph.points[walk.node(i) as usize];
                 let count = (2 - walk.turn(i)).max(0) as u32;
                 for k in 1..=count {
                     let dir = (walk.leave(i) + k) % 6;

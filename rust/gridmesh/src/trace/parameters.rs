@@ -17,13 +17,9 @@ pub(super) fn parameters(graph: &Graph, walk: &Walk) -> Vec<f64> {
     let length = graph.n_samples as f64;
     let gap = GAP * length / n as f64;
     let own: Vec<f64> = walk
-        .states
+        .steps
         .iter()
-        .map(|state| {
-            let place = state / 6;
-            let sheet = f64::from(u8::from(place as usize >= graph.n_nodes()));
-            graph.parameter[graph.node(place) as usize] + sheet * length
-        })
+        .map(|step| graph.parameter[step.node as usize] + f64::from(step.sheet) * length)
         .collect();
     // Three turns, of which the middle one does not feel the ends.
     let mut blocks: Vec<(f64, f64)> = Vec::with_capacity(3 * n);

@@ -8,13 +8,42 @@ use super::queue::Queue;
 pub(super) const TURNS: [i32; 4] = [0, 1, -1, -2];
 const NONE: u32 = u32::MAX;
 
-/// A closed path in one band: for each vertex its node, the direction of the step that arrived,
-/// and the sheet (0, or 1 where it runs ahead past the cut).
+/// A closed path in one band.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Walk {
-    pub states: Vec<State>,
+    pub steps: Vec<Step>,
     /// Search cost without prices.
     pub cost: u32,
+}
+
+/// A vertex of a walk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Step {
+    pub node: u32,
+    /// Direction of the step that arrived.
+    pub enter: u8,
+    /// Turns around the curve made so far: 0 or 1, now and then one more or less.
+    pub sheet: i8,
+}
+
+/// What a transition costs beyond turns and distance.
+pub(super) trait Rules {
+    /// For arriving at a node by a direction.
+    fn arrive(&mut self, node: u32, dir: u32) -> u32;
+    /// For turning by `turn` at a node and leaving by `out`.
+    fn inside(&mut self, node: u32, out: u32, turn: i32) -> u32;
+}
+
+impl Rules for &Prices {
+    #[inline]
+    fn arrive(&mut self, node: u32, dir: u32) -> u32 {
+        self.of(node).map_or(0, |extra| extra.arrive[dir as usize])
+    }
+
+    #[inline]
+    fn inside(&mut self, node: u32, out: u32, turn: i32) -> u32 {
+        self.of(node).map_or(0, |extra| extra.inside(out, turn))
+    }
 }
 
 /// Lower bounds on the cost from each state to the end of a closed path.
@@ -169,54 +198,146 @@ impl Search {
         start: State,
         limit: u32,
     ) -> Option<(Walk, u32)> {
-        let n = graph.n_nodes() as u32;
-        let goal = start + 6 * n;
+        let goal = start + 6 * graph.n_nodes() as u32;
         let bound = &potential.bound;
         self.make_room(graph.n_states());
-        self.queue.clear(bound[start as usize]);
+        let found = self.run(
+            graph,
+            prices,
+            |state| bound[state as usize],
+            |link, sheet| graph.follow(link, sheet),
+            (start, goal),
+            limit,
+        );
+        let walk = found.map(|cost| {
+            let mut walk = Walk {
+                steps: self.steps(graph, start, goal),
+                cost: 0,
+            };
+            walk.cost = walk.base_cost(graph);
+            (walk, cost)
+        });
+        self.reset();
+        walk
+    }
+
+    /// The cheapest way from one vertex of a walk to a later one; the steps after the first, and
+    /// their cost. Indices beyond the walk's length go round once more.
+    pub fn between(
+        &mut self,
+        graph: &Graph,
+        potential: &Potential,
+        rules: impl Rules,
+        (walk, from, to): (&Walk, usize, usize),
+        limit: u32,
+    ) -> Option<(Vec<Step>, u32)> {
+        let n = graph.n_nodes() as u32;
+        let turn = |i: usize| walk.step(i).sheet + i8::from(i >= walk.len());
+        let state = |i: usize, sheet: u32| {
+            let step = walk.step(i);
+            6 * (step.node + sheet * n) + u32::from(step.enter)
+        };
+        let flat = (from..=to).all(|i| turn(i) == 0);
+        let (found, start, goal, base) = if flat {
+            // The potential is a difference: what it says of the way to the goal is a lower bound.
+            let (start, goal) = (state(from, 0), state(to, 0));
+            let bound = &potential.bound;
+            self.make_room(6 * n as usize);
+            let found = self.run(
+                graph,
+                rules,
+                |state| bound[state as usize],
+                |link, _| (link & 3 == 1).then_some(link >> 2),
+                (start, goal),
+                limit.saturating_add(bound[goal as usize]),
+            );
+            (found, start, goal, 0)
+        } else {
+            let ahead = u32::try_from(turn(to) - turn(from) + 1).ok().filter(|&k| k < 3)?;
+            let (start, goal) = (state(from, 1), state(to, ahead));
+            self.make_room(18 * n as usize);
+            let found = self.run(
+                graph,
+                rules,
+                |_| 0,
+                |link, sheet| {
+                    let sheet = (sheet + (link & 3)).wrapping_sub(1);
+                    (sheet < 3).then_some((link >> 2) + sheet * n)
+                },
+                (start, goal),
+                limit,
+            );
+            (found, start, goal, turn(from) - 1)
+        };
+        let steps = found.map(|cost| {
+            let mut steps = self.steps(graph, start, goal);
+            for step in &mut steps {
+                step.sheet += base;
+            }
+            (steps, cost)
+        });
+        self.reset();
+        steps
+    }
+
+    /// A* between two states; `key` gives a consistent lower bound up to a constant.
+    fn run(
+        &mut self,
+        graph: &Graph,
+        mut rules: impl Rules,
+        bound: impl Fn(State) -> u32,
+        follow: impl Fn(u32, u32) -> Option<u32>,
+        (start, goal): (State, State),
+        limit: u32,
+    ) -> Option<u32> {
+        let n = graph.n_nodes() as u32;
+        self.queue.clear(bound(start));
         self.reached[start as usize] = 0;
         self.parent[start as usize] = NONE;
         self.touched.push(start);
-        self.queue.push(bound[start as usize], start);
-        let mut found = None;
+        self.queue.push(bound(start), start);
         while let Some((key, state)) = self.queue.pop() {
             let so_far = self.reached[state as usize];
-            if so_far + bound[state as usize] != key {
+            if so_far + bound(state) != key {
                 continue;
             }
             self.taken += 1;
             if state == goal {
-                found = Some(so_far);
-                break;
+                return Some(so_far);
             }
             let (place, dir) = (state / 6, state % 6);
-            let (node, sheet) = if place < n {
-                (place, 0)
-            } else {
-                (place - n, 1)
-            };
-            let extra = prices.of(node);
+            let (mut node, mut sheet) = (place, 0);
+            while node >= n {
+                node -= n;
+                sheet += 1;
+            }
             for turn in TURNS {
                 let out = turned(dir, turn);
-                let mut cost = so_far + turn.unsigned_abs() * TURN;
-                if let Some(extra) = extra {
-                    cost += extra.inside(out, turn);
+                let links = graph.links(node, out);
+                if links.is_empty() {
+                    continue;
                 }
-                for &link in graph.links(node, out) {
-                    let Some(next) = graph.follow(link, sheet) else {
+                let inside = rules.inside(node, out, turn);
+                if inside >= BLOCKED {
+                    continue;
+                }
+                let cost = so_far + turn.unsigned_abs() * TURN + inside;
+                for &link in links {
+                    let Some(next) = follow(link, sheet) else {
                         continue;
                     };
                     let to = link >> 2;
-                    let mut cost = cost + graph.cost[to as usize];
-                    if let Some(extra) = prices.of(to) {
-                        cost += extra.arrive[out as usize];
-                    }
-                    let next = 6 * next + out;
-                    let known = self.reached[next as usize];
-                    if cost >= known || cost >= limit {
+                    let arrive = rules.arrive(to, out);
+                    if arrive >= BLOCKED {
                         continue;
                     }
-                    let key = cost.saturating_add(bound[next as usize]);
+                    let cost = cost + graph.cost[to as usize] + arrive;
+                    let next = 6 * next + out;
+                    let known = self.reached[next as usize];
+                    if cost >= known {
+                        continue;
+                    }
+                    let key = cost.saturating_add(bound(next));
                     if key >= limit {
                         continue;
                     }
@@ -229,67 +350,74 @@ impl Search {
                 }
             }
         }
-        let walk = found.map(|cost| {
-            let mut states = Vec::new();
-            let mut at = goal;
-            while at != start {
-                states.push(at);
-                at = self.parent[at as usize];
-            }
-            states.reverse();
-            let mut walk = Walk { states, cost: 0 };
-            walk.cost = walk.price(graph, None);
-            (walk, cost)
-        });
-        self.reset();
-        walk
+        None
+    }
+
+    /// The steps after `start` on the way found to `goal`.
+    fn steps(&self, graph: &Graph, start: State, goal: State) -> Vec<Step> {
+        let n = graph.n_nodes() as u32;
+        let mut steps = Vec::new();
+        let mut at = goal;
+        while at != start {
+            let place = at / 6;
+            steps.push(Step {
+                node: place % n,
+                enter: (at % 6) as u8,
+                sheet: (place / n) as i8,
+            });
+            at = self.parent[at as usize];
+        }
+        steps.reverse();
+        steps
     }
 }
 
 impl Walk {
     /// Number of vertices.
     pub fn len(&self) -> usize {
-        self.states.len()
+        self.steps.len()
+    }
+
+    /// Vertex `i`, of any turn below two.
+    pub fn step(&self, i: usize) -> Step {
+        let n = self.steps.len();
+        self.steps[if i < n { i } else { i - n }]
     }
 
     /// Node of the vertex `i`.
-    pub fn node(&self, graph: &Graph, i: usize) -> u32 {
-        graph.node(self.states[i] / 6)
-    }
-
-    /// Direction of the step that arrives at vertex `i`.
-    pub fn enter(&self, i: usize) -> u32 {
-        self.states[i] % 6
+    pub fn node(&self, i: usize) -> u32 {
+        self.step(i).node
     }
 
     /// Direction of the step that leaves vertex `i`.
     pub fn leave(&self, i: usize) -> u32 {
-        self.states[if i + 1 < self.states.len() { i + 1 } else { 0 }] % 6
+        u32::from(self.step(i + 1).enter)
     }
 
     /// The turn at vertex `i`.
     pub fn turn(&self, i: usize) -> i32 {
-        let turn = (self.leave(i) + 6 - self.enter(i)) % 6;
-        if turn > 3 {
-            turn as i32 - 6
-        } else {
-            turn as i32
-        }
+        let turn = (self.leave(i) + 6 - u32::from(self.step(i).enter)) % 6;
+        if turn > 3 { turn as i32 - 6 } else { turn as i32 }
     }
 
-    /// Search cost, with prices if there are any.
-    pub fn price(&self, graph: &Graph, prices: Option<&Prices>) -> u32 {
+    /// Search cost without prices.
+    pub fn base_cost(&self, graph: &Graph) -> u32 {
         (0..self.len())
-            .map(|i| {
-                let node = self.node(graph, i);
-                let turn = self.turn(i);
-                let extra = prices.and_then(|prices| prices.of(node));
-                graph.cost[node as usize]
-                    + turn.unsigned_abs() * TURN
-                    + extra.map_or(0, |extra| {
-                        extra.inside(self.leave(i), turn) + extra.arrive[self.enter(i) as usize]
-                    })
-            })
-            .fold(0, |sum, cost| sum.saturating_add(cost).min(BLOCKED))
+            .map(|i| graph.cost[self.node(i) as usize] + self.turn(i).unsigned_abs() * TURN)
+            .sum()
+    }
+
+    /// Replaces the vertices after `from` up to `to` (below one turn later) by others.
+    ///
+    /// `cost` is left to the caller.
+    pub fn splice(&mut self, from: usize, to: usize, steps: &[Step]) {
+        let n = self.len();
+        if to < n {
+            self.steps.splice(from + 1..=to, steps.iter().copied());
+        } else {
+            let kept = self.steps[to - n + 1..=from].to_vec();
+            self.steps = kept;
+            self.steps.extend_from_slice(steps);
+        }
     }
 }
