@@ -5,6 +5,7 @@ mod dive;
 mod graph;
 mod parameters;
 mod prices;
+mod proof;
 mod queue;
 mod search;
 mod sides;
@@ -113,6 +114,7 @@ fn attempt(targets: &[Target], options: &TraceOptions, max_distance: f64, progre
     }
     let root: u32 = walks.iter().map(|w| w.cost).sum();
     let root_turns: usize = turns(&walks);
+    let roots = walks.clone();
     let dive = dive::dive(&contours, &mut walks, &mut prices, &mut search, progress).map_err(|_| TraceFailure::Cancelled)?;
     if times { eprintln!("all {:.3} rounds {}", t.elapsed().as_secs_f64() * 1e3, dive.rounds); }
     if let Some(c) = dive.conflicts.first() {
@@ -123,14 +125,26 @@ fn attempt(targets: &[Target], options: &TraceOptions, max_distance: f64, progre
     if !dive::turned_once(&walks) {
         return Err(TraceFailure::WrongRegion { contour: 0, at: Axial::default(), turns: 0 });
     }
-    let cost = walks.iter().map(|w| w.cost).sum::<u32>();
+    let mut cost = walks.iter().map(|w| w.cost).sum::<u32>();
+    let mut bound = root;
+    let mut optimal = dive.rounds == 0;
+    if !optimal && options.proof_nodes > 0 {
+        let t = std::time::Instant::now();
+        let proof = proof::prove(&contours, &roots, cost, options.proof_nodes, &mut search, progress).map_err(|_| TraceFailure::Cancelled)?;
+        if let Some(w) = proof.walks { walks = w; }
+        let was = cost;
+        cost = walks.iter().map(|w| w.cost).sum::<u32>();
+        bound = proof.bound;
+        optimal = proof.optimal;
+        if times { eprintln!("proof {:.3} from {was} to {cost} root {root} bound {bound}", t.elapsed().as_secs_f64() * 1e3); }
+    }
     Ok(Traced {
         paths: walks.iter().zip(&contours).map(|(w, c)| Path { points: (0..w.len()).map(|i| c.graph.points[w.node(i) as usize]).collect(), parameters: parameters::parameters(&c.graph, w) }).collect(),
         cost: f64::from(cost) / f64::from(TURN),
-        cost_bound: f64::from(root) / f64::from(TURN),
+        cost_bound: f64::from(bound) / f64::from(TURN),
         turns: turns(&walks),
         turns_bound: root_turns,
-        optimal: dive.rounds == 0,
+        optimal,
         max_distance_used: max_distance,
         rounds: dive.rounds,
     })

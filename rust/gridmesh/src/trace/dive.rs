@@ -41,21 +41,33 @@ pub(super) fn dive(
     search: &mut Search,
     progress: Progress<'_>,
 ) -> Result<Dive> {
+    dive_from(contours, walks, prices, search, ROUNDS, progress)
+}
+
+/// Likewise, with some prices to begin with and a limit to the rounds.
+pub(super) fn dive_from(
+    contours: &[Contour],
+    walks: &mut [Walk],
+    prices: &mut [Prices],
+    search: &mut Search,
+    limit: usize,
+    progress: Progress<'_>,
+) -> Result<Dive> {
     let mut finder = Finder::default();
     let mut rounds = 0;
     loop {
         let conflicts = finder.find(contours, walks);
         let repeated = conflicts.iter().any(|conflict| conflict.chord.is_none());
-        let wrong = if repeated || !turned_once(walks) {
+        let wrong = if repeated || walks.len() > 1 || !turned_once(walks) {
             wrong_sides(contours, walks)
         } else {
             Vec::new()
         };
-        if (conflicts.is_empty() && wrong.is_empty()) || rounds == ROUNDS {
+        if (conflicts.is_empty() && wrong.is_empty()) || rounds == limit {
             return Ok(Dive { rounds, conflicts });
         }
         rounds += 1;
-        progress.report(rounds as f64 / ROUNDS as f64)?;
+        progress.report(rounds as f64 / limit as f64)?;
         let mut hot: Vec<Vertex> = Vec::new();
         for conflict in &conflicts {
             raise(walks, prices, conflict, STEP);

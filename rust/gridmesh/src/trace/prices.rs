@@ -18,7 +18,7 @@ impl Extra {
         let count = (2 - turn) as u32;
         (1..=count)
             .map(|k| self.inside[((out + k) % 6) as usize])
-            .sum()
+            .fold(0, |sum, price| (sum + price).min(BLOCKED))
     }
 }
 
@@ -28,6 +28,7 @@ pub(super) struct Prices {
     /// Zero, or one more than the index in `extras`.
     index: Vec<u32>,
     extras: Vec<Extra>,
+    priced: Vec<u32>,
 }
 
 impl Prices {
@@ -35,6 +36,7 @@ impl Prices {
         Self {
             index: vec![0; n_nodes],
             extras: Vec::new(),
+            priced: Vec::new(),
         }
     }
 
@@ -48,9 +50,24 @@ impl Prices {
         let index = &mut self.index[node as usize];
         if *index == 0 {
             self.extras.push(Extra::default());
+            self.priced.push(node);
             *index = self.extras.len() as u32;
         }
         &mut self.extras[*index as usize - 1]
+    }
+
+    /// The nodes that have prices.
+    pub fn priced(&self) -> &[u32] {
+        &self.priced
+    }
+
+    /// Takes all prices back.
+    pub fn clear(&mut self) {
+        for &node in &self.priced {
+            self.index[node as usize] = 0;
+        }
+        self.extras.clear();
+        self.priced.clear();
     }
 
     /// Charges any visit of a node.
