@@ -194,7 +194,7 @@ impl Tree<'_> {
         progress: Progress<'_>,
     ) -> Result<()> {
         let mut best_bound = 0;
-        let mut best_part: Option<(Vec<u32>, Vec<[Use; 2]>, Vec<Walk>)> = None;
+        let mut best_part: Option<(Vec<u32>, Vec<[Use; 2]>)> = None;
         let (mut scale, mut stale) = (1.0, 0);
         for step in 0..=steps {
             multipliers.resize(self.pairs.len(), 0);
@@ -214,7 +214,7 @@ impl Tree<'_> {
             let uses: Vec<[Use; 2]> = conflicts.iter().map(|c| uses(&walks, c)).collect();
             if bound > best_bound || best_part.is_none() {
                 (best_bound, stale) = (bound, 0);
-                best_part = Some((multipliers.clone(), uses.clone(), walks.clone()));
+                best_part = Some((multipliers.clone(), uses.clone()));
             } else {
                 stale += 1;
                 if stale == 3 {
@@ -225,11 +225,21 @@ impl Tree<'_> {
                 break;
             }
         }
-        let Some((multipliers, conflicts, _)) = best_part else {
+        let Some((multipliers, conflicts)) = best_part else {
             return Ok(());
         };
-        match conflicts.get(conflicts.len() / 2) {
-            Some(&branch) => {
+        // Split where the prices are highest: that is where both sides are wanted most.
+        let price = |pair: &[Use; 2]| {
+            let known = self.known.get(pair).map(|&i| i as usize);
+            known.and_then(|i| multipliers.get(i)).copied().unwrap_or(0)
+        };
+        let first = |pairs: &[[Use; 2]]| {
+            let best = pairs.iter().enumerate().max_by_key(|(i, pair)| (price(pair), Reverse(*i)));
+            best.map(|(_, pair)| *pair)
+        };
+        let branch = first(&conflicts).or_else(|| first(&self.pairs).filter(|pair| price(pair) > 0));
+        match branch {
+            Some(branch) => {
                 self.open.push(Reverse((best_bound, self.parts.len())));
                 self.parts.push(Part {
                     bans,
