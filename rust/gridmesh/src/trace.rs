@@ -128,7 +128,7 @@ fn attempt(targets: &[Target], options: &TraceOptions, max_distance: f64, progre
     let mut cost = walks.iter().map(|w| w.cost).sum::<u32>();
     let mut bound = root;
     let mut optimal = dive.rounds == 0;
-    if !optimal && options.proof_nodes > 0 {
+    if !optimal {
         let t = std::time::Instant::now();
         let proof = proof::prove(&contours, &roots, cost, options.proof_nodes, &mut search, progress).map_err(|_| TraceFailure::Cancelled)?;
         if let Some(w) = proof.walks { walks = w; }

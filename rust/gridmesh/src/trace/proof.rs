@@ -19,6 +19,8 @@ use super::sides::wrong_sides;
 /// Searches for better prices in the first part of the search space, and in each later one.
 const ROOT_STEPS: usize = 40;
 const STEPS: usize = 6;
+/// Likewise, when no proof was asked for.
+const QUICK_STEPS: usize = 8;
 
 /// What is known after a proof was tried.
 pub(super) struct Proof {
@@ -132,7 +134,8 @@ pub(super) fn prove(
         open: BinaryHeap::new(),
     };
     let mut looked_at = 1;
-    tree.look(None, Vec::new(), ROOT_STEPS.min(2 * nodes), progress)?;
+    let steps = if nodes > 0 { ROOT_STEPS } else { QUICK_STEPS };
+    tree.look(None, Vec::new(), steps, progress)?;
     while let Some(&Reverse((bound, at))) = tree.open.peek() {
         if bound >= tree.best || looked_at + 2 > nodes {
             break;
