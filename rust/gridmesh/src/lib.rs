@@ -23,3 +23,4 @@ pub mod relax;
 mod segments;
 pub mod sketch;
 pub mod target;
+pub mod trace;

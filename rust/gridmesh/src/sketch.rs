@@ -8,8 +8,8 @@ use crate::contours::read_contours;
 use crate::curve::ClosedCurve;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
-use crate::options::{DEFAULT_TRIANGLES, MAX_TRIANGLES, SketchOptions, SketchReport};
-use crate::outline::{Obstacle, Outline, grown};
+use crate::options::{BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SketchOptions, SketchReport};
+use crate::outline::{Obstacle, Outline, grown, traced};
 use crate::patch::Patch;
 use crate::place::{Placed, deviation, min_angle, place};
 use crate::progress::Progress;
@@ -154,7 +154,7 @@ impl Job<'_> {
         let mut obstacle = Obstacle { reason: "the number of triangles is not reached", at: DVec2::ZERO };
         for _ in 0..CORRECTIONS {
             let lattice = self.lattice(edge_length, shift);
-            let outline = match grown(&self.contours[0], &lattice, self.options, progress)? {
+            let outline = match self.path(&lattice, progress)? {
                 Ok(outline) => outline,
                 Err(found) => {
                     obstacle = found;
@@ -187,12 +187,20 @@ impl Job<'_> {
         })
     }
 
+    fn path(&self, lattice: &Lattice, progress: Progress<'_>) -> Result<Result<Outline, Obstacle>> {
+        match self.options.boundary {
+            BoundaryMethod::Grown => grown(&self.contours[0], lattice, self.options, progress),
+            BoundaryMethod::Optimal => traced(&self.contours, lattice, self.options, progress),
+        }
+    }
+
     /// The edge length at which a grown patch has about `n` triangles: growth stops inside the
     /// curve, on average 0.28 triangles for each edge length of curve short of its area.
     fn first_guess(&self, n: usize) -> f64 {
         const SHORT: f64 = 0.28;
         let area = self.area / (0.5 * crate::lattice::ROW_HEIGHT);
-        let short = SHORT * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
+        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.0 } else { SHORT };
+        let short = short * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
         2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
     }
 
