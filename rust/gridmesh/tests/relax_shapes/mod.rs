@@ -3,8 +3,9 @@
 //! The boundary is a shortest path through layers: layer `k` holds the lattice points near the
 //! `k`-th of `n` points spaced evenly along the curve; cells where the path meets itself are priced
 //! until it does not. Not fast and not the optimum, but every patch is chord-free.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used, clippy::panic)]
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::f64::consts::TAU;
 
@@ -28,7 +29,10 @@ pub struct Shape {
 
 impl Shape {
     pub fn contour(&self) -> Contour<'_> {
-        Contour { points: &self.curve, arc: &self.arc }
+        Contour {
+            points: &self.curve,
+            arc: &self.arc,
+        }
     }
 }
 
@@ -43,9 +47,14 @@ pub fn outline(name: &str) -> Vec<DVec2> {
     match name {
         "circle" => polar(&|_| 1.0),
         "trefoil" => polar(&|t| 1.0 + 0.3 * (3.0 * t).cos()),
-        "ellipse" => polar(&|_| 1.0).into_iter().map(|p| p * DVec2::new(3.0, 1.0)).collect(),
+        "ellipse" => polar(&|_| 1.0)
+            .into_iter()
+            .map(|p| p * DVec2::new(3.0, 1.0))
+            .collect(),
         "star" => (0..10)
-            .map(|i| DVec2::from_angle(TAU * f64::from(i) / 10.0) * if i % 2 == 0 { 1.0 } else { 0.45 })
+            .map(|i| {
+                DVec2::from_angle(TAU * f64::from(i) / 10.0) * if i % 2 == 0 { 1.0 } else { 0.45 }
+            })
             .collect(),
         "dumbbell" => (0..720)
             .map(|i| TAU * f64::from(i) / 720.0)
@@ -76,7 +85,9 @@ pub fn outline(name: &str) -> Vec<DVec2> {
 
 pub fn area(points: &[DVec2]) -> f64 {
     let n = points.len();
-    (0..n).map(|i| 0.5 * points[i].perp_dot(points[(i + 1) % n])).sum()
+    (0..n)
+        .map(|i| 0.5 * points[i].perp_dot(points[(i + 1) % n]))
+        .sum()
 }
 
 pub fn cumulative(points: &[DVec2]) -> Vec<f64> {
@@ -93,7 +104,10 @@ fn at(points: &[DVec2], arc: &[f64], s: f64) -> DVec2 {
     let s = s.rem_euclid(length);
     let i = arc.partition_point(|&a| a <= s).clamp(1, points.len()) - 1;
     let d = arc[i + 1] - arc[i];
-    points[i].lerp(points[(i + 1) % points.len()], if d > 0.0 { (s - arc[i]) / d } else { 0.0 })
+    points[i].lerp(
+        points[(i + 1) % points.len()],
+        if d > 0.0 { (s - arc[i]) / d } else { 0.0 },
+    )
 }
 
 fn hex_norm(v: DVec2) -> f64 {
@@ -113,7 +127,11 @@ pub fn shape(outline: &[DVec2], triangles: usize, angle: f64, corners: bool) -> 
         points.reverse();
     }
     let h = Lattice::edge_length_for(area(&points), triangles as f64);
-    let lattice = Lattice { origin: points[0], angle, edge_length: h };
+    let lattice = Lattice {
+        origin: points[0],
+        angle,
+        edge_length: h,
+    };
     let curve: Vec<DVec2> = points.iter().map(|&p| lattice.to_units(p)).collect();
     let arc = cumulative(&curve);
     let length = arc[curve.len()];
@@ -122,12 +140,15 @@ pub fn shape(outline: &[DVec2], triangles: usize, angle: f64, corners: bool) -> 
     let m = (length / 0.25).ceil().max(24.0) as usize;
     let step = length / m as f64;
     let raw: Vec<DVec2> = (0..m).map(|i| at(&curve, &arc, i as f64 * step)).collect();
-    let weights: Vec<f64> = (-6i32..=6).map(|j| (-0.5 * (f64::from(j) / 2.0).powi(2)).exp()).collect();
+    let weights: Vec<f64> = (-6i32..=6)
+        .map(|j| (-0.5 * (f64::from(j) / 2.0).powi(2)).exp())
+        .collect();
     let total: f64 = weights.iter().sum();
     let smooth: Vec<DVec2> = (0..m)
         .map(|i| {
-            let sum: DVec2 =
-                (0..13).map(|j| weights[j] * raw[(i + m + j - 6) % m]).fold(DVec2::ZERO, |a, b| a + b);
+            let sum: DVec2 = (0..13)
+                .map(|j| weights[j] * raw[(i + m + j - 6) % m])
+                .fold(DVec2::ZERO, |a, b| a + b);
             sum / total
         })
         .collect();
@@ -146,12 +167,17 @@ pub fn shape(outline: &[DVec2], triangles: usize, angle: f64, corners: bool) -> 
             step * (i as f64 + (x - hex[i]) / (hex[i + 1] - hex[i]).max(1e-12))
         })
         .collect();
-    let targets: Vec<DVec2> = target_arc.iter().map(|&s| at(&raw, &cumulative_even(m, step), s)).collect();
+    let targets: Vec<DVec2> = target_arc
+        .iter()
+        .map(|&s| at(&raw, &cumulative_even(m, step), s))
+        .collect();
 
     let mut prices: HashMap<Axial, f64> = HashMap::new();
     for round in 0..150 {
         let radius = 1.5 + 0.5 * f64::from(round / 50);
-        let Some(path) = cheapest_loop(&targets, radius, &prices) else { continue };
+        let Some(path) = cheapest_loop(&targets, radius, &prices) else {
+            continue;
+        };
         let conflicts = conflicts(&path);
         if conflicts.is_empty() {
             return Some(assemble(curve, arc, &path, &target_arc, corners));
@@ -167,7 +193,11 @@ fn cumulative_even(m: usize, step: f64) -> Vec<f64> {
     (0..=m).map(|i| i as f64 * step).collect()
 }
 
-fn cheapest_loop(targets: &[DVec2], radius: f64, prices: &HashMap<Axial, f64>) -> Option<Vec<Axial>> {
+fn cheapest_loop(
+    targets: &[DVec2],
+    radius: f64,
+    prices: &HashMap<Axial, f64>,
+) -> Option<Vec<Axial>> {
     let n = targets.len();
     let layers: Vec<Vec<(Axial, f64)>> = targets
         .iter()
@@ -198,7 +228,11 @@ fn cheapest_loop(targets: &[DVec2], radius: f64, prices: &HashMap<Axial, f64>) -
 }
 
 /// States are (point, direction leaving it). With `start`, the path begins and ends in that state.
-fn solve(layers: &[Vec<(Axial, f64)>], steps: usize, start: Option<(Axial, Dir)>) -> Option<Vec<Axial>> {
+fn solve(
+    layers: &[Vec<(Axial, f64)>],
+    steps: usize,
+    start: Option<(Axial, Dir)>,
+) -> Option<Vec<Axial>> {
     let n = layers.len();
     let mut best: Vec<Vec<[(f64, u32); 6]>> = Vec::with_capacity(steps + 1);
     let first = layers[0]
@@ -216,13 +250,19 @@ fn solve(layers: &[Vec<(Axial, f64)>], steps: usize, start: Option<(Axial, Dir)>
     best.push(first);
     for k in 1..=steps {
         let (before, here) = (&layers[(k - 1) % n], &layers[k % n]);
-        let index: BTreeMap<Axial, usize> = before.iter().enumerate().map(|(i, &(p, _))| (p, i)).collect();
+        let index: BTreeMap<Axial, usize> = before
+            .iter()
+            .enumerate()
+            .map(|(i, &(p, _))| (p, i))
+            .collect();
         let rows = here
             .iter()
             .map(|&(p, cost)| {
                 let mut row = [(f64::INFINITY, 0); 6];
                 for enter in Dir::ALL {
-                    let Some(&i) = index.get(&(p - enter)) else { continue };
+                    let Some(&i) = index.get(&(p - enter)) else {
+                        continue;
+                    };
                     let so_far = best[k - 1][i][enter.index()].0;
                     for turn in -2..=1i32 {
                         let leave = enter.rotate(turn).index();
@@ -280,17 +320,27 @@ fn conflicts(path: &[Axial]) -> BTreeSet<Axial> {
     found
 }
 
-fn assemble(curve: Vec<DVec2>, arc: Vec<f64>, path: &[Axial], target: &[f64], corners: bool) -> Shape {
+fn assemble(
+    curve: Vec<DVec2>,
+    arc: Vec<f64>,
+    path: &[Axial],
+    target: &[f64],
+    corners: bool,
+) -> Shape {
     let n = path.len();
-    let mut number: BTreeMap<Axial, u32> = path.iter().enumerate().map(|(i, &p)| (p, i as u32)).collect();
+    let mut number: BTreeMap<Axial, u32> = path
+        .iter()
+        .enumerate()
+        .map(|(i, &p)| (p, i as u32))
+        .collect();
     let mut order = path.to_vec();
     let mut todo = Vec::new();
     for k in 0..n {
         todo.extend(inward(path, k).into_iter().map(|d| path[k] + d));
     }
     while let Some(p) = todo.pop() {
-        if !number.contains_key(&p) {
-            number.insert(p, order.len() as u32);
+        if let Entry::Vacant(entry) = number.entry(p) {
+            entry.insert(order.len() as u32);
             order.push(p);
             todo.extend(p.neighbours());
         }
@@ -327,7 +377,9 @@ fn assemble(curve: Vec<DVec2>, arc: Vec<f64>, path: &[Axial], target: &[f64], co
     if corners {
         for (c, angle) in drawn_corners(&curve, &arc) {
             let wrap = |x: f64| (x - c + 0.5 * length).rem_euclid(length) - 0.5 * length;
-            let k = (0..n).min_by(|&a, &b| wrap(s[a]).abs().total_cmp(&wrap(s[b]).abs())).unwrap();
+            let k = (0..n)
+                .min_by(|&a, &b| wrap(s[a]).abs().total_cmp(&wrap(s[b]).abs()))
+                .unwrap();
             let moved = s[k] - wrap(s[k]);
             let before = if k == 0 { s[n - 1] - length } else { s[k - 1] };
             let after = if k == n - 1 { s[0] + length } else { s[k + 1] };
@@ -338,7 +390,18 @@ fn assemble(curve: Vec<DVec2>, arc: Vec<f64>, path: &[Axial], target: &[f64], co
             }
         }
     }
-    Shape { curve, arc, triangles: triangles.into_iter().collect(), positions, rim: Rim { start: 0, s, pinned }, corner }
+    Shape {
+        curve,
+        arc,
+        triangles: triangles.into_iter().collect(),
+        positions,
+        rim: Rim {
+            start: 0,
+            s,
+            pinned,
+        },
+        corner,
+    }
 }
 
 /// Least-squares increasing sequence with gaps of at least `gap` (pool adjacent violators).
@@ -365,7 +428,10 @@ fn pool(s: &mut [f64], gap: f64, length: f64) {
     let excess = high - low - (length - gap);
     if excess > 0.0 {
         for (i, x) in s.iter_mut().enumerate() {
-            let room = (low + 0.5 * excess + gap * i as f64, high - 0.5 * excess - gap * (n - 1 - i) as f64);
+            let room = (
+                low + 0.5 * excess + gap * i as f64,
+                high - 0.5 * excess - gap * (n - 1 - i) as f64,
+            );
             *x = x.max(room.0).min(room.1);
         }
     }
