@@ -9,14 +9,8 @@ mod relax_shapes;
 
 fn placement(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("relax");
-    for (name, triangles) in [
-        ("trefoil", 500),
-        ("trefoil", 2000),
-        ("trefoil", 10_000),
-        ("star", 2000),
-    ] {
-        let Some(shape) = relax_shapes::shape(&relax_shapes::outline(name), triangles, 0.1, true)
-        else {
+    for (name, triangles) in [("trefoil", 500), ("trefoil", 2000), ("trefoil", 10_000), ("star", 2000)] {
+        let Some(shape) = relax_shapes::shape(&relax_shapes::outline(name), triangles, 0.1, true) else {
             continue;
         };
         let contours = [shape.contour()];
@@ -26,14 +20,7 @@ fn placement(criterion: &mut Criterion) {
                 || (shape.positions.clone(), [shape.rim.clone()]),
                 |(mut positions, mut rims)| {
                     let options = RelaxOptions::default();
-                    relax(
-                        &shape.triangles,
-                        &mut positions,
-                        &contours,
-                        &mut rims,
-                        &options,
-                        Progress::NONE,
-                    )
+                    relax(&shape.triangles, &mut positions, &contours, &mut rims, &options, Progress::NONE)
                 },
                 BatchSize::LargeInput,
             );

@@ -56,11 +56,8 @@ pub fn assemble(paths: &[Vec<Axial>]) -> Region {
             let q = k.div_euclid(2);
             let corner = Axial::new(q, r);
             let (east, north) = (corner + Dir::new(0), corner + Dir::new(1));
-            let corners = if k.rem_euclid(2) == 0 {
-                [corner, east, north]
-            } else {
-                [east, east + Dir::new(1), north]
-            };
+            let corners =
+                if k.rem_euclid(2) == 0 { [corner, east, north] } else { [east, east + Dir::new(1), north] };
             triangles.push(corners.map(|p| match number.get(p) {
                 NONE => {
                     number.set(p, points.len() as u32);
@@ -71,11 +68,7 @@ pub fn assemble(paths: &[Vec<Axial>]) -> Region {
             }));
         }
     }
-    Region {
-        points,
-        triangles,
-        n_boundary,
-    }
+    Region { points, triangles, n_boundary }
 }
 
 #[cfg(test)]

@@ -74,21 +74,10 @@ impl Band {
                 latest.insert(point, nodes.len() as u32);
                 earlier.push(known);
                 let segment = segment as u32;
-                nodes.push(Node {
-                    point,
-                    first: segment,
-                    last: segment,
-                    parameter,
-                    distance: squared,
-                });
+                nodes.push(Node { point, first: segment, last: segment, parameter, distance: squared });
             }
         }
-        let mut band = Self {
-            nodes,
-            latest,
-            earlier,
-            n_samples: n,
-        };
+        let mut band = Self { nodes, latest, earlier, n_samples: n };
         band.join_ends();
         band.keep_near(max_distance);
         band
@@ -143,8 +132,7 @@ impl Band {
             *i != NONE
         });
         self.earlier = earlier;
-        self.nodes
-            .retain(|node| node.distance <= max_distance * max_distance);
+        self.nodes.retain(|node| node.distance <= max_distance * max_distance);
         for node in &mut self.nodes {
             node.distance = node.distance.sqrt();
         }
@@ -158,18 +146,14 @@ impl Band {
     /// Numbers of the nodes of a lattice point, latest run first.
     pub fn nodes_at(&self, point: Axial) -> impl Iterator<Item = usize> {
         let some = |i: u32| (i != NONE).then_some(i as usize);
-        iter::successors(self.latest.get(&point).map(|&i| i as usize), move |&i| {
-            some(self.earlier[i])
-        })
+        iter::successors(self.latest.get(&point).map(|&i| i as usize), move |&i| some(self.earlier[i]))
     }
 
     /// The node of a lattice point that is nearest to the curve.
     pub fn nearest(&self, point: Axial) -> Option<&Node> {
-        self.nodes_at(point).map(|i| &self.nodes[i]).min_by(|a, b| {
-            a.distance
-                .total_cmp(&b.distance)
-                .then(a.first.cmp(&b.first))
-        })
+        self.nodes_at(point)
+            .map(|i| &self.nodes[i])
+            .min_by(|a, b| a.distance.total_cmp(&b.distance).then(a.first.cmp(&b.first)))
     }
 }
 
@@ -228,11 +212,7 @@ mod tests {
             let target = Target { points, step: 0.4 };
             for max_distance in [0.7, 1.5] {
                 let band = Band::new(&target, max_distance);
-                let mut found: Vec<_> = band
-                    .nodes
-                    .iter()
-                    .map(|n| (n.point, n.first, n.last))
-                    .collect();
+                let mut found: Vec<_> = band.nodes.iter().map(|n| (n.point, n.first, n.last)).collect();
                 found.sort_unstable();
                 assert_eq!(found, brute_force(&target, max_distance));
                 let mut listed: Vec<usize> = band

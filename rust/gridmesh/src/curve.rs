@@ -44,19 +44,12 @@ impl ClosedCurve {
     /// [`Error::SelfIntersecting`] if two segments cross, touch or overlap.
     pub fn new(input: &[DVec2], winding: Winding, what: &str) -> Result<Self> {
         if let Some(point) = input.iter().position(|p| !p.is_finite()) {
-            return Err(Error::NotFinite {
-                what: what.to_owned(),
-                point,
-            });
+            return Err(Error::NotFinite { what: what.to_owned(), point });
         }
         let n_input = input.len();
-        let mut order: Vec<usize> = (0..n_input)
-            .filter(|&i| input[i] != input[(i + n_input - 1) % n_input])
-            .collect();
-        let few = |distinct: usize| Error::TooFewPoints {
-            what: what.to_owned(),
-            distinct,
-        };
+        let mut order: Vec<usize> =
+            (0..n_input).filter(|&i| input[i] != input[(i + n_input - 1) % n_input]).collect();
+        let few = |distinct: usize| Error::TooFewPoints { what: what.to_owned(), distinct };
         let Some(start) = (0..order.len()).min_by(|&i, &j| {
             let (a, b) = (input[order[i]], input[order[j]]);
             a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
@@ -69,10 +62,7 @@ impl ClosedCurve {
             (high - low).max_element()
         };
         if !size.is_finite() {
-            return Err(Error::NotFinite {
-                what: format!("{what}'s extent"),
-                point: 0,
-            });
+            return Err(Error::NotFinite { what: format!("{what}'s extent"), point: 0 });
         }
         let reversed = (doubled_area(&order, input) < 0.0) != (winding == Winding::Clockwise);
         if reversed {
@@ -80,15 +70,11 @@ impl ClosedCurve {
         }
         let mut kept: Vec<usize> = Vec::with_capacity(order.len());
         for i in order {
-            if kept
-                .last()
-                .is_none_or(|&last| input[last].distance(input[i]) > 1e-12 * size)
-            {
+            if kept.last().is_none_or(|&last| input[last].distance(input[i]) > 1e-12 * size) {
                 kept.push(i);
             }
         }
-        while kept.len() > 1 && input[kept[0]].distance(input[kept[kept.len() - 1]]) <= 1e-12 * size
-        {
+        while kept.len() > 1 && input[kept[0]].distance(input[kept[kept.len() - 1]]) <= 1e-12 * size {
             kept.pop();
         }
         if kept.len() < 3 {
@@ -106,9 +92,7 @@ impl ClosedCurve {
         // The first input point itself, or the kept one that it repeats.
         let first = (0..points.len())
             .min_by(|&i, &j| {
-                points[i]
-                    .distance_squared(input[0])
-                    .total_cmp(&points[j].distance_squared(input[0]))
+                points[i].distance_squared(input[0]).total_cmp(&points[j].distance_squared(input[0]))
             })
             .map_or(0.0, |i| arc[i]);
         let curve = Self {
@@ -128,9 +112,7 @@ impl ClosedCurve {
     fn check_area(&self, what: &str) -> Result<()> {
         // The width of the drawing, area over length, against its length.
         if self.area <= 1e-14 * self.length() * self.length() {
-            return Err(Error::ZeroArea {
-                what: what.to_owned(),
-            });
+            return Err(Error::ZeroArea { what: what.to_owned() });
         }
         Ok(())
     }
@@ -156,10 +138,7 @@ impl ClosedCurve {
             return Ok(());
         };
         let at = meeting_point(segments[i], segments[j]);
-        let (first, second) = (
-            self.input_segment[i] as usize,
-            self.input_segment[j] as usize,
-        );
+        let (first, second) = (self.input_segment[i] as usize, self.input_segment[j] as usize);
         Err(Error::SelfIntersecting {
             what: what.to_owned(),
             first: first.min(second),
@@ -195,9 +174,7 @@ impl ClosedCurve {
 
     /// The segments, each from a point to the next.
     pub(crate) fn segments(&self) -> Vec<[DVec2; 2]> {
-        (0..self.points.len())
-            .map(|i| [self.points[i], self.points[(i + 1) % self.points.len()]])
-            .collect()
+        (0..self.points.len()).map(|i| [self.points[i], self.points[(i + 1) % self.points.len()]]).collect()
     }
 
     /// `s` reduced to one turn, from 0 to the length.
@@ -209,21 +186,14 @@ impl ClosedCurve {
     /// The segment on which arc length `s` (of any turn) lies, and the parameter on it, 0 to 1.
     pub fn locate(&self, s: f64) -> (usize, f64) {
         let s = self.wrap(s);
-        let segment = self
-            .arc
-            .partition_point(|&a| a <= s)
-            .clamp(1, self.points.len())
-            - 1;
+        let segment = self.arc.partition_point(|&a| a <= s).clamp(1, self.points.len()) - 1;
         let t = (s - self.arc[segment]) / (self.arc[segment + 1] - self.arc[segment]);
         (segment, t.clamp(0.0, 1.0))
     }
 
     /// The point at a parameter of a segment. At 0 and 1 it is a drawn point, bit for bit.
     pub fn point_on(&self, segment: usize, t: f64) -> DVec2 {
-        let (a, b) = (
-            self.points[segment],
-            self.points[(segment + 1) % self.points.len()],
-        );
+        let (a, b) = (self.points[segment], self.points[(segment + 1) % self.points.len()]);
         if t >= 1.0 { b } else { a + t * (b - a) }
     }
 
@@ -242,10 +212,7 @@ impl ClosedCurve {
     /// and the parameter on it.
     pub fn source(&self, s: f64) -> (u32, f64) {
         let (segment, t) = self.locate(s);
-        (
-            self.input_segment[segment],
-            if self.reversed { 1.0 - t } else { t },
-        )
+        (self.input_segment[segment], if self.reversed { 1.0 - t } else { t })
     }
 
     /// The turning angle at each point, from the chord of length `window` before to the one after.
@@ -267,11 +234,7 @@ impl ClosedCurve {
 
 /// Least and greatest coordinates.
 pub(crate) fn bounds(points: &[DVec2]) -> (DVec2, DVec2) {
-    points
-        .iter()
-        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| {
-            (low.min(p), high.max(p))
-        })
+    points.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
 }
 
 fn doubled_area(order: &[usize], input: &[DVec2]) -> f64 {
@@ -279,9 +242,7 @@ fn doubled_area(order: &[usize], input: &[DVec2]) -> f64 {
         return 0.0;
     };
     let origin = input[first];
-    (1..order.len())
-        .map(|k| (input[order[k - 1]] - origin).perp_dot(input[order[k]] - origin))
-        .sum()
+    (1..order.len()).map(|k| (input[order[k - 1]] - origin).perp_dot(input[order[k]] - origin)).sum()
 }
 
 fn input_segments(kept: &[usize], reversed: bool, input: &[DVec2]) -> Vec<u32> {
@@ -314,11 +275,7 @@ fn meeting_point([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> DVec2 {
     let (ab, cd) = (b - a, d - c);
     let cross = ab.perp_dot(cd);
     let t = (c - a).perp_dot(cd) / cross;
-    if t.is_finite() {
-        a + t.clamp(0.0, 1.0) * ab
-    } else {
-        b
-    }
+    if t.is_finite() { a + t.clamp(0.0, 1.0) * ab } else { b }
 }
 
 #[cfg(test)]
@@ -333,14 +290,7 @@ mod tests {
         ClosedCurve::new(&points(coords), Winding::CounterClockwise, "outline")
     }
 
-    const L: [[f64; 2]; 6] = [
-        [1.0, 1.0],
-        [3.0, 1.0],
-        [3.0, 2.0],
-        [2.0, 2.0],
-        [2.0, 4.0],
-        [1.0, 4.0],
-    ];
+    const L: [[f64; 2]; 6] = [[1.0, 1.0], [3.0, 1.0], [3.0, 2.0], [2.0, 2.0], [2.0, 4.0], [1.0, 4.0]];
 
     #[test]
     fn start_and_direction_do_not_matter() -> Result<()> {
@@ -375,9 +325,7 @@ mod tests {
                     let b = drawn[(segment as usize + 1) % drawn.len()];
                     assert!((a + t * (b - a)).distance(curve.point_at(s)) < 1e-12);
                 }
-                let at_first = (0..6)
-                    .find(|&i| curve.points()[i] == drawn[0])
-                    .map(|i| curve.arc()[i]);
+                let at_first = (0..6).find(|&i| curve.points()[i] == drawn[0]).map(|i| curve.arc()[i]);
                 assert_eq!(at_first.map(|s| curve.input_arc(s)), Some(0.0));
             }
             drawn.reverse();
@@ -391,26 +339,11 @@ mod tests {
         assert_eq!(kind(&[]), Some("too_few_points"));
         assert_eq!(kind(&[[0.0, 0.0]; 5]), Some("too_few_points"));
         assert_eq!(kind(&[[0.0, 0.0], [1.0, 0.0]]), Some("too_few_points"));
-        assert_eq!(
-            kind(&[[0.0, 0.0], [1.0, 0.0], [f64::NAN, 1.0]]),
-            Some("not_finite")
-        );
-        assert_eq!(
-            kind(&[[-1e308, 0.0], [1e308, 0.0], [0.0, 1e308]]),
-            Some("not_finite")
-        );
-        assert_eq!(
-            kind(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]),
-            Some("zero_area")
-        );
-        assert_eq!(
-            kind(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]),
-            Some("zero_area")
-        );
-        assert_eq!(
-            kind(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 2.0]]),
-            Some("self_intersecting")
-        );
+        assert_eq!(kind(&[[0.0, 0.0], [1.0, 0.0], [f64::NAN, 1.0]]), Some("not_finite"));
+        assert_eq!(kind(&[[-1e308, 0.0], [1e308, 0.0], [0.0, 1e308]]), Some("not_finite"));
+        assert_eq!(kind(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]), Some("zero_area"));
+        assert_eq!(kind(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), Some("zero_area"));
+        assert_eq!(kind(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 2.0]]), Some("self_intersecting"));
         let spike = [[0.0, 0.0], [2.0, 0.0], [2.0, 3.0], [2.0, 2.0], [0.0, 2.0]];
         assert_eq!(kind(&spike), Some("self_intersecting"));
         let touch = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]];

@@ -43,6 +43,7 @@ impl Dir {
     }
 
     /// The direction whose offset this is.
+    #[inline]
     pub fn from_offset(offset: Axial) -> Option<Dir> {
         Self::ALL.into_iter().find(|dir| dir.offset() == offset)
     }
@@ -78,10 +79,7 @@ mod tests {
                 assert_eq!(dir.turn_to(dir.rotate(turn)), turn);
             }
             assert_eq!(dir.offset() + dir.opposite().offset(), Axial::default());
-            assert_eq!(
-                dir.offset() + dir.rotate(2).offset(),
-                dir.rotate(1).offset()
-            );
+            assert_eq!(dir.offset() + dir.rotate(2).offset(), dir.rotate(1).offset());
         }
     }
 }

@@ -110,10 +110,7 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Error::NotFinite { what, point } => {
-                write!(
-                    f,
-                    "point {point} of the {what} is NaN or infinite; all coordinates must be finite"
-                )
+                write!(f, "point {point} of the {what} is NaN or infinite; all coordinates must be finite")
             }
             Error::TooFewPoints { what, distinct } => {
                 write!(
@@ -122,17 +119,9 @@ impl fmt::Display for Error {
                 )
             }
             Error::ZeroArea { what } => {
-                write!(
-                    f,
-                    "the {what} encloses no area: its points lie on one line; draw a closed shape"
-                )
+                write!(f, "the {what} encloses no area: its points lie on one line; draw a closed shape")
             }
-            Error::SelfIntersecting {
-                what,
-                first,
-                second,
-                at: [x, y],
-            } => write!(
+            Error::SelfIntersecting { what, first, second, at: [x, y] } => write!(
                 f,
                 "the {what} meets itself: segments {first} and {second} cross or touch at ({x:.6}, {y:.6}); \
                  draw an outline that does not cross itself"
@@ -143,11 +132,7 @@ impl fmt::Display for Error {
                     "hole {hole} {reason}; each hole must lie inside the outline and apart from the others"
                 )
             }
-            Error::InvalidOption {
-                name,
-                value,
-                allowed,
-            } => {
+            Error::InvalidOption { name, value, allowed } => {
                 write!(f, "{name} is {value}; allowed: {allowed}")
             }
             Error::TooCoarse { triangles, least } => write!(

@@ -4,11 +4,19 @@ use std::collections::VecDeque;
 
 use crate::axial::Axial;
 use crate::boundary::{Boundary, Cell, Expansion, Journal};
-use crate::cells::Cells;
 use crate::dir::Dir;
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::raster::Raster;
+
+/// Which refused points may become acceptable after an expansion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watch {
+    /// Those beside the new point: enough if acceptance depends on the point and its link.
+    Point,
+    /// Those beside the ends of its arc too, whose turns have changed.
+    Ends,
+}
 
 /// Expands the boundary breadth first by every valid adjacent point that `admit` lets in, until
 /// none is left. Returns the number of points added.
@@ -21,30 +29,27 @@ use crate::raster::Raster;
 /// Only if cancelled.
 pub fn grow(
     boundary: &mut Boundary,
+    watch: Watch,
     mut admit: impl FnMut(&Boundary, &Expansion) -> bool,
     progress: Progress<'_>,
 ) -> Result<usize> {
-    let mut queue: VecDeque<Axial> = VecDeque::new();
-    let mut waiting = Cells::new(boundary.layout().clone(), false);
-    let push = |queue: &mut VecDeque<Axial>, waiting: &mut Cells<bool>, point: Axial| {
-        if let Some(is_waiting) = waiting.get_mut(point)
-            && !*is_waiting
-        {
-            *is_waiting = true;
-            queue.push_back(point);
-        }
+    let mut queue: VecDeque<(Axial, usize)> = VecDeque::new();
+    let mut waiting = vec![false; boundary.layout().len()];
+    let enqueue_around = |boundary: &Boundary, waiting: &mut [bool], vertex, queue: &mut VecDeque<_>| {
+        boundary.outside_around(vertex, |point, cell| {
+            if !waiting[cell] {
+                waiting[cell] = true;
+                queue.push_back((point, cell));
+            }
+        });
     };
     for vertex in boundary.path() {
-        for point in boundary.outer_neighbours(vertex) {
-            push(&mut queue, &mut waiting, point);
-        }
+        enqueue_around(boundary, &mut waiting, vertex, &mut queue);
     }
     let mut added = 0;
-    while let Some(point) = queue.pop_front() {
-        waiting.set(point, false);
-        let Some(expansion) = boundary.expansion(point) else {
-            continue;
-        };
+    while let Some((point, cell)) = queue.pop_front() {
+        waiting[cell] = false;
+        let Some(expansion) = boundary.expansion(point) else { continue };
         if !admit(boundary, &expansion) {
             continue;
         }
@@ -53,12 +58,10 @@ pub fn grow(
         if added % (1 << 16) == 0 {
             progress.report(0.5)?;
         }
-        let ends = [expansion.first, expansion.first.rotate(-expansion.edges)];
-        for vertex in [point, point + ends[0], point + ends[1]] {
-            for beside in boundary.outer_neighbours(vertex) {
-                if boundary.is_outside(beside) {
-                    push(&mut queue, &mut waiting, beside);
-                }
+        enqueue_around(boundary, &mut waiting, point, &mut queue);
+        if watch == Watch::Ends {
+            for end in [expansion.first, expansion.first.rotate(-expansion.edges)] {
+                enqueue_around(boundary, &mut waiting, point + end, &mut queue);
             }
         }
     }
@@ -73,20 +76,12 @@ pub fn grow(
 /// # Errors
 /// Only if cancelled.
 pub fn grow_inside(raster: &Raster, progress: Progress<'_>) -> Result<Option<Boundary>> {
-    let seed = raster
-        .seed()
-        .and_then(|seed| Boundary::hexagon(raster.layout().clone(), seed));
+    let seed = raster.seed().and_then(|seed| Boundary::hexagon(raster.layout().clone(), seed));
     let Some(mut boundary) = seed else {
         return Ok(None);
     };
-    let within = |boundary: &Boundary, expansion: &Expansion| {
-        let p = expansion.point;
-        raster.is_inside(p)
-            && Dir::ALL
-                .into_iter()
-                .all(|dir| !raster.is_crossed(p, dir) || !boundary.is_boundary(p + dir))
-    };
-    grow(&mut boundary, within, progress)?;
+    let within = |_: &Boundary, expansion: &Expansion| raster.is_free(expansion.point, expansion.beside);
+    grow(&mut boundary, Watch::Point, within, progress)?;
     Ok(Some(boundary))
 }
 
@@ -108,10 +103,7 @@ pub fn clear_chords(boundary: &mut Boundary, admit: impl Fn(Axial) -> bool) -> R
         let mut ends = [vertex, other];
         ends.sort_by_key(|&end| boundary.outer_neighbours(end).count());
         let mut changed = Vec::new();
-        if ends
-            .iter()
-            .any(|&end| enclose(boundary, end, &admit, &mut changed))
-        {
+        if ends.iter().any(|&end| enclose(boundary, end, &admit, &mut changed)) {
             // New chords can only start at the points that joined; the old ones of this vertex may stay.
             waiting.extend(changed);
             waiting.push_back(vertex);
@@ -120,10 +112,7 @@ pub fn clear_chords(boundary: &mut Boundary, admit: impl Fn(Axial) -> bool) -> R
             stuck.push(vertex);
         }
     }
-    match stuck
-        .into_iter()
-        .find(|&vertex| boundary.chord(vertex).is_some())
-    {
+    match stuck.into_iter().find(|&vertex| boundary.chord(vertex).is_some()) {
         Some(vertex) => Err(vertex),
         None => Ok(()),
     }
@@ -179,7 +168,7 @@ pub fn straighten(
         let lowers = |boundary: &Boundary, expansion: &Expansion| {
             expansion.edges >= 2 && boundary.bend_change(expansion) < 0 && admit(expansion.point)
         };
-        added += grow(boundary, lowers, progress)?;
+        added += grow(boundary, Watch::Ends, lowers, progress)?;
         let filled = fill_steps(boundary, &admit);
         if filled == 0 {
             return Ok(added);
@@ -219,9 +208,7 @@ fn fill_step(boundary: &mut Boundary, p1: Axial, admit: &impl Fn(Axial) -> bool)
     for i in 1..=first_steps {
         for j in 1..=second_steps {
             let point = p2 - first_dir.offset() * i + second_dir.offset() * j;
-            let expansion = boundary
-                .expansion(point)
-                .filter(|e| e.edges >= 2 && admit(point));
+            let expansion = boundary.expansion(point).filter(|e| e.edges >= 2 && admit(point));
             match expansion {
                 Some(expansion) => boundary.expand_logged(&expansion, &mut journal),
                 None => {

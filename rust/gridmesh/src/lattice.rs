@@ -25,10 +25,7 @@ pub struct Lattice {
 impl Lattice {
     /// The position of a lattice point, in lattice units.
     pub fn units(point: Axial) -> DVec2 {
-        DVec2::new(
-            f64::from(point.q) + 0.5 * f64::from(point.r),
-            ROW_HEIGHT * f64::from(point.r),
-        )
+        DVec2::new(f64::from(point.q) + 0.5 * f64::from(point.r), ROW_HEIGHT * f64::from(point.r))
     }
 
     /// The real axial coordinates `(q, r)` of a position in lattice units.
@@ -62,8 +59,7 @@ impl Lattice {
     pub fn from_units(&self, units: DVec2) -> DVec2 {
         let (sin, cos) = self.angle.sin_cos();
         self.origin
-            + self.edge_length
-                * DVec2::new(cos * units.x - sin * units.y, sin * units.x + cos * units.y)
+            + self.edge_length * DVec2::new(cos * units.x - sin * units.y, sin * units.x + cos * units.y)
     }
 
     /// The edge length at which a lattice covers `area` with `triangles` triangles.
@@ -78,11 +74,7 @@ mod tests {
 
     #[test]
     fn units_and_drawing_are_inverse() {
-        let lattice = Lattice {
-            origin: DVec2::new(3.0, -1.0),
-            angle: 0.4,
-            edge_length: 0.25,
-        };
+        let lattice = Lattice { origin: DVec2::new(3.0, -1.0), angle: 0.4, edge_length: 0.25 };
         let p = DVec2::new(1.7, 2.9);
         assert!(lattice.from_units(lattice.to_units(p)).distance(p) < 1e-14);
     }

@@ -19,10 +19,8 @@ pub fn project(path: &[Axial], band: &Band) -> FxHashMap<Axial, f64> {
     let n = path.len();
     let length = band.n_samples() as f64;
     let gap = MIN_SPACING * length / n as f64;
-    let nearest: Vec<Option<(f64, f64)>> = path
-        .iter()
-        .map(|&p| band.nearest(p).map(|node| (node.parameter, node.distance)))
-        .collect();
+    let nearest: Vec<Option<(f64, f64)>> =
+        path.iter().map(|&p| band.nearest(p).map(|node| (node.parameter, node.distance))).collect();
     let anchor = (0..n)
         .filter_map(|i| nearest[i].map(|(parameter, distance)| (i, parameter, distance)))
         .min_by(|a, b| a.2.total_cmp(&b.2).then(a.0.cmp(&b.0)));
@@ -43,10 +41,7 @@ pub fn project(path: &[Axial], band: &Band) -> FxHashMap<Axial, f64> {
     kept.insert(path[anchor], origin.rem_euclid(length));
     for i in longest_increasing(&values) {
         let (k, s) = candidates[i];
-        kept.insert(
-            path[(anchor + k) % n],
-            (s + gap * k as f64 + origin).rem_euclid(length),
-        );
+        kept.insert(path[(anchor + k) % n], (s + gap * k as f64 + origin).rem_euclid(length));
     }
     kept
 }
@@ -102,25 +97,14 @@ pub struct Corner {
 ///
 /// `arcs` and `turning` belong to the curve's points; see
 /// [`ClosedCurve::turning`](crate::curve::ClosedCurve::turning).
-pub fn corners(
-    arcs: &[f64],
-    turning: &[f64],
-    length: f64,
-    angle: f64,
-    separation: f64,
-) -> Vec<Corner> {
+pub fn corners(arcs: &[f64], turning: &[f64], length: f64, angle: f64, separation: f64) -> Vec<Corner> {
     let mut found: Vec<Corner> = arcs
         .iter()
         .zip(turning)
         .filter(|(_, turn)| turn.abs() > angle)
         .map(|(&arc, &angle)| Corner { arc, angle })
         .collect();
-    found.sort_by(|a, b| {
-        b.angle
-            .abs()
-            .total_cmp(&a.angle.abs())
-            .then(a.arc.total_cmp(&b.arc))
-    });
+    found.sort_by(|a, b| b.angle.abs().total_cmp(&a.angle.abs()).then(a.arc.total_cmp(&b.arc)));
     let mut kept: Vec<Corner> = Vec::new();
     for corner in found {
         let apart = |other: &Corner| {
@@ -149,34 +133,14 @@ pub fn snap(arcs: &mut [f64], corners: &[Corner], length: f64, reach: f64) -> Ve
         let after = arcs.partition_point(|&s| s <= at);
         let mut beside = [after - 1, after % n];
         let place = |i: usize| {
-            if i == 0 && at > arcs[n - 1] {
-                at - length
-            } else {
-                at
-            }
+            if i == 0 && at > arcs[n - 1] { at - length } else { at }
         };
-        beside.sort_by(|&i, &j| {
-            (arcs[i] - place(i))
-                .abs()
-                .total_cmp(&(arcs[j] - place(j)).abs())
-        });
+        beside.sort_by(|&i, &j| (arcs[i] - place(i)).abs().total_cmp(&(arcs[j] - place(j)).abs()));
         for i in beside {
             let to = place(i);
-            let before = if i > 0 {
-                arcs[i - 1]
-            } else {
-                arcs[n - 1] - length
-            };
-            let next = if i + 1 < n {
-                arcs[i + 1]
-            } else {
-                arcs[0] + length
-            };
-            if angle[i] == 0.0
-                && (arcs[i] - to).abs() <= reach
-                && to - before >= room
-                && next - to >= room
-            {
+            let before = if i > 0 { arcs[i - 1] } else { arcs[n - 1] - length };
+            let next = if i + 1 < n { arcs[i + 1] } else { arcs[0] + length };
+            if angle[i] == 0.0 && (arcs[i] - to).abs() <= reach && to - before >= room && next - to >= room {
                 arcs[i] = to;
                 angle[i] = corner.angle;
                 break;

@@ -98,11 +98,7 @@ impl SketchOptions {
     /// [`Error::InvalidOption`].
     pub fn check(&self) -> Result<()> {
         let refuse = |name, value: f64, allowed| {
-            Err(Error::InvalidOption {
-                name,
-                value: format!("{value}"),
-                allowed,
-            })
+            Err(Error::InvalidOption { name, value: format!("{value}"), allowed })
         };
         if self.edge_length.is_some() && self.triangles.is_some() {
             return Err(Error::InvalidOption {
@@ -121,10 +117,7 @@ impl SketchOptions {
                 return refuse("triangles", n as f64, "at least 6");
             }
             if n as f64 > MAX_TRIANGLES {
-                return Err(Error::TooLarge {
-                    triangles: n as f64,
-                    limit: MAX_TRIANGLES,
-                });
+                return Err(Error::TooLarge { triangles: n as f64, limit: MAX_TRIANGLES });
             }
         }
         if !(0.5..=4.0).contains(&self.max_distance) {
@@ -144,11 +137,7 @@ impl SketchOptions {
         if let Some(Mirror::Axis { point, direction }) = self.mirror
             && !(point.is_finite() && direction.is_finite() && direction.length() > 0.0)
         {
-            return refuse(
-                "mirror",
-                direction.length(),
-                "a finite point and a direction other than zero",
-            );
+            return refuse("mirror", direction.length(), "a finite point and a direction other than zero");
         }
         Ok(())
     }
@@ -175,11 +164,9 @@ pub struct SketchReport {
     pub optimal: bool,
     /// Greatest distance that the boundary was allowed, in edges.
     pub max_distance_used: f64,
-    /// Greatest distance from the drawn curve to the mesh boundary beside it, in edges.
+    /// Greatest distance from the drawn curve to the mesh boundary, in edges; at most 2, or the
+    /// drawing is refused.
     pub max_deviation: f64,
-    /// Parts of the drawing that lie more than two edges outside the mesh (growth stops at necks
-    /// that the lattice does not fit through).
-    pub lost_parts: usize,
     /// Smallest angle of the flat patch, in radians.
     pub min_angle: f64,
     /// Drawn corners sharper than `corner_angle`.

@@ -59,22 +59,12 @@ impl Outline {
 
     /// Sum of absolute turns.
     pub(crate) fn turns(&self) -> usize {
-        self.paths
-            .iter()
-            .map(|path| {
-                turns(path)
-                    .map(|t| t.unsigned_abs() as usize)
-                    .sum::<usize>()
-            })
-            .sum()
+        self.paths.iter().map(|path| turns(path).map(|t| t.unsigned_abs() as usize).sum::<usize>()).sum()
     }
 
     /// Number of boundary vertices that turn: irregular after stitching.
     pub(crate) fn irregular(&self) -> usize {
-        self.paths
-            .iter()
-            .map(|path| turns(path).filter(|&t| t != 0).count())
-            .sum()
+        self.paths.iter().map(|path| turns(path).filter(|&t| t != 0).count()).sum()
     }
 }
 
@@ -84,9 +74,7 @@ fn turns(path: &[Axial]) -> impl Iterator<Item = i32> {
     (0..n).map(move |i| {
         let enter = path[(i + n - 1) % n].step_to(path[i]);
         let leave = path[i].step_to(path[(i + 1) % n]);
-        enter
-            .zip(leave)
-            .map_or(0, |(enter, leave)| enter.turn_to(leave))
+        enter.zip(leave).map_or(0, |(enter, leave)| enter.turn_to(leave))
     })
 }
 
@@ -110,42 +98,25 @@ pub(crate) fn grown(
     let band = Band::new(&faired, reach);
     let raster = Raster::new(&widened, reach.ceil() as i32 + 2);
     progress.report(0.3)?;
-    let obstacle = |reason, at: DVec2| {
-        Ok(Err(Obstacle {
-            reason,
-            at: lattice.from_units(at),
-        }))
-    };
+    let obstacle = |reason, at: DVec2| Ok(Err(Obstacle { reason, at: lattice.from_units(at) }));
     let Some(mut boundary) = grow_inside(&raster, progress.part(0.3, 0.6))? else {
-        return obstacle(
-            "no lattice hexagon fits inside the drawing",
-            faired.points[0],
-        );
+        return obstacle("no lattice hexagon fits inside the drawing", faired.points[0]);
     };
     let known = project(&boundary.path(), &band);
     let distance = |p: Axial| band.nearest(p).map(|node| node.distance);
     let within = |p: Axial, limit: f64| distance(p).map_or(raster.is_inside(p), |d| d <= limit);
     if let Err(vertex) = clear_chords(&mut boundary, |p| within(p, reach)) {
-        return obstacle(
-            "two parts of the boundary stay one edge apart",
-            Lattice::units(vertex),
-        );
+        return obstacle("two parts of the boundary stay one edge apart", Lattice::units(vertex));
     }
     let admit = |p: Axial| within(p, options.max_distance);
     straighten(&mut boundary, admit, progress.part(0.6, 0.9))?;
     let path = boundary.path();
-    let known: FxHashMap<Axial, f64> = path
-        .iter()
-        .filter_map(|p| known.get(p).map(|&s| (*p, s)))
-        .collect();
+    let known: FxHashMap<Axial, f64> = path.iter().filter_map(|p| known.get(p).map(|&s| (*p, s))).collect();
     let arcs: Vec<f64> = complete(&path, &known, band.n_samples() as f64)
         .into_iter()
         .map(|parameter| parameter * faired.step)
         .collect();
-    let squared: f64 = path
-        .iter()
-        .map(|&p| distance(p).unwrap_or(reach).powi(2))
-        .sum();
+    let squared: f64 = path.iter().map(|&p| distance(p).unwrap_or(reach).powi(2)).sum();
     Ok(Ok(Outline {
         cost: boundary.bend() as f64 + options.closeness * squared,
         paths: vec![path],

@@ -15,19 +15,11 @@ pub struct Progress<'a> {
 
 impl<'a> Progress<'a> {
     /// Reports to nobody and is never cancelled.
-    pub const NONE: Progress<'static> = Progress {
-        callback: None,
-        start: 0.0,
-        length: 1.0,
-    };
+    pub const NONE: Progress<'static> = Progress { callback: None, start: 0.0, length: 1.0 };
 
     /// Reports to `callback`, which returns false to cancel.
     pub fn new(callback: &'a (dyn Fn(f64) -> bool + Sync)) -> Self {
-        Progress {
-            callback: Some(callback),
-            start: 0.0,
-            length: 1.0,
-        }
+        Progress { callback: Some(callback), start: 0.0, length: 1.0 }
     }
 
     /// The share from `start` to `end` (both 0 to 1) of this progress.
@@ -45,9 +37,7 @@ impl<'a> Progress<'a> {
     /// [`Error::Cancelled`] if the callback asks to stop.
     pub fn report(&self, fraction: f64) -> Result<()> {
         match self.callback {
-            Some(callback) if !callback(self.start + fraction * self.length) => {
-                Err(Error::Cancelled)
-            }
+            Some(callback) if !callback(self.start + fraction * self.length) => Err(Error::Cancelled),
             _ => Ok(()),
         }
     }
@@ -69,10 +59,7 @@ mod tests {
         };
         let progress = Progress::new(&callback);
         assert!(progress.part(0.2, 0.4).report(0.5).is_ok());
-        assert!(matches!(
-            progress.part(0.4, 0.8).part(0.5, 1.0).report(0.0),
-            Err(Error::Cancelled)
-        ));
+        assert!(matches!(progress.part(0.4, 0.8).part(0.5, 1.0).report(0.0), Err(Error::Cancelled)));
         drop(seen);
         assert!(Progress::NONE.report(1.0).is_ok());
     }

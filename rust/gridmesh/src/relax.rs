@@ -52,12 +52,7 @@ pub struct RelaxOptions {
 
 impl Default for RelaxOptions {
     fn default() -> Self {
-        RelaxOptions {
-            rings: 3,
-            slide: true,
-            stiffness: 0.25,
-            tolerance: 0.015,
-        }
+        RelaxOptions { rings: 3, slide: true, stiffness: 0.25, tolerance: 0.015 }
     }
 }
 
@@ -111,30 +106,14 @@ pub fn relax(
         slide.even_out();
     }
     let band = movable(triangles, positions, slide.len(), options.rings)?;
-    let mut motion = Motion {
-        band,
-        slide,
-        sliding: options.slide,
-        stiffness: options.stiffness,
-    };
+    let mut motion = Motion { band, slide, sliding: options.slide, stiffness: options.stiffness };
     motion.place_boundary(3);
-    let mut report = RelaxReport {
-        rings: options.rings,
-        ..RelaxReport::default()
-    };
-    let valid = ladder(
-        triangles,
-        positions,
-        &mut motion,
-        &mut report,
-        progress.part(0.0, 0.4),
-    )?;
+    let mut report = RelaxReport { rings: options.rings, ..RelaxReport::default() };
+    let valid = ladder(triangles, positions, &mut motion, &mut report, progress.part(0.0, 0.4))?;
     if valid {
         report.sweeps += motion.improve(options.tolerance, progress.part(0.4, 0.8))?;
         report.sweeps += motion.sharpen(options.tolerance, progress.part(0.8, 0.9))?;
-        report
-            .released
-            .extend(motion.release_starved(options.tolerance, progress.part(0.9, 1.0))?);
+        report.released.extend(motion.release_starved(options.tolerance, progress.part(0.9, 1.0))?);
         report.released.sort_unstable();
     }
     report.min_angle = motion.least_angle();
@@ -164,36 +143,11 @@ fn ladder(
     }
     let first = report.rings;
     let steps = [
-        Step {
-            spread: 0,
-            release: false,
-            rings: first,
-            sweeps: 25,
-        },
-        Step {
-            spread: 3,
-            release: false,
-            rings: first,
-            sweeps: 25,
-        },
-        Step {
-            spread: 2,
-            release: true,
-            rings: 2 * first,
-            sweeps: 40,
-        },
-        Step {
-            spread: 5,
-            release: true,
-            rings: 4 * first,
-            sweeps: 40,
-        },
-        Step {
-            spread: 8,
-            release: true,
-            rings: usize::MAX,
-            sweeps: 80,
-        },
+        Step { spread: 0, release: false, rings: first, sweeps: 25 },
+        Step { spread: 3, release: false, rings: first, sweeps: 25 },
+        Step { spread: 2, release: true, rings: 2 * first, sweeps: 40 },
+        Step { spread: 5, release: true, rings: 4 * first, sweeps: 40 },
+        Step { spread: 8, release: true, rings: usize::MAX, sweeps: 80 },
     ];
     let n = steps.len() as f64;
     for (i, step) in steps.iter().enumerate() {
@@ -203,9 +157,7 @@ fn ladder(
             report.rings = step.rings;
         }
         if motion.sliding && step.spread > 0 {
-            report
-                .released
-                .extend(motion.spread_tangled(step.spread, step.release));
+            report.released.extend(motion.spread_tangled(step.spread, step.release));
         }
         let part = progress.part(i as f64 / n, (i + 1) as f64 / n);
         if motion.untangle(step.sweeps, &mut report.untangling, part)? {
@@ -215,12 +167,7 @@ fn ladder(
     Ok(false)
 }
 
-fn movable(
-    triangles: &[[u32; 3]],
-    positions: &[DVec2],
-    n_rim: usize,
-    rings: usize,
-) -> Result<Band> {
+fn movable(triangles: &[[u32; 3]], positions: &[DVec2], n_rim: usize, rings: usize) -> Result<Band> {
     Band::new(triangles, positions, n_rim, rings).map_err(|vertex| Error::InvalidOption {
         name: "triangles",
         value: format!("not a patch at vertex {vertex}"),

@@ -36,14 +36,8 @@ impl SegmentGrid {
             .max(f64::MIN_POSITIVE);
         let columns = (size.x / cell) as usize + 1;
         let rows = (size.y / cell) as usize + 1;
-        let mut grid = Self {
-            origin: low,
-            cell,
-            columns,
-            rows,
-            starts: vec![0; columns * rows + 1],
-            items: Vec::new(),
-        };
+        let mut grid =
+            Self { origin: low, cell, columns, rows, starts: vec![0; columns * rows + 1], items: Vec::new() };
         for segment in segments {
             grid.walk(segment, |cell, starts| starts[cell + 1] += 1);
         }
@@ -74,11 +68,7 @@ impl SegmentGrid {
     fn walk(&mut self, [a, b]: &[DVec2; 2], mut visit: impl FnMut(usize, &mut [u32])) {
         let (a, b) = if a.y <= b.y { (*a, *b) } else { (*b, *a) };
         let pad = 1e-9 * self.cell;
-        let slope = if b.y > a.y {
-            (b.x - a.x) / (b.y - a.y)
-        } else {
-            0.0
-        };
+        let slope = if b.y > a.y { (b.x - a.x) / (b.y - a.y) } else { 0.0 };
         for row in self.row(a.y - pad)..=self.row(b.y + pad) {
             let low = (self.origin.y + row as f64 * self.cell - pad).max(a.y);
             let high = (self.origin.y + (row + 1) as f64 * self.cell + pad).min(b.y);
@@ -97,8 +87,7 @@ impl SegmentGrid {
     /// Calls `visit` with each segment in the cells that meet the box, possibly several times.
     pub(crate) fn near(&self, low: DVec2, high: DVec2, mut visit: impl FnMut(usize)) {
         for row in self.row(low.y)..=self.row(high.y) {
-            let cells =
-                row * self.columns + self.column(low.x)..=row * self.columns + self.column(high.x);
+            let cells = row * self.columns + self.column(low.x)..=row * self.columns + self.column(high.x);
             let items = self.starts[*cells.start()] as usize..self.starts[cells.end() + 1] as usize;
             for &item in &self.items[items] {
                 visit(item as usize);
@@ -149,11 +138,7 @@ pub(crate) fn segments_meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
 pub(crate) fn nearest_on_segment(p: DVec2, a: DVec2, b: DVec2) -> (f64, f64) {
     let ab = b - a;
     let squared = ab.length_squared();
-    let t = if squared > 0.0 {
-        ((p - a).dot(ab) / squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let t = if squared > 0.0 { ((p - a).dot(ab) / squared).clamp(0.0, 1.0) } else { 0.0 };
     (t, (a + t * ab).distance_squared(p))
 }
 
@@ -164,9 +149,7 @@ mod tests {
     fn random(n: usize, seed: u64) -> Vec<[DVec2; 2]> {
         let mut state = seed;
         let mut next = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 33) as f64 / (1u64 << 31) as f64
         };
         (0..n)
@@ -203,21 +186,9 @@ mod tests {
     #[test]
     fn touching_and_collinear_segments_meet() {
         let p = |x: f64, y: f64| DVec2::new(x, y);
-        assert!(segments_meet(
-            [p(0.0, 0.0), p(2.0, 0.0)],
-            [p(1.0, 0.0), p(1.0, 1.0)]
-        ));
-        assert!(segments_meet(
-            [p(0.0, 0.0), p(2.0, 0.0)],
-            [p(1.0, 0.0), p(3.0, 0.0)]
-        ));
-        assert!(!segments_meet(
-            [p(0.0, 0.0), p(1.0, 0.0)],
-            [p(1.5, 0.0), p(3.0, 0.0)]
-        ));
-        assert!(!segments_meet(
-            [p(0.0, 0.0), p(1.0, 0.0)],
-            [p(0.0, 1e-300), p(1.0, 1e-300)]
-        ));
+        assert!(segments_meet([p(0.0, 0.0), p(2.0, 0.0)], [p(1.0, 0.0), p(1.0, 1.0)]));
+        assert!(segments_meet([p(0.0, 0.0), p(2.0, 0.0)], [p(1.0, 0.0), p(3.0, 0.0)]));
+        assert!(!segments_meet([p(0.0, 0.0), p(1.0, 0.0)], [p(1.5, 0.0), p(3.0, 0.0)]));
+        assert!(!segments_meet([p(0.0, 0.0), p(1.0, 0.0)], [p(0.0, 1e-300), p(1.0, 1e-300)]));
     }
 }

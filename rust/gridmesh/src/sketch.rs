@@ -4,12 +4,11 @@ use std::time::Instant;
 
 use glam::DVec2;
 
-use crate::curve::{ClosedCurve, Winding};
+use crate::contours::read_contours;
+use crate::curve::ClosedCurve;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
-use crate::options::{
-    BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SketchOptions, SketchReport,
-};
+use crate::options::{DEFAULT_TRIANGLES, MAX_TRIANGLES, SketchOptions, SketchReport};
 use crate::outline::{Obstacle, Outline, grown};
 use crate::patch::Patch;
 use crate::place::{Placed, deviation, min_angle, place};
@@ -20,14 +19,8 @@ const STRAY: f64 = 2.0;
 
 /// Lattice placements tried before the drawing is called too coarse for its edge length: shifts of
 /// the origin in edges.
-const SHIFTS: [[f64; 2]; 6] = [
-    [0.0, 0.0],
-    [0.5, 0.29],
-    [0.5, -0.29],
-    [0.25, 0.43],
-    [0.25, -0.14],
-    [0.75, 0.14],
-];
+const SHIFTS: [[f64; 2]; 6] =
+    [[0.0, 0.0], [0.5, 0.29], [0.5, -0.29], [0.25, 0.43], [0.25, -0.14], [0.75, 0.14]];
 
 /// A flat patch with the numbers of its making.
 #[derive(Clone, Debug)]
@@ -61,39 +54,17 @@ pub fn mesh_sketch(
 ) -> Result<Sketch> {
     options.check()?;
     let started = Instant::now();
-    let mut contours = vec![ClosedCurve::new(
-        outline,
-        Winding::CounterClockwise,
-        "outline",
-    )?];
-    for (i, hole) in holes.iter().enumerate() {
-        contours.push(ClosedCurve::new(
-            hole,
-            Winding::Clockwise,
-            &format!("hole {i}"),
-        )?);
-    }
+    let contours = read_contours(outline, holes)?;
     let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
     let edge_length = match options.edge_length {
         Some(h) => h,
-        None => {
-            Lattice::edge_length_for(area, options.triangles.unwrap_or(DEFAULT_TRIANGLES) as f64)
-        }
+        None => Lattice::edge_length_for(area, options.triangles.unwrap_or(DEFAULT_TRIANGLES) as f64),
     };
     let expected = area / (0.5 * crate::lattice::ROW_HEIGHT * edge_length * edge_length);
     if expected.is_nan() || expected > MAX_TRIANGLES {
-        return Err(Error::TooLarge {
-            triangles: expected,
-            limit: MAX_TRIANGLES,
-        });
+        return Err(Error::TooLarge { triangles: expected, limit: MAX_TRIANGLES });
     }
-    let mut job = Job {
-        contours,
-        options,
-        area,
-        seconds: Vec::new(),
-        placements: 0,
-    };
+    let mut job = Job { contours, options, area, seconds: Vec::new(), placements: 0 };
     job.lap("curve", started);
     let asked = match options.edge_length {
         Some(h) => Asked::EdgeLength(h),
@@ -129,20 +100,12 @@ impl Job<'_> {
     }
 
     /// Tries lattice placements until one gives a valid patch of the size asked for.
-    fn attempt(
-        &mut self,
-        asked: Asked,
-        progress: Progress<'_>,
-    ) -> Result<Result<Sketch, Obstacle>> {
+    fn attempt(&mut self, asked: Asked, progress: Progress<'_>) -> Result<Result<Sketch, Obstacle>> {
         let mut obstacle = None;
         for (k, shift) in SHIFTS.iter().enumerate() {
             let part = |i: usize| (k as f64 + 0.5 * i as f64) / SHIFTS.len() as f64;
             self.placements += 1;
-            let found = self.outline(
-                asked,
-                DVec2::from_array(*shift),
-                progress.part(part(0), part(1)),
-            )?;
+            let found = self.outline(asked, DVec2::from_array(*shift), progress.part(part(0), part(1)))?;
             let (lattice, outline) = match found {
                 Ok(found) => found,
                 Err(found) => {
@@ -160,14 +123,17 @@ impl Job<'_> {
             )?;
             self.lap("placement", started);
             match placed {
-                Ok(placed) => return Ok(Ok(self.report(&outline, placed))),
+                Ok(placed) => {
+                    let (sketch, lost) = self.report(&outline, placed);
+                    match lost {
+                        None => return Ok(Ok(sketch)),
+                        Some(at) => obstacle = Some(Obstacle { reason: "a part of the drawing is lost", at }),
+                    }
+                }
                 Err(found) => obstacle = Some(found),
             }
         }
-        Ok(Err(obstacle.unwrap_or(Obstacle {
-            reason: "no lattice was tried",
-            at: DVec2::ZERO,
-        })))
+        Ok(Err(obstacle.unwrap_or(Obstacle { reason: "no lattice was tried", at: DVec2::ZERO })))
     }
 
     /// The outline for one placement; with a number of triangles asked for, the edge length is
@@ -181,14 +147,11 @@ impl Job<'_> {
         const CORRECTIONS: usize = 6;
         let mut edge_length = match asked {
             Asked::EdgeLength(h) => h,
-            Asked::Triangles(n) => Lattice::edge_length_for(self.area, n as f64),
+            Asked::Triangles(n) => self.first_guess(n),
         };
         let started = Instant::now();
         let mut best: Option<(f64, Lattice, Outline)> = None;
-        let mut obstacle = Obstacle {
-            reason: "the number of triangles is not reached",
-            at: DVec2::ZERO,
-        };
+        let mut obstacle = Obstacle { reason: "the number of triangles is not reached", at: DVec2::ZERO };
         for _ in 0..CORRECTIONS {
             let lattice = self.lattice(edge_length, shift);
             let outline = match grown(&self.contours[0], &lattice, self.options, progress)? {
@@ -224,58 +187,58 @@ impl Job<'_> {
         })
     }
 
+    /// The edge length at which a grown patch has about `n` triangles: growth stops inside the
+    /// curve, on average 0.28 triangles for each edge length of curve short of its area.
+    fn first_guess(&self, n: usize) -> f64 {
+        const SHORT: f64 = 0.28;
+        let area = self.area / (0.5 * crate::lattice::ROW_HEIGHT);
+        let short = SHORT * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
+        2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
+    }
+
     fn lattice(&self, edge_length: f64, shift: DVec2) -> Lattice {
-        let angle = self
-            .options
-            .angle
-            .unwrap_or(0.0)
-            .rem_euclid(std::f64::consts::FRAC_PI_3);
+        let angle = self.options.angle.unwrap_or(0.0).rem_euclid(std::f64::consts::FRAC_PI_3);
         let centre = centroid(self.contours[0].points());
         let origin = centre + edge_length * DVec2::from_angle(angle).rotate(shift);
-        Lattice {
-            origin,
-            angle,
-            edge_length,
-        }
+        Lattice { origin, angle, edge_length }
     }
 
-    /// The error for a drawing that has no patch of the size asked for: the next size that works,
-    /// found by meshing at ever more triangles, 1.1 times each.
-    fn least_that_works(
-        &mut self,
-        asked: f64,
-        obstacle: Obstacle,
-        progress: Progress<'_>,
-    ) -> Result<Error> {
-        const STEPS: i32 = 60;
-        for step in 1..=STEPS {
-            progress
-                .part(0.9, 1.0)
-                .report(f64::from(step) / f64::from(STEPS))?;
-            let triangles = asked.max(6.0) * 1.1f64.powi(step);
-            if triangles > MAX_TRIANGLES.min(1e6) {
-                break;
+    /// The error for a drawing that has no patch of the size asked for: the least number of
+    /// triangles that works, searched in steps of a tenth.
+    fn least_that_works(&mut self, asked: f64, obstacle: Obstacle, progress: Progress<'_>) -> Result<Error> {
+        const LARGEST: f64 = 1e6;
+        let at = |step: i32| (asked.max(6.0) * 1.1f64.powi(step)).ceil() as usize;
+        let (mut fails, mut works, mut stride) = (0, None, 1);
+        while works.is_none() && (at(fails + stride) as f64) < LARGEST {
+            progress.part(0.9, 1.0).report(0.0)?;
+            let step = fails + stride;
+            match self.attempt(Asked::Triangles(at(step)), Progress::NONE)? {
+                Ok(_) => works = Some(step),
+                Err(_) => fails = step,
             }
-            if let Ok(sketch) =
-                self.attempt(Asked::Triangles(triangles.ceil() as usize), Progress::NONE)?
-            {
-                return Ok(Error::TooCoarse {
-                    triangles: asked.round() as usize,
-                    least: sketch.report.triangles,
-                });
+            // Small steps first, for drawings that nearly fit; larger ones after them.
+            stride = 1 + fails / 4;
+        }
+        let Some(mut works) = works else {
+            return Ok(Error::NoPatch { reason: obstacle.reason.to_owned(), at: obstacle.at.to_array() });
+        };
+        while works - fails > 1 {
+            progress.part(0.9, 1.0).report(0.5)?;
+            let step = (works + fails) / 2;
+            match self.attempt(Asked::Triangles(at(step)), Progress::NONE)? {
+                Ok(_) => works = step,
+                Err(_) => fails = step,
             }
         }
-        Ok(Error::NoPatch {
-            reason: obstacle.reason.to_owned(),
-            at: obstacle.at.to_array(),
-        })
+        Ok(Error::TooCoarse { triangles: asked.round() as usize, least: at(works) })
     }
 
-    fn report(&mut self, outline: &Outline, placed: Placed) -> Sketch {
+    /// The patch with its numbers, and a place of the drawing that it loses, if it loses any.
+    fn report(&mut self, outline: &Outline, placed: Placed) -> (Sketch, Option<DVec2>) {
         let started = Instant::now();
         let patch = placed.patch;
         let h = patch.lattice.edge_length;
-        let (max_deviation, lost_parts) = deviation(&self.contours, &patch, STRAY * h);
+        let (max_deviation, at) = deviation(&self.contours, &patch, STRAY * h);
         let mut report = SketchReport {
             triangles: patch.triangles.len(),
             irregular: outline.irregular(),
@@ -287,7 +250,6 @@ impl Job<'_> {
             optimal: outline.optimal,
             max_distance_used: outline.max_distance_used,
             max_deviation: max_deviation / h,
-            lost_parts,
             min_angle: min_angle(&patch),
             corners: placed.corners,
             released_corners: placed.released_corners,
@@ -297,7 +259,8 @@ impl Job<'_> {
         };
         self.lap("report", started);
         report.seconds = self.seconds.clone();
-        Sketch { patch, report }
+        let lost = (max_deviation > STRAY * h).then_some(at);
+        (Sketch { patch, report }, lost)
     }
 }
 

@@ -33,11 +33,7 @@ impl Target {
         let length = curve.length() / lattice.edge_length;
         let n = ((length / SPACING).ceil() as usize).max(12);
         let step = length / n as f64;
-        let drawn: Vec<DVec2> = curve
-            .points()
-            .iter()
-            .map(|&p| lattice.to_units(p))
-            .collect();
+        let drawn: Vec<DVec2> = curve.points().iter().map(|&p| lattice.to_units(p)).collect();
         let mut sampled = Vec::with_capacity(n);
         let mut segment = 0;
         for i in 0..n {
@@ -49,10 +45,7 @@ impl Target {
             let (a, b) = (drawn[segment], drawn[(segment + 1) % drawn.len()]);
             sampled.push(a.lerp(b, ((s - from) / (to - from)).clamp(0.0, 1.0)));
         }
-        Self {
-            points: smooth(&sampled, SIGMA / step),
-            step,
-        }
+        Self { points: smooth(&sampled, SIGMA / step), step }
     }
 
     /// Number of samples.
@@ -129,9 +122,7 @@ impl Target {
 fn smooth(points: &[DVec2], sigma: f64) -> Vec<DVec2> {
     let n = points.len();
     let radius = ((3.0 * sigma).ceil() as usize).min(n / 2);
-    let weights: Vec<f64> = (0..=radius)
-        .map(|k| (-0.5 * (k as f64 / sigma).powi(2)).exp())
-        .collect();
+    let weights: Vec<f64> = (0..=radius).map(|k| (-0.5 * (k as f64 / sigma).powi(2)).exp()).collect();
     let total = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
     (0..n)
         .map(|i| {
@@ -152,19 +143,14 @@ mod tests {
 
     fn target(points: &[DVec2]) -> Result<Target> {
         let curve = ClosedCurve::new(points, Winding::CounterClockwise, "outline")?;
-        let lattice = Lattice {
-            origin: DVec2::ZERO,
-            angle: 0.0,
-            edge_length: 1.0,
-        };
+        let lattice = Lattice { origin: DVec2::ZERO, angle: 0.0, edge_length: 1.0 };
         Ok(Target::new(&curve, &lattice))
     }
 
     #[test]
     fn a_large_circle_stays_where_it_is() -> Result<()> {
-        let circle: Vec<DVec2> = (0..400)
-            .map(|i| 30.0 * DVec2::from_angle(f64::from(i) / 400.0 * 6.283185307))
-            .collect();
+        let circle: Vec<DVec2> =
+            (0..400).map(|i| 30.0 * DVec2::from_angle(f64::from(i) / 400.0 * 6.283185307)).collect();
         for p in target(&circle)?.points {
             assert!((p.length() - 30.0).abs() < 0.02);
         }
@@ -173,14 +159,7 @@ mod tests {
 
     #[test]
     fn a_narrow_neck_becomes_wide_enough() -> Result<()> {
-        let dumbbell = [
-            [-20.0, -9.0],
-            [-6.0, -9.0],
-            [-6.0, -0.3],
-            [6.0, -0.3],
-            [6.0, -9.0],
-            [20.0, -9.0],
-        ];
+        let dumbbell = [[-20.0, -9.0], [-6.0, -9.0], [-6.0, -0.3], [6.0, -0.3], [6.0, -9.0], [20.0, -9.0]];
         let mut outline: Vec<DVec2> = dumbbell.iter().map(|&c| DVec2::from_array(c)).collect();
         outline.extend(dumbbell.iter().rev().map(|&[x, y]| DVec2::new(x, -y)));
         let mut target = target(&outline)?;

@@ -23,19 +23,11 @@ impl Band {
     /// The rings `0..=rings` of a patch whose boundary vertices are `0..n_rim`; linear in the
     /// number of triangles. `Err` names a vertex that is not surrounded by one counter-clockwise
     /// fan of triangles.
-    pub fn new(
-        triangles: &[[u32; 3]],
-        positions: &[DVec2],
-        n_rim: usize,
-        rings: usize,
-    ) -> Result<Band, u32> {
+    pub fn new(triangles: &[[u32; 3]], positions: &[DVec2], n_rim: usize, rings: usize) -> Result<Band, u32> {
         // `local` holds FAR, or the number in the band: vertices of one ring are consecutive.
         let mut local = vec![FAR; positions.len()];
         let mut global: Vec<u32> = (0..n_rim as u32).collect();
-        local
-            .iter_mut()
-            .zip(0..n_rim as u32)
-            .for_each(|(l, v)| *l = v);
+        local.iter_mut().zip(0..n_rim as u32).for_each(|(l, v)| *l = v);
         let mut near: Vec<[u32; 3]> = Vec::new();
         let mut rest: Vec<[u32; 3]> = Vec::new();
         let mut n_free = n_rim;
@@ -45,11 +37,7 @@ impl Band {
             let before = near.len();
             if ring == 0 {
                 for t in triangles {
-                    if reached(t) {
-                        near.push(*t)
-                    } else {
-                        rest.push(*t)
-                    }
+                    if reached(t) { near.push(*t) } else { rest.push(*t) }
                 }
             } else {
                 rest.retain(|t| {
@@ -75,15 +63,7 @@ impl Band {
         }
         let positions = global.iter().map(|&v| positions[v as usize]).collect();
         let (start, around) = fans(&near, n_rim, n_free).map_err(|v| global[v])?;
-        Ok(Band {
-            global,
-            n_rim,
-            n_free,
-            positions,
-            triangles: near,
-            start,
-            around,
-        })
+        Ok(Band { global, n_rim, n_free, positions, triangles: near, start, around })
     }
 
     /// The neighbours of a vertex that may move, counter-clockwise. Around an interior vertex the
@@ -94,11 +74,7 @@ impl Band {
 }
 
 /// Sorts the triangles around each vertex into a fan.
-fn fans(
-    triangles: &[[u32; 3]],
-    n_rim: usize,
-    n_free: usize,
-) -> Result<(Vec<u32>, Vec<u32>), usize> {
+fn fans(triangles: &[[u32; 3]], n_rim: usize, n_free: usize) -> Result<(Vec<u32>, Vec<u32>), usize> {
     let mut start = vec![0u32; n_free + 1];
     for &v in triangles.iter().flatten() {
         if (v as usize) < n_free {
@@ -158,9 +134,7 @@ mod tests {
     fn two_wheels() -> Vec<[u32; 3]> {
         let (p, q) = (8, 9);
         let ring = |c: u32, r: [u32; 6]| (0..6).map(move |i| [c, r[i], r[(i + 1) % 6]]);
-        let mut all: Vec<[u32; 3]> = ring(p, [0, 1, q, 5, 6, 7])
-            .chain(ring(q, [2, 3, 4, 5, p, 1]))
-            .collect();
+        let mut all: Vec<[u32; 3]> = ring(p, [0, 1, q, 5, 6, 7]).chain(ring(q, [2, 3, 4, 5, p, 1])).collect();
         all.retain(|t| !(t[0] == q && t[1..].contains(&p)));
         all
     }

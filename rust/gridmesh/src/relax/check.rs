@@ -27,21 +27,13 @@ mod tests {
     #[test]
     fn slivers_lost_by_rounding_are_found() {
         let far = DVec2::new(1000.0, 0.0);
-        let positions = [
-            far,
-            far + DVec2::X,
-            far + DVec2::new(0.5, 1e-6),
-            far + DVec2::new(0.0, 1e-12),
-        ];
+        let positions = [far, far + DVec2::X, far + DVec2::new(0.5, 1e-6), far + DVec2::new(0.0, 1e-12)];
         let exact = [[0, 1, 2]];
         assert_eq!(first_inverted(&positions, &exact, far), None);
         // Relative to another origin the coordinates are too long for f32: only the x here.
         let lifted = positions.map(|p| p + DVec2::new(0.0, 1000.0));
         assert_eq!(first_inverted(&lifted, &exact, DVec2::ZERO), Some(0));
-        assert_eq!(
-            first_inverted(&positions, &[[0, 1, 2], [0, 2, 1]], far),
-            Some(1)
-        );
+        assert_eq!(first_inverted(&positions, &[[0, 1, 2], [0, 2, 1]], far), Some(1));
         assert_eq!(first_inverted(&positions, &[[0, 0, 1]], far), Some(0));
         let nan = [DVec2::NAN, DVec2::X, DVec2::Y];
         assert_eq!(first_inverted(&nan, &exact, DVec2::ZERO), Some(0));

@@ -45,19 +45,12 @@ impl Contour<'_> {
 
     pub(super) fn wrap(&self, s: f64) -> f64 {
         let length = self.length();
-        let wrapped = if s >= 0.0 && s < length {
-            s
-        } else {
-            s - length * (s / length).floor()
-        };
+        let wrapped = if s >= 0.0 && s < length { s } else { s - length * (s / length).floor() };
         if wrapped < length { wrapped } else { 0.0 }
     }
 
     pub(super) fn segment_of(&self, s: f64) -> usize {
-        self.arc
-            .partition_point(|&a| a <= s)
-            .clamp(1, self.points.len())
-            - 1
+        self.arc.partition_point(|&a| a <= s).clamp(1, self.points.len()) - 1
     }
 
     fn on_segment(&self, s: f64, i: usize) -> DVec2 {

@@ -45,8 +45,8 @@ pub fn settle_corners(
                 ideal * ideal + 0.1 * moved * moved
             };
             let mut best = (cost(k, 0.0) - 0.05, k, 0.0);
-            for (other, far, lap) in [(n - 1, n - 2, -contour.length()), (1, 2, contour.length())]
-                .map(|(near, far, lap)| {
+            for (other, far, lap) in
+                [(n - 1, n - 2, -contour.length()), (1, 2, contour.length())].map(|(near, far, lap)| {
                     let i = (k + near) % n;
                     // Beyond the seam of the numbering the same place is a lap away.
                     let crossed = if near == 1 { i < k } else { i > k };
@@ -92,40 +92,25 @@ mod tests {
     use super::*;
     use glam::DVec2;
 
-    const SQUARE: [DVec2; 4] = [
-        DVec2::ZERO,
-        DVec2::new(4.0, 0.0),
-        DVec2::new(4.0, 4.0),
-        DVec2::new(0.0, 4.0),
-    ];
+    const SQUARE: [DVec2; 4] =
+        [DVec2::ZERO, DVec2::new(4.0, 0.0), DVec2::new(4.0, 4.0), DVec2::new(0.0, 4.0)];
     const ARC: [f64; 5] = [0.0, 4.0, 8.0, 12.0, 16.0];
 
     #[test]
     fn a_sharp_corner_goes_to_the_neighbour_with_two_triangles_also_across_the_seam() {
         for shift in 0..8usize {
-            let contours = [Contour {
-                points: &SQUARE,
-                arc: &ARC,
-            }];
+            let contours = [Contour { points: &SQUARE, arc: &ARC }];
             let s: Vec<f64> = (0..8).map(|i| 2.0 * (i as f64 - shift as f64)).collect();
             let mut pinned = vec![false; 8];
             pinned[shift] = true;
             let mut turning = [vec![0.0; 8]];
             turning[0][shift] = 2.0;
-            let mut rims = [Rim {
-                start: 0,
-                s,
-                pinned,
-            }];
+            let mut rims = [Rim { start: 0, s, pinned }];
             // Three triangles at each vertex but the one ahead of the corner, which has two.
             let ahead = (shift + 1) % 8;
-            let triangles: Vec<[u32; 3]> = (0..8)
-                .flat_map(|v| vec![[v as u32, 90, 91]; if v == ahead { 2 } else { 3 }])
-                .collect();
-            assert_eq!(
-                settle_corners(&triangles, &contours, &mut rims, &mut turning),
-                1
-            );
+            let triangles: Vec<[u32; 3]> =
+                (0..8).flat_map(|v| vec![[v as u32, 90, 91]; if v == ahead { 2 } else { 3 }]).collect();
+            assert_eq!(settle_corners(&triangles, &contours, &mut rims, &mut turning), 1);
             assert!(rims[0].pinned[ahead] && !rims[0].pinned[shift]);
             assert_eq!((turning[0][ahead], turning[0][shift]), (2.0, 0.0));
             assert_eq!(contours[0].point_at(rims[0].s[ahead]), DVec2::ZERO);

@@ -39,11 +39,7 @@ impl Energy for Barrier {
     const BARRIER: bool = true;
 
     fn value(&self, stretch: f64, det: f64) -> f64 {
-        if det > 0.0 {
-            (stretch + 0.5) / det + 0.5 * det
-        } else {
-            f64::INFINITY
-        }
+        if det > 0.0 { (stretch + 0.5) / det + 0.5 * det } else { f64::INFINITY }
     }
 
     fn derivatives(&self, stretch: f64, det: f64) -> Derivatives {
@@ -101,11 +97,7 @@ impl<const SQUARINGS: usize> Energy for Power<SQUARINGS> {
         let low = e.min(LINEAR);
         let power = Self::power(low);
         let first = Self::EXPONENT * power / low;
-        let second = if e > low {
-            0.0
-        } else {
-            (Self::EXPONENT - 1.0) * first / low
-        };
+        let second = if e > low { 0.0 } else { (Self::EXPONENT - 1.0) * first / low };
         Derivatives {
             value: power + first * (e - low),
             u: first * eu,
@@ -187,15 +179,8 @@ pub(super) fn value<E: Energy>(energy: &E, x: DVec2, ring: &[u32], positions: &[
 
 /// The energy of the triangles (x, ring[i], ring[i + 1]) with gradient and Hessian in x.
 pub(super) fn local<E: Energy>(energy: &E, x: DVec2, ring: &[u32], positions: &[DVec2]) -> Local {
-    let mut sum = Local {
-        value: 0.0,
-        gradient: DVec2::ZERO,
-        xx: 0.0,
-        xy: 0.0,
-        yy: 0.0,
-        det: f64::INFINITY,
-        edge: 0.0,
-    };
+    let mut sum =
+        Local { value: 0.0, gradient: DVec2::ZERO, xx: 0.0, xy: 0.0, yy: 0.0, det: f64::INFINITY, edge: 0.0 };
     let mut a = positions[ring[0] as usize] - x;
     for &v in &ring[1..] {
         let b = positions[v as usize] - x;
@@ -247,9 +232,8 @@ mod tests {
     use super::*;
 
     fn ring() -> (Vec<u32>, Vec<DVec2>) {
-        let mut positions: Vec<DVec2> = (0..6)
-            .map(|i| DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 6.0))
-            .collect();
+        let mut positions: Vec<DVec2> =
+            (0..6).map(|i| DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 6.0)).collect();
         positions[2] *= 0.7;
         positions[4] *= 1.3;
         (vec![0, 1, 2, 3, 4, 5, 0], positions)
@@ -263,12 +247,7 @@ mod tests {
         let h = 1e-5;
         let (px, mx) = (at(x + DVec2::X * h), at(x - DVec2::X * h));
         let (py, my) = (at(x + DVec2::Y * h), at(x - DVec2::Y * h));
-        let close = |a: f64, b: f64| {
-            assert!(
-                (a - b).abs() < 1e-5 * (1.0 + a.abs().max(b.abs())),
-                "{a} {b}"
-            )
-        };
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-5 * (1.0 + a.abs().max(b.abs())), "{a} {b}");
         close(l.gradient.x, (px.value - mx.value) / (2.0 * h));
         close(l.gradient.y, (py.value - my.value) / (2.0 * h));
         close(l.xx, (px.gradient.x - mx.gradient.x) / (2.0 * h));
@@ -290,18 +269,12 @@ mod tests {
 
     #[test]
     fn unit_equilateral_triangle_is_the_minimum() {
-        let hexagon: Vec<DVec2> = (0..6)
-            .map(|i| DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 6.0))
-            .collect();
+        let hexagon: Vec<DVec2> =
+            (0..6).map(|i| DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 6.0)).collect();
         let ring = [0, 1, 2, 3, 4, 5, 0];
         let l = local(&Barrier, DVec2::ZERO, &ring, &hexagon);
         assert!((l.value - 18.0).abs() < 1e-12);
         assert!(l.gradient.length() < 1e-12);
-        assert!(
-            local(&Power::<2>, DVec2::ZERO, &ring, &hexagon)
-                .gradient
-                .length()
-                < 1e-12
-        );
+        assert!(local(&Power::<2>, DVec2::ZERO, &ring, &hexagon).gradient.length() < 1e-12);
     }
 }

@@ -47,13 +47,9 @@ impl<'a> Slide<'a> {
                 slide.before.push(start + (i + n - 1) % n);
                 slide.after.push(start + (i + 1) % n);
                 slide.contour.push(k as u32);
-                slide
-                    .segment
-                    .push(contour.segment_of(contour.wrap(rim.s[i as usize])) as u32);
+                slide.segment.push(contour.segment_of(contour.wrap(rim.s[i as usize])) as u32);
             }
-            slide
-                .lengths
-                .push((contour.length(), contour.length() / f64::from(n)));
+            slide.lengths.push((contour.length(), contour.length() / f64::from(n)));
         }
         slide.home.clone_from(&slide.s);
         slide
@@ -169,12 +165,8 @@ impl<'a> Slide<'a> {
 mod tests {
     use super::*;
 
-    const SQUARE: [DVec2; 4] = [
-        DVec2::ZERO,
-        DVec2::new(4.0, 0.0),
-        DVec2::new(4.0, 4.0),
-        DVec2::new(0.0, 4.0),
-    ];
+    const SQUARE: [DVec2; 4] =
+        [DVec2::ZERO, DVec2::new(4.0, 0.0), DVec2::new(4.0, 4.0), DVec2::new(0.0, 4.0)];
     const ARC: [f64; 5] = [0.0, 4.0, 8.0, 12.0, 16.0];
 
     fn in_order(slide: &Slide) -> bool {
@@ -183,16 +175,9 @@ mod tests {
 
     #[test]
     fn spreading_across_the_seam_keeps_the_order() {
-        let contours = [Contour {
-            points: &SQUARE,
-            arc: &ARC,
-        }];
+        let contours = [Contour { points: &SQUARE, arc: &ARC }];
         let s = vec![0.1, 0.2, 0.3, 8.0, 15.7, 15.8, 15.9];
-        let rims = [Rim {
-            start: 0,
-            pinned: vec![false; s.len()],
-            s,
-        }];
+        let rims = [Rim { start: 0, pinned: vec![false; s.len()], s }];
         for vertex in 0..7 {
             for reach in 1..9 {
                 let mut slide = Slide::new(&contours, &rims);
@@ -204,16 +189,9 @@ mod tests {
 
     #[test]
     fn pinned_vertices_stay_when_others_are_spread_or_evened_out() {
-        let contours = [Contour {
-            points: &SQUARE,
-            arc: &ARC,
-        }];
+        let contours = [Contour { points: &SQUARE, arc: &ARC }];
         let s = vec![0.0, 0.2, 0.3, 4.0, 4.5, 12.0];
-        let rims = [Rim {
-            start: 0,
-            pinned: vec![true, false, false, true, false, false],
-            s,
-        }];
+        let rims = [Rim { start: 0, pinned: vec![true, false, false, true, false, false], s }];
         for vertex in 0..6 {
             let mut slide = Slide::new(&contours, &rims);
             slide.spread(vertex, 3);

@@ -28,12 +28,7 @@ impl Motion<'_> {
     }
 
     /// Sweeps around the tangled triangles until there is none; false if some stay inverted.
-    pub fn untangle(
-        &mut self,
-        sweeps: usize,
-        done: &mut usize,
-        progress: Progress<'_>,
-    ) -> Result<bool> {
+    pub fn untangle(&mut self, sweeps: usize, done: &mut usize, progress: Progress<'_>) -> Result<bool> {
         for sweep in 0..sweeps {
             let (vertices, least) = self.tangled();
             if vertices.is_empty() {
@@ -59,11 +54,8 @@ impl Motion<'_> {
         let mut rim: Vec<u32> = vertices
             .into_iter()
             .flat_map(|v| {
-                let around: &[u32] = if (v as usize) < self.band.n_free {
-                    self.band.around(v as usize)
-                } else {
-                    &[]
-                };
+                let around: &[u32] =
+                    if (v as usize) < self.band.n_free { self.band.around(v as usize) } else { &[] };
                 around.iter().copied().chain([v]).collect::<Vec<_>>()
             })
             .filter(|&v| v < n_rim)
@@ -108,22 +100,9 @@ impl Motion<'_> {
     /// Evens out the valid triangulation, then gives the worst triangles the say.
     pub fn improve(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<usize> {
         let n = self.band.n_free;
-        let even = self.settle(
-            &Barrier,
-            &mut Active::all(n),
-            8,
-            tolerance,
-            progress.part(0.0, 0.4),
-        )?;
+        let even = self.settle(&Barrier, &mut Active::all(n), 8, tolerance, progress.part(0.0, 0.4))?;
         let all = &mut Active::all(n);
-        Ok(even
-            + self.settle(
-                &Power::<2>,
-                all,
-                12,
-                0.5 * tolerance,
-                progress.part(0.4, 1.0),
-            )?)
+        Ok(even + self.settle(&Power::<2>, all, 12, 0.5 * tolerance, progress.part(0.4, 1.0))?)
     }
 
     /// Gives the worst triangles and their neighbours the say. What is worst is measured away from
@@ -136,20 +115,11 @@ impl Motion<'_> {
             .triangles
             .iter()
             .map(|t| {
-                let at_corner = t
-                    .iter()
-                    .any(|&v| self.slide.pinned.get(v as usize) == Some(&true));
-                (
-                    least_angle(t.map(|v| self.band.positions[v as usize])),
-                    at_corner,
-                )
+                let at_corner = t.iter().any(|&v| self.slide.pinned.get(v as usize) == Some(&true));
+                (least_angle(t.map(|v| self.band.positions[v as usize])), at_corner)
             })
             .collect();
-        let least = angles
-            .iter()
-            .filter(|a| !a.1)
-            .map(|a| a.0)
-            .fold(most, f64::min);
+        let least = angles.iter().filter(|a| !a.1).map(|a| a.0).fold(most, f64::min);
         let limit = most.min(least + margin);
         let worst: Vec<u32> = std::iter::zip(&self.band.triangles, &angles)
             .filter(|(_, (angle, at_corner))| *angle < if *at_corner { cornered } else { limit })
@@ -201,11 +171,8 @@ impl Motion<'_> {
 
     /// Least angle of the triangles of the band, in radians.
     pub fn least_angle(&self) -> f64 {
-        let angles = self
-            .band
-            .triangles
-            .iter()
-            .map(|t| least_angle(t.map(|v| self.band.positions[v as usize])));
+        let angles =
+            self.band.triangles.iter().map(|t| least_angle(t.map(|v| self.band.positions[v as usize])));
         angles.fold(std::f64::consts::FRAC_PI_3, f64::min)
     }
 }
@@ -214,9 +181,7 @@ fn least_angle(p: [DVec2; 3]) -> f64 {
     // The least angle lies opposite the shortest edge.
     let edges = [p[2] - p[1], p[0] - p[2], p[1] - p[0]];
     let lengths = edges.map(|e| e.length_squared());
-    let i = (0..3)
-        .min_by(|&i, &j| lengths[i].total_cmp(&lengths[j]))
-        .unwrap_or(0);
+    let i = (0..3).min_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
     let (a, b) = (edges[(i + 1) % 3], edges[(i + 2) % 3]);
     (-a).perp_dot(b).atan2((-a).dot(b)).abs()
 }

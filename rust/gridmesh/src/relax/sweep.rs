@@ -128,11 +128,7 @@ impl Motion<'_> {
         let gradient = here.gradient.dot(tangent) + 2.0 * self.stiffness * (s - home);
         let curvature = here.along(tangent) + 2.0 * self.stiffness;
         let newton = -gradient / curvature;
-        let newton = if newton.is_finite() {
-            newton
-        } else {
-            -gradient.signum()
-        };
+        let newton = if newton.is_finite() { newton } else { -gradient.signum() };
         let mut step = newton.clamp(-0.3, 0.3).clamp(-back, ahead);
         let now = here.value + self.stiffness * (s - home) * (s - home);
         for _ in 0..4 {
@@ -141,8 +137,8 @@ impl Motion<'_> {
             }
             let moved = s + step;
             let x = slide.point(v, moved);
-            let then = value(energy, x, ring, &band.positions)
-                + self.stiffness * (moved - home) * (moved - home);
+            let then =
+                value(energy, x, ring, &band.positions) + self.stiffness * (moved - home) * (moved - home);
             if then < now {
                 band.positions[v] = x;
                 slide.s[v] = moved;
@@ -196,18 +192,12 @@ impl Motion<'_> {
         for _ in 0..sweeps {
             for v in band.n_rim..band.n_free {
                 let around = &band.around(v)[1..];
-                let sum = around
-                    .iter()
-                    .fold(DVec2::ZERO, |sum, &w| sum + moved[w as usize]);
+                let sum = around.iter().fold(DVec2::ZERO, |sum, &w| sum + moved[w as usize]);
                 moved[v] = sum / around.len() as f64;
             }
         }
         for (v, (x, d)) in band.positions.iter_mut().zip(&moved).enumerate() {
-            *x = if v < band.n_rim {
-                slide.point(v, slide.s[v])
-            } else {
-                *x + *d
-            };
+            *x = if v < band.n_rim { slide.point(v, slide.s[v]) } else { *x + *d };
         }
     }
 }

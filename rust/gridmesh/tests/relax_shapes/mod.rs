@@ -29,32 +29,21 @@ pub struct Shape {
 
 impl Shape {
     pub fn contour(&self) -> Contour<'_> {
-        Contour {
-            points: &self.curve,
-            arc: &self.arc,
-        }
+        Contour { points: &self.curve, arc: &self.arc }
     }
 }
 
 /// Named analytic outlines, counter-clockwise.
 pub fn outline(name: &str) -> Vec<DVec2> {
     let polar = |r: &dyn Fn(f64) -> f64| -> Vec<DVec2> {
-        (0..720)
-            .map(|i| TAU * f64::from(i) / 720.0)
-            .map(|t| r(t) * DVec2::from_angle(t))
-            .collect()
+        (0..720).map(|i| TAU * f64::from(i) / 720.0).map(|t| r(t) * DVec2::from_angle(t)).collect()
     };
     match name {
         "circle" => polar(&|_| 1.0),
         "trefoil" => polar(&|t| 1.0 + 0.3 * (3.0 * t).cos()),
-        "ellipse" => polar(&|_| 1.0)
-            .into_iter()
-            .map(|p| p * DVec2::new(3.0, 1.0))
-            .collect(),
+        "ellipse" => polar(&|_| 1.0).into_iter().map(|p| p * DVec2::new(3.0, 1.0)).collect(),
         "star" => (0..10)
-            .map(|i| {
-                DVec2::from_angle(TAU * f64::from(i) / 10.0) * if i % 2 == 0 { 1.0 } else { 0.45 }
-            })
+            .map(|i| DVec2::from_angle(TAU * f64::from(i) / 10.0) * if i % 2 == 0 { 1.0 } else { 0.45 })
             .collect(),
         "dumbbell" => (0..720)
             .map(|i| TAU * f64::from(i) / 720.0)
@@ -76,18 +65,16 @@ pub fn outline(name: &str) -> Vec<DVec2> {
                 }
             })
             .collect(),
-        "square" => [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-            .map(|(x, y)| DVec2::new(x, y))
-            .to_vec(),
+        "square" => {
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec()
+        }
         _ => panic!("no outline called {name}"),
     }
 }
 
 pub fn area(points: &[DVec2]) -> f64 {
     let n = points.len();
-    (0..n)
-        .map(|i| 0.5 * points[i].perp_dot(points[(i + 1) % n]))
-        .sum()
+    (0..n).map(|i| 0.5 * points[i].perp_dot(points[(i + 1) % n])).sum()
 }
 
 pub fn cumulative(points: &[DVec2]) -> Vec<f64> {
@@ -104,10 +91,7 @@ fn at(points: &[DVec2], arc: &[f64], s: f64) -> DVec2 {
     let s = s.rem_euclid(length);
     let i = arc.partition_point(|&a| a <= s).clamp(1, points.len()) - 1;
     let d = arc[i + 1] - arc[i];
-    points[i].lerp(
-        points[(i + 1) % points.len()],
-        if d > 0.0 { (s - arc[i]) / d } else { 0.0 },
-    )
+    points[i].lerp(points[(i + 1) % points.len()], if d > 0.0 { (s - arc[i]) / d } else { 0.0 })
 }
 
 fn hex_norm(v: DVec2) -> f64 {
@@ -127,11 +111,7 @@ pub fn shape(outline: &[DVec2], triangles: usize, angle: f64, corners: bool) -> 
         points.reverse();
     }
     let h = Lattice::edge_length_for(area(&points), triangles as f64);
-    let lattice = Lattice {
-        origin: points[0],
-        angle,
-        edge_length: h,
-    };
+    let lattice = Lattice { origin: points[0], angle, edge_length: h };
     let curve: Vec<DVec2> = points.iter().map(|&p| lattice.to_units(p)).collect();
     let arc = cumulative(&curve);
     let length = arc[curve.len()];
@@ -140,15 +120,12 @@ pub fn shape(outline: &[DVec2], triangles: usize, angle: f64, corners: bool) -> 
     let m = (length / 0.25).ceil().max(24.0) as usize;
     let step = length / m as f64;
     let raw: Vec<DVec2> = (0..m).map(|i| at(&curve, &arc, i as f64 * step)).collect();
-    let weights: Vec<f64> = (-6i32..=6)
-        .map(|j| (-0.5 * (f64::from(j) / 2.0).powi(2)).exp())
-        .collect();
+    let weights: Vec<f64> = (-6i32..=6).map(|j| (-0.5 * (f64::from(j) / 2.0).powi(2)).exp()).collect();
     let total: f64 = weights.iter().sum();
     let smooth: Vec<DVec2> = (0..m)
         .map(|i| {
-            let sum: DVec2 = (0..13)
-                .map(|j| weights[j] * raw[(i + m + j - 6) % m])
-                .fold(DVec2::ZERO, |a, b| a + b);
+            let sum: DVec2 =
+                (0..13).map(|j| weights[j] * raw[(i + m + j - 6) % m]).fold(DVec2::ZERO, |a, b| a + b);
             sum / total
         })
         .collect();
@@ -167,10 +144,7 @@ pub fn shape(outline: &[DVec2], triangles: usize, angle: f64, corners: bool) -> 
             step * (i as f64 + (x - hex[i]) / (hex[i + 1] - hex[i]).max(1e-12))
         })
         .collect();
-    let targets: Vec<DVec2> = target_arc
-        .iter()
-        .map(|&s| at(&raw, &cumulative_even(m, step), s))
-        .collect();
+    let targets: Vec<DVec2> = target_arc.iter().map(|&s| at(&raw, &cumulative_even(m, step), s)).collect();
 
     let mut prices: HashMap<Axial, f64> = HashMap::new();
     for round in 0..150 {
@@ -193,11 +167,7 @@ fn cumulative_even(m: usize, step: f64) -> Vec<f64> {
     (0..=m).map(|i| i as f64 * step).collect()
 }
 
-fn cheapest_loop(
-    targets: &[DVec2],
-    radius: f64,
-    prices: &HashMap<Axial, f64>,
-) -> Option<Vec<Axial>> {
+fn cheapest_loop(targets: &[DVec2], radius: f64, prices: &HashMap<Axial, f64>) -> Option<Vec<Axial>> {
     let n = targets.len();
     let layers: Vec<Vec<(Axial, f64)>> = targets
         .iter()
@@ -228,11 +198,7 @@ fn cheapest_loop(
 }
 
 /// States are (point, direction leaving it). With `start`, the path begins and ends in that state.
-fn solve(
-    layers: &[Vec<(Axial, f64)>],
-    steps: usize,
-    start: Option<(Axial, Dir)>,
-) -> Option<Vec<Axial>> {
+fn solve(layers: &[Vec<(Axial, f64)>], steps: usize, start: Option<(Axial, Dir)>) -> Option<Vec<Axial>> {
     let n = layers.len();
     let mut best: Vec<Vec<[(f64, u32); 6]>> = Vec::with_capacity(steps + 1);
     let first = layers[0]
@@ -250,11 +216,7 @@ fn solve(
     best.push(first);
     for k in 1..=steps {
         let (before, here) = (&layers[(k - 1) % n], &layers[k % n]);
-        let index: BTreeMap<Axial, usize> = before
-            .iter()
-            .enumerate()
-            .map(|(i, &(p, _))| (p, i))
-            .collect();
+        let index: BTreeMap<Axial, usize> = before.iter().enumerate().map(|(i, &(p, _))| (p, i)).collect();
         let rows = here
             .iter()
             .map(|&(p, cost)| {
@@ -320,19 +282,9 @@ fn conflicts(path: &[Axial]) -> BTreeSet<Axial> {
     found
 }
 
-fn assemble(
-    curve: Vec<DVec2>,
-    arc: Vec<f64>,
-    path: &[Axial],
-    target: &[f64],
-    corners: bool,
-) -> Shape {
+fn assemble(curve: Vec<DVec2>, arc: Vec<f64>, path: &[Axial], target: &[f64], corners: bool) -> Shape {
     let n = path.len();
-    let mut number: BTreeMap<Axial, u32> = path
-        .iter()
-        .enumerate()
-        .map(|(i, &p)| (p, i as u32))
-        .collect();
+    let mut number: BTreeMap<Axial, u32> = path.iter().enumerate().map(|(i, &p)| (p, i as u32)).collect();
     let mut order = path.to_vec();
     let mut todo = Vec::new();
     for k in 0..n {
@@ -377,9 +329,7 @@ fn assemble(
     if corners {
         for (c, angle) in drawn_corners(&curve, &arc) {
             let wrap = |x: f64| (x - c + 0.5 * length).rem_euclid(length) - 0.5 * length;
-            let k = (0..n)
-                .min_by(|&a, &b| wrap(s[a]).abs().total_cmp(&wrap(s[b]).abs()))
-                .unwrap();
+            let k = (0..n).min_by(|&a, &b| wrap(s[a]).abs().total_cmp(&wrap(s[b]).abs())).unwrap();
             let moved = s[k] - wrap(s[k]);
             let before = if k == 0 { s[n - 1] - length } else { s[k - 1] };
             let after = if k == n - 1 { s[0] + length } else { s[k + 1] };
@@ -395,11 +345,7 @@ fn assemble(
         arc,
         triangles: triangles.into_iter().collect(),
         positions,
-        rim: Rim {
-            start: 0,
-            s,
-            pinned,
-        },
+        rim: Rim { start: 0, s, pinned },
         corner,
     }
 }
@@ -428,10 +374,7 @@ fn pool(s: &mut [f64], gap: f64, length: f64) {
     let excess = high - low - (length - gap);
     if excess > 0.0 {
         for (i, x) in s.iter_mut().enumerate() {
-            let room = (
-                low + 0.5 * excess + gap * i as f64,
-                high - 0.5 * excess - gap * (n - 1 - i) as f64,
-            );
+            let room = (low + 0.5 * excess + gap * i as f64, high - 0.5 * excess - gap * (n - 1 - i) as f64);
             *x = x.max(room.0).min(room.1);
         }
     }
