@@ -7,8 +7,8 @@
 //!
 //! Stages: even spacing along the curve; harmonic extension of the boundary's displacement;
 //! a regularised energy around inverted triangles until there is none; the barrier energy; its
-//! fourth power, in which the worst triangle counts; corners that starve a triangle let go; exact
-//! check. Where triangles stay inverted, boundary vertices are spaced evenly around them, more
+//! fourth power, in which the worse triangles count; its sixteenth power around the worst; corners
+//! that starve a triangle let go; exact check. Where triangles stay inverted, boundary vertices are spaced evenly around them, more
 //! rings may move, and corners next to them are released. Everything is in lattice units and
 //! visits vertices in the order of their numbers: the same input gives the same bits.
 //!
@@ -111,7 +111,8 @@ pub fn relax(
     let mut report = RelaxReport { rings: options.rings, ..RelaxReport::default() };
     let valid = ladder(triangles, positions, &mut motion, &mut report, progress.part(0.0, 0.4))?;
     if valid {
-        report.sweeps += motion.improve(options.tolerance, progress.part(0.4, 0.9))?;
+        report.sweeps += motion.improve(options.tolerance, progress.part(0.4, 0.8))?;
+        report.sweeps += motion.sharpen(options.tolerance, progress.part(0.8, 0.9))?;
         report.released.extend(motion.release_starved(options.tolerance, progress.part(0.9, 1.0))?);
         report.released.sort_unstable();
     }
