@@ -93,18 +93,14 @@ impl Band {
                 .collect();
             ByPoint { latest, earlier }
         });
-        iter::successors(index.latest.get(&point).map(|&i| i as usize), move |&i| {
-            some(index.earlier[i])
-        })
+        iter::successors(index.latest.get(&point).map(|&i| i as usize), move |&i| some(index.earlier[i]))
     }
 
     /// The node of a lattice point that is nearest to the curve.
     pub fn nearest(&self, point: Axial) -> Option<&Node> {
-        self.nodes_at(point).map(|i| &self.nodes[i]).min_by(|a, b| {
-            a.distance
-                .total_cmp(&b.distance)
-                .then(a.first.cmp(&b.first))
-        })
+        self.nodes_at(point)
+            .map(|i| &self.nodes[i])
+            .min_by(|a, b| a.distance.total_cmp(&b.distance).then(a.first.cmp(&b.first)))
     }
 }
 
@@ -136,10 +132,7 @@ impl Window {
             .sqrt();
         let width = (2.0 * reach + longest) / ROW_HEIGHT + 2.0;
         let shift = (width.ceil() as u32).next_power_of_two().trailing_zeros();
-        Self {
-            slots: vec![NONE; 1 << (2 * shift)],
-            shift,
-        }
+        Self { slots: vec![NONE; 1 << (2 * shift)], shift }
     }
 
     fn slot(&self, point: Axial) -> usize {
@@ -179,21 +172,14 @@ impl Scan {
                     continue;
                 }
                 window.slots[slot] = nodes.len() as u32;
-                nodes.push(Node {
-                    point,
-                    first: at,
-                    last: at,
-                    parameter,
-                    distance: squared,
-                });
+                nodes.push(Node { point, first: at, last: at, parameter, distance: squared });
             }
             for i in fresh..nodes.len() {
                 for dir in Dir::ALL {
                     let beside = nodes[i].point + dir;
                     let j = window.slots[window.slot(beside)];
-                    let active = nodes
-                        .get(j as usize)
-                        .is_some_and(|node| node.point == beside && node.last == at);
+                    let active =
+                        nodes.get(j as usize).is_some_and(|node| node.point == beside && node.last == at);
                     // Of two that open together the later one links them.
                     if active && (j as usize) < i {
                         pairs.push((i as u32, j, dir.index() as u8));
@@ -204,12 +190,7 @@ impl Scan {
                 heads = nodes.len();
             }
         }
-        Self {
-            nodes,
-            pairs,
-            heads,
-            n_samples: n,
-        }
+        Self { nodes, pairs, heads, n_samples: n }
     }
 
     /// Joins the runs across the end, drops the nodes that are too far, numbers and links the rest.
@@ -223,10 +204,7 @@ impl Scan {
         for (i, node) in self.nodes.iter().enumerate() {
             if rep[i].0 == i as u32 && node.distance <= near {
                 number[i] = nodes.len() as u32;
-                nodes.push(Node {
-                    distance: node.distance.sqrt(),
-                    ..*node
-                });
+                nodes.push(Node { distance: node.distance.sqrt(), ..*node });
             }
         }
         let mut entries: Vec<(u32, Link)> = Vec::with_capacity(2 * self.pairs.len());
@@ -239,22 +217,10 @@ impl Scan {
             let wrap = turn_a - turn_b;
             let back = (u32::from(dir) + 3) % 6;
             entries.push((6 * na + u32::from(dir), Link { node: nb, wrap }));
-            entries.push((
-                6 * nb + back,
-                Link {
-                    node: na,
-                    wrap: -wrap,
-                },
-            ));
+            entries.push((6 * nb + back, Link { node: na, wrap: -wrap }));
         }
         let (starts, links) = sorted_rows(6 * nodes.len(), &entries);
-        Band {
-            nodes,
-            starts,
-            links,
-            by_point: OnceLock::new(),
-            n_samples: self.n_samples,
-        }
+        Band { nodes, starts, links, by_point: OnceLock::new(), n_samples: self.n_samples }
     }
 
     /// Joins a run that ends with the last segment to one of the same point that starts with the
@@ -374,11 +340,7 @@ mod tests {
             let target = flower(shift);
             for max_distance in [0.7, 1.5] {
                 let band = Band::new(&target, max_distance);
-                let mut found: Vec<_> = band
-                    .nodes
-                    .iter()
-                    .map(|n| (n.point, n.first, n.last))
-                    .collect();
+                let mut found: Vec<_> = band.nodes.iter().map(|n| (n.point, n.first, n.last)).collect();
                 found.sort_unstable();
                 assert_eq!(found, brute_force(&target, max_distance));
                 let mut listed: Vec<usize> = band
@@ -413,11 +375,8 @@ mod tests {
                                 }
                             }
                         }
-                        let mut found: Vec<_> = band
-                            .links(i, dir)
-                            .iter()
-                            .map(|link| (link.node, link.wrap))
-                            .collect();
+                        let mut found: Vec<_> =
+                            band.links(i, dir).iter().map(|link| (link.node, link.wrap)).collect();
                         expected.sort_unstable();
                         found.sort_unstable();
                         assert_eq!(found, expected, "node {i} {a:?} {dir:?}");

@@ -8,6 +8,7 @@ pub mod boundary;
 pub mod cells;
 pub mod contours;
 pub mod curve;
+mod deviation;
 pub mod dir;
 pub mod error;
 pub mod growth;

@@ -140,9 +140,8 @@ pub(crate) fn traced(
         closeness: options.closeness,
         proof_nodes: options.proof_nodes,
     };
-    let obstacle = |reason, at: Axial| {
-        Ok(Err(Obstacle { reason, at: lattice.from_units(Lattice::units(at)) }))
-    };
+    let obstacle =
+        |reason, at: Axial| Ok(Err(Obstacle { reason, at: lattice.from_units(Lattice::units(at)) }));
     let traced = match trace(&targets, &wanted, progress) {
         Ok(traced) => traced,
         Err(TraceFailure::Cancelled) => return Err(Error::Cancelled),
@@ -156,9 +155,11 @@ pub(crate) fn traced(
             return obstacle("the lattice path does not go round once", at);
         }
     };
-    let arcs = traced.paths.iter().zip(&targets).map(|(path, target)| {
-        path.parameters.iter().map(|parameter| parameter * target.step).collect()
-    });
+    let arcs = traced
+        .paths
+        .iter()
+        .zip(&targets)
+        .map(|(path, target)| path.parameters.iter().map(|parameter| parameter * target.step).collect());
     Ok(Ok(Outline {
         arcs: arcs.collect(),
         turns_bound: Some(traced.turns_bound),

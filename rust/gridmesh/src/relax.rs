@@ -186,7 +186,7 @@ fn check_rims(n_vertices: usize, contours: &[Contour<'_>], rims: &[Rim]) -> Resu
     let mut fit = contours.len() == rims.len();
     for (rim, contour) in rims.iter().zip(contours) {
         let n = rim.s.len();
-        fit &= rim.start == start && rim.pinned.len() == n && n >= 3;
+        fit &= rim.start == start && rim.pinned.len() == n && rim.held.len() == n && n >= 3;
         fit &= contour.points.len() >= 3 && contour.arc.len() == contour.points.len() + 1;
         fit &= rim.s.windows(2).all(|s| s[0] < s[1]);
         fit &= n > 0 && rim.s[n - 1] < rim.s[0] + contour.length();

@@ -11,11 +11,8 @@ use crate::lattice::Lattice;
 use crate::options::{BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SketchOptions, SketchReport};
 use crate::outline::{Obstacle, Outline, grown, traced};
 use crate::patch::Patch;
-use crate::place::{Placed, deviation, min_angle, place};
+use crate::place::{Placed, min_angle, place};
 use crate::progress::Progress;
-
-/// A drawing strays from the mesh where it lies farther outside than this, in edges.
-const STRAY: f64 = 2.0;
 
 /// Lattice placements tried before the drawing is called too coarse for its edge length: shifts of
 /// the origin in edges.
@@ -114,22 +111,11 @@ impl Job<'_> {
                 }
             };
             let started = Instant::now();
-            let placed = place(
-                &self.contours,
-                &lattice,
-                outline.clone(),
-                self.options,
-                progress.part(part(1), part(2)),
-            )?;
+            let placed =
+                place(&self.contours, &lattice, &outline, self.options, progress.part(part(1), part(2)))?;
             self.lap("placement", started);
             match placed {
-                Ok(placed) => {
-                    let (sketch, lost) = self.report(&outline, placed);
-                    match lost {
-                        None => return Ok(Ok(sketch)),
-                        Some(at) => obstacle = Some(Obstacle { reason: "a part of the drawing is lost", at }),
-                    }
-                }
+                Ok(placed) => return Ok(Ok(self.report(&outline, placed))),
                 Err(found) => obstacle = Some(found),
             }
         }
@@ -241,12 +227,10 @@ impl Job<'_> {
         Ok(Error::TooCoarse { triangles: asked.round() as usize, least: at(works) })
     }
 
-    /// The patch with its numbers, and a place of the drawing that it loses, if it loses any.
-    fn report(&mut self, outline: &Outline, placed: Placed) -> (Sketch, Option<DVec2>) {
+    /// The patch with its numbers.
+    fn report(&mut self, outline: &Outline, placed: Placed) -> Sketch {
         let started = Instant::now();
         let patch = placed.patch;
-        let h = patch.lattice.edge_length;
-        let (max_deviation, at) = deviation(&self.contours, &patch, STRAY * h);
         let mut report = SketchReport {
             triangles: patch.triangles.len(),
             irregular: outline.irregular(),
@@ -257,7 +241,7 @@ impl Job<'_> {
             cost_bound: outline.cost_bound,
             optimal: outline.optimal,
             max_distance_used: outline.max_distance_used,
-            max_deviation: max_deviation / h,
+            max_deviation: placed.max_deviation,
             min_angle: min_angle(&patch),
             corners: placed.corners,
             released_corners: placed.released_corners,
@@ -267,8 +251,7 @@ impl Job<'_> {
         };
         self.lap("report", started);
         report.seconds = self.seconds.clone();
-        let lost = (max_deviation > STRAY * h).then_some(at);
-        (Sketch { patch, report }, lost)
+        Sketch { patch, report }
     }
 }
 

@@ -138,7 +138,7 @@ impl Motion<'_> {
         let mut released = Vec::new();
         for _ in 0..4 {
             let starved: Vec<u32> = (0..self.band.n_rim)
-                .filter(|&v| self.slide.pinned[v] && self.starves(v))
+                .filter(|&v| self.slide.pinned[v] && !self.slide.held[v] && self.starves(v))
                 .map(|v| v as u32)
                 .collect();
             if starved.is_empty() || !self.sliding {

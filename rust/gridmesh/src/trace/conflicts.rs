@@ -36,27 +36,17 @@ impl Finder {
         self.at.clear();
         for (contour, (Contour { graph, .. }, walk)) in (0..).zip(contours.iter().zip(walks)) {
             for i in 0..walk.len() {
-                let a = Vertex {
-                    contour,
-                    index: i as u32,
-                };
+                let a = Vertex { contour, index: i as u32 };
                 let point = graph.points[walk.node(i) as usize];
                 let first = *self.at.entry(point).or_insert(a);
                 if first != a {
-                    found.push(Conflict {
-                        a: first,
-                        b: a,
-                        chord: None,
-                    });
+                    found.push(Conflict { a: first, b: a, chord: None });
                 }
             }
         }
         for (contour, (Contour { graph, .. }, walk)) in (0..).zip(contours.iter().zip(walks)) {
             for i in 0..walk.len() {
-                let a = Vertex {
-                    contour,
-                    index: i as u32,
-                };
+                let a = Vertex { contour, index: i as u32 };
                 let point = graph.points[walk.node(i) as usize];
                 let count = (2 - walk.turn(i)).max(0) as u32;
                 for k in 1..=count {
@@ -66,11 +56,7 @@ impl Finder {
                     };
                     // Seen from both ends, unless a repeated point hides one of them.
                     if a < b || !sees(walks, b, (dir + 3) % 6) {
-                        found.push(Conflict {
-                            a,
-                            b,
-                            chord: Some(dir),
-                        });
+                        found.push(Conflict { a, b, chord: Some(dir) });
                     }
                 }
             }

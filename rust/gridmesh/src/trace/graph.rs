@@ -66,15 +66,9 @@ impl Graph {
             let squared = node.distance * node.distance;
             let turns = closeness.max(LEAST) * squared;
             graph.points.push(node.point);
-            graph.cost.push(
-                (turns * f64::from(TURN))
-                    .round()
-                    .min(f64::from(BLOCKED / 64)) as u32,
-            );
+            graph.cost.push((turns * f64::from(TURN)).round().min(f64::from(BLOCKED / 64)) as u32);
             graph.squared.push(squared);
-            graph
-                .parameter
-                .push(node.parameter + f64::from(turned(o)) * f64::from(n_samples));
+            graph.parameter.push(node.parameter + f64::from(turned(o)) * f64::from(n_samples));
             if (node.first + n_samples - cut) % n_samples < OVERHANG {
                 graph.n_second = i + 1;
             }

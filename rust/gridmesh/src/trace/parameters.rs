@@ -33,22 +33,13 @@ pub(super) fn parameters(graph: &Graph, walk: &Walk) -> Vec<f64> {
             blocks.pop();
             let count_both = count_before + count;
             if let Some(block) = blocks.last_mut() {
-                *block = (
-                    (before * count_before + last * count) / count_both,
-                    count_both,
-                );
+                *block = ((before * count_before + last * count) / count_both, count_both);
             }
         }
     }
-    let fitted = blocks
-        .iter()
-        .flat_map(|&(value, count)| std::iter::repeat_n(value, count as usize));
-    let mut found: Vec<f64> = (0..)
-        .zip(fitted)
-        .skip(n)
-        .take(n)
-        .map(|(i, value)| value + gap * f64::from(i))
-        .collect();
+    let fitted = blocks.iter().flat_map(|&(value, count)| std::iter::repeat_n(value, count as usize));
+    let mut found: Vec<f64> =
+        (0..).zip(fitted).skip(n).take(n).map(|(i, value)| value + gap * f64::from(i)).collect();
     let turns = found.first().map_or(0.0, |s| (s / length).floor());
     for s in &mut found {
         *s -= turns * length;

@@ -33,11 +33,7 @@ pub(super) struct Prices {
 
 impl Prices {
     pub fn none(n_nodes: usize) -> Self {
-        Self {
-            index: vec![0; n_nodes],
-            extras: Vec::new(),
-            priced: Vec::new(),
-        }
+        Self { index: vec![0; n_nodes], extras: Vec::new(), priced: Vec::new() }
     }
 
     #[inline]

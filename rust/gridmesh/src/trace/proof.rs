@@ -73,15 +73,8 @@ fn uses(walks: &[Walk], conflict: &Conflict) -> [Use; 2] {
         None if same => How::Arrive(enter),
         None => How::Visit,
     };
-    let make = |(contour, node, enter): (u32, u32, u32), chord| Use {
-        contour,
-        node,
-        how: how(enter, chord),
-    };
-    [
-        make(a, conflict.chord),
-        make(b, conflict.chord.map(|dir| (dir + 3) % 6)),
-    ]
+    let make = |(contour, node, enter): (u32, u32, u32), chord| Use { contour, node, how: how(enter, chord) };
+    [make(a, conflict.chord), make(b, conflict.chord.map(|dir| (dir + 3) % 6))]
 }
 
 /// A part of the search space: the uses it forbids, and the best prices known for it.
@@ -117,14 +110,8 @@ pub(super) fn prove(
         roots,
         search,
         finder: Finder::default(),
-        prices: contours
-            .iter()
-            .map(|contour| Prices::none(contour.graph.n_nodes()))
-            .collect(),
-        used: contours
-            .iter()
-            .map(|contour| vec![0; contour.graph.n_nodes()])
-            .collect(),
+        prices: contours.iter().map(|contour| Prices::none(contour.graph.n_nodes())).collect(),
+        used: contours.iter().map(|contour| vec![0; contour.graph.n_nodes()]).collect(),
         pairs: Vec::new(),
         known: FxHashMap::default(),
         best,
@@ -141,29 +128,18 @@ pub(super) fn prove(
             break;
         }
         tree.open.pop();
-        let Part {
-            bans,
-            multipliers,
-            branch,
-        } = &tree.parts[at];
+        let Part { bans, multipliers, branch } = &tree.parts[at];
         let (bans, multipliers) = (bans.clone(), multipliers.clone());
         for what in *branch {
             progress.report(looked_at as f64 / nodes as f64)?;
             looked_at += 1;
-            let ban = Rc::new(Ban {
-                what,
-                earlier: bans.clone(),
-            });
+            let ban = Rc::new(Ban { what, earlier: bans.clone() });
             tree.look(Some(ban), multipliers.clone(), STEPS, progress)?;
         }
     }
     let open = tree.open.peek().map_or(u32::MAX, |Reverse((bound, _))| *bound);
     let bound = open.min(tree.stuck).min(tree.best);
-    Ok(Proof {
-        bound,
-        optimal: bound == tree.best,
-        walks: tree.found,
-    })
+    Ok(Proof { bound, optimal: bound == tree.best, walks: tree.found })
 }
 
 struct Tree<'a> {
@@ -244,11 +220,7 @@ impl Tree<'_> {
         match branch {
             Some(branch) => {
                 self.open.push(Reverse((best_bound, self.parts.len())));
-                self.parts.push(Part {
-                    bans,
-                    multipliers,
-                    branch,
-                });
+                self.parts.push(Part { bans, multipliers, branch });
             }
             None => self.stuck = self.stuck.min(best_bound),
         }
@@ -359,10 +331,7 @@ impl Tree<'_> {
     /// Takes walks without conflicts if they are the best known.
     fn offer(&mut self, walks: &[Walk]) {
         let cost: u32 = walks.iter().map(|walk| walk.cost).sum();
-        if cost < self.best
-            && turned_once(walks)
-            && wrong_sides(self.contours, walks).is_empty()
-        {
+        if cost < self.best && turned_once(walks) && wrong_sides(self.contours, walks).is_empty() {
             self.best = cost;
             self.found = Some(walks.to_vec());
         }

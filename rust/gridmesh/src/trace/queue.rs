@@ -141,9 +141,7 @@ mod tests {
             queue.clear(100 * round);
             let (mut pushed, mut popped, mut last) = (0, 0, 100 * round);
             for step in 0..20_000 {
-                state = state
-                    .wrapping_mul(6_364_136_223_846_793_005)
-                    .wrapping_add(1);
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
                 let random = (state >> 33) as u32;
                 if step < 15_000 && random % 5 < 3 {
                     let far = if random % 31 == 0 { 40_000 } else { 3_000 };

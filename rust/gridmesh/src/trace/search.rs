@@ -77,13 +77,7 @@ fn turned(dir: u32, turn: i32) -> u32 {
 
 impl Search {
     pub fn new() -> Self {
-        Self {
-            queue: Queue::new(),
-            reached: Vec::new(),
-            parent: Vec::new(),
-            touched: Vec::new(),
-            taken: 0,
-        }
+        Self { queue: Queue::new(), reached: Vec::new(), parent: Vec::new(), touched: Vec::new(), taken: 0 }
     }
 
     fn make_room(&mut self, states: usize) {
@@ -130,11 +124,7 @@ impl Search {
                 }
             }
             let (place, dir) = (state / 6, state % 6);
-            let (node, sheet) = if place < n {
-                (place, 0)
-            } else {
-                (place - n, 1)
-            };
+            let (node, sheet) = if place < n { (place, 0) } else { (place - n, 1) };
             let here = key + graph.cost[node as usize];
             for &link in graph.links(node, turned(dir, 3)) {
                 let Some(before) = graph.follow_back(link, sheet) else {
@@ -158,10 +148,8 @@ impl Search {
             }
         }
         starts.retain(|&start| bound[start as usize] != NONE);
-        let mut starts: Vec<(u32, State)> = starts
-            .into_iter()
-            .map(|start| (bound[start as usize], start))
-            .collect();
+        let mut starts: Vec<(u32, State)> =
+            starts.into_iter().map(|start| (bound[start as usize], start)).collect();
         starts.sort_unstable();
         Potential { bound, starts }
     }
@@ -210,10 +198,7 @@ impl Search {
             limit,
         );
         let walk = found.map(|cost| {
-            let mut walk = Walk {
-                steps: self.steps(graph, start, goal),
-                cost: 0,
-            };
+            let mut walk = Walk { steps: self.steps(graph, start, goal), cost: 0 };
             walk.cost = walk.base_cost(graph);
             (walk, cost)
         });
@@ -360,11 +345,7 @@ impl Search {
         let mut at = goal;
         while at != start {
             let place = at / 6;
-            steps.push(Step {
-                node: place % n,
-                enter: (at % 6) as u8,
-                sheet: (place / n) as i8,
-            });
+            steps.push(Step { node: place % n, enter: (at % 6) as u8, sheet: (place / n) as i8 });
             at = self.parent[at as usize];
         }
         steps.reverse();
@@ -402,9 +383,7 @@ impl Walk {
 
     /// Search cost without prices.
     pub fn base_cost(&self, graph: &Graph) -> u32 {
-        (0..self.len())
-            .map(|i| graph.cost[self.node(i) as usize] + self.turn(i).unsigned_abs() * TURN)
-            .sum()
+        (0..self.len()).map(|i| graph.cost[self.node(i) as usize] + self.turn(i).unsigned_abs() * TURN).sum()
     }
 
     /// Replaces the vertices after `from` up to `to` (below one turn later) by others.

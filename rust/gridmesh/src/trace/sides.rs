@@ -19,18 +19,11 @@ pub(super) fn wrong_sides(contours: &[Contour], walks: &[Walk]) -> Vec<Vertex> {
         let mut walls: Vec<Wall> = Vec::new();
         for (contour, (Contour { graph, .. }, walk)) in (0..).zip(contours.iter().zip(walks)) {
             for i in 0..walk.len() {
-                let vertex = Vertex {
-                    contour,
-                    index: i as u32,
-                };
+                let vertex = Vertex { contour, index: i as u32 };
                 let from = graph.points[walk.node(i) as usize];
                 let dir = Dir::ALL[walk.leave(i) as usize];
                 let (from, dir, seen) = if turned {
-                    (
-                        Axial::new(-from.r, from.q + from.r),
-                        dir.rotate(1),
-                        dir.index() % 3 == 0,
-                    )
+                    (Axial::new(-from.r, from.q + from.r), dir.rotate(1), dir.index() % 3 == 0)
                 } else {
                     (from, dir, true)
                 };

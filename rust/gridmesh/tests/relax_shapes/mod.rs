@@ -345,7 +345,7 @@ fn assemble(curve: Vec<DVec2>, arc: Vec<f64>, path: &[Axial], target: &[f64], co
         arc,
         triangles: triangles.into_iter().collect(),
         positions,
-        rim: Rim { start: 0, s, pinned },
+        rim: Rim { start: 0, held: vec![false; pinned.len()], s, pinned },
         corner,
     }
 }
