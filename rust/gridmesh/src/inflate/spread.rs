@@ -1,0 +1,220 @@
+//! Slides vertices along the lifted surface until its triangles are even.
+
+use glam::{DVec2, DVec3};
+
+use super::field::{Field, Place};
+
+/// The front of a body: a graph over the flat patch.
+pub(crate) struct Front {
+    /// Positions in the plane; the boundary's are the patch's.
+    pub flat: Vec<DVec2>,
+    /// Heights, zero on the boundary, positive inside.
+    pub height: Vec<f64>,
+    /// Where each interior vertex lies in the flat patch, from `first` on.
+    pub place: Vec<Place>,
+    /// First interior vertex.
+    pub first: usize,
+    /// Moves that were shortened so that no triangle of the projection turned over.
+    pub shortened: usize,
+}
+
+impl Front {
+    /// The lifted patch, no vertex moved sideways.
+    pub fn new(field: &Field<'_>, first: usize) -> Self {
+        let mut place = vec![Place { triangle: 0, weights: [0.0; 3] }; field.vertices.len() - first];
+        for (t, corners) in field.triangles.iter().enumerate() {
+            for k in 0..3 {
+                if let Some(slot) = (corners[k] as usize).checked_sub(first) {
+                    place[slot].triangle = t as u32;
+                    place[slot].weights = [0.0; 3];
+                    place[slot].weights[k] = 1.0;
+                }
+            }
+        }
+        let height = field.value.iter().map(|f| f.sqrt()).collect();
+        Front { flat: field.vertices.to_vec(), height, place, first, shortened: 0 }
+    }
+
+    fn position(&self, v: usize) -> DVec3 {
+        self.flat[v].extend(self.height[v])
+    }
+}
+
+/// Slides every vertex down the slope of the field to where the lifted surface nearly keeps the
+/// angles of the flat patch.
+///
+/// Stereographic projection sends the squared height `f` of a sphere of radius `R` to
+/// `f (1 - t) / (1 + t)^2`, where `t = 1 - f / R^2` is also `s^2 / (f + s^2)` with `s` half the slope
+/// of `f`: so read it needs no circle, and at the silhouette of any drawing the height becomes the
+/// distance from it. In a limb, which is stretched across only, vertices move less: `limb` is 0
+/// where the surface is round and 1 in a limb.
+pub(crate) fn unroll(front: &mut Front, field: &Field<'_>, limb: &[f64], depth: f64, least_area: f64) {
+    const LEGS: usize = 3;
+    let first = front.first;
+    let target = (first..front.flat.len())
+        .map(|v| {
+            let half = 0.25 * field.gradient[v].length_squared();
+            let t = half / (field.value[v] + half);
+            let top = front.height[v];
+            let k = 3.0 - 1.7 * limb[v];
+            let goal = top * ((1.0 - t) / (1.0 + (k - 1.0) * t + (4.0 - k) * t * t)).sqrt();
+            let mut point = front.flat[v];
+            let mut place = front.place[v - first];
+            for leg in 1..=LEGS {
+                let height = top + (goal - top) * leg as f64 / LEGS as f64;
+                let wanted = height * height;
+                for _ in 0..2 {
+                    let (value, gradient) = field.at(point, place);
+                    let slope = gradient.length();
+                    if slope == 0.0 {
+                        break;
+                    }
+                    let fall = value - wanted;
+                    let bend = depth * depth;
+                    // The root of fall = slope s + bend s^2, the one near zero.
+                    let s = 2.0 * fall / (slope + (slope * slope + 4.0 * bend * fall).max(0.0).sqrt());
+                    let next = point - gradient * (s / slope);
+                    let Some(found) = field.locate(next, place.triangle) else { break };
+                    (point, place) = (next, found);
+                }
+            }
+            point
+        })
+        .collect::<Vec<_>>();
+    settle(front, field, &target, least_area);
+}
+
+/// The point of the plane below the foot of `point` on the surface `z^2 = field`.
+fn project(field: &Field<'_>, point: DVec3, triangle: u32) -> Option<DVec2> {
+    let mut point = point;
+    let mut triangle = triangle;
+    for _ in 0..2 {
+        let place = field.locate(point.truncate(), triangle)?;
+        triangle = place.triangle;
+        let (value, gradient) = field.at(point.truncate(), place);
+        let slope = (-gradient).extend(2.0 * point.z);
+        point -= (point.z * point.z - value) / slope.length_squared().max(f64::MIN_POSITIVE) * slope;
+    }
+    field.locate(point.truncate(), triangle).map(|_| point.truncate())
+}
+
+/// Moves the vertices in the plane as far towards `target` as the triangles allow.
+fn settle(front: &mut Front, field: &Field<'_>, target: &[DVec2], least_area: f64) {
+    const HALVINGS: u32 = 6;
+    let first = front.first;
+    let n = target.len();
+    let mut share = vec![1.0; n];
+    let mut flat = front.flat.clone();
+    let mut place = front.place.clone();
+    let mut moved: Vec<u32> = (0..n as u32).collect();
+    for round in 0.. {
+        for &slot in &moved {
+            let slot = slot as usize;
+            let v = first + slot;
+            (flat[v], place[slot]) = (front.flat[v], front.place[slot]);
+            if share[slot] > 0.0 {
+                let wanted = front.flat[v].lerp(target[slot], share[slot]);
+                if let Some(found) = field.locate(wanted, front.place[slot].triangle) {
+                    (flat[v], place[slot]) = (wanted, found);
+                }
+            }
+        }
+        let mut bad = vec![];
+        for corners in field.triangles {
+            let [a, b, c] = corners.map(|v| flat[v as usize]);
+            if (b - a).perp_dot(c - a) >= least_area {
+                continue;
+            }
+            bad.extend(corners.iter().filter_map(|&v| (v as usize).checked_sub(first)).map(|slot| slot as u32));
+        }
+        bad.sort_unstable();
+        bad.dedup();
+        bad.retain(|&slot| share[slot as usize] > 0.0);
+        if bad.is_empty() {
+            break;
+        }
+        for &slot in &bad {
+            let share = &mut share[slot as usize];
+            *share = if round < HALVINGS { 0.5 * *share } else { 0.0 };
+        }
+        front.shortened += bad.len();
+        moved = bad;
+    }
+    for slot in 0..n {
+        front.height[first + slot] = field.at(flat[first + slot], place[slot]).0.sqrt();
+    }
+    front.flat = flat;
+    front.place = place;
+}
+
+/// One sweep over the vertices, each moved along the surface to where its triangles are best.
+///
+/// A triangle's badness is the sum of its squared sides over its area, both seen in the tangent
+/// plane of the vertex: convex in the vertex's position there. One Newton step, weighted by the
+/// badness itself so that the worst triangles count most, is taken and shortened until no triangle
+/// falls below `least_area` in projection.
+pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, least_area: f64) {
+    #[allow(non_snake_case)] let FLATTER: f64 = std::env::var("FLATTER").map_or(1.0, |s| s.parse().unwrap()); let rim = true;
+    for v in front.first..front.flat.len() {
+        let slot = v - front.first;
+        let (_, gradient) = field.at(front.flat[v], front.place[slot]);
+        let normal = (-gradient).extend(2.0 * front.height[v]).normalize_or(DVec3::Z);
+        let (e, f) = normal.any_orthonormal_pair();
+        let here = front.position(v);
+        let fan = field.topology.fan(v);
+        let mut slope = DVec2::ZERO;
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        let mut reach = 0.0;
+        for &[i, j] in fan {
+            let (a, b) = (front.position(i as usize) - here, front.position(j as usize) - here);
+            reach += a.length();
+            let (a, b) = (DVec2::new(a.dot(e), a.dot(f)), DVec2::new(b.dot(e), b.dot(f)));
+            let mut sides = a.length_squared() + b.length_squared() + (b - a).length_squared();
+            let mut ds = -2.0 * (a + b);
+            let mut extra = DVec2::ZERO;
+            if rim && (i as usize) < front.first && (j as usize) < front.first {
+                // Triangles on the silhouette are to be flatter, see above.
+                let m = (b - a).perp().normalize_or_zero();
+                let height = a.dot(m);
+                sides += FLATTER * height * height;
+                ds -= 2.0 * FLATTER * height * m;
+                extra = (2.0 * FLATTER).sqrt() * m;
+            }
+            let floor = 0.02 * sides;
+            let area = a.perp_dot(b);
+            let area = if area > floor { area } else { floor };
+            let weight = sides / area;
+            let da = (b - a).perp();
+            slope += weight * (ds - da * (sides / area)) / area;
+            let k = weight / area;
+            let (m, n) = (1.0 / area, 2.0 * sides / (area * area));
+            xx += k * (4.0 + extra.x * extra.x - 2.0 * m * ds.x * da.x + n * da.x * da.x);
+            yy += k * (4.0 + extra.y * extra.y - 2.0 * m * ds.y * da.y + n * da.y * da.y);
+            xy += k * (extra.x * extra.y - m * (ds.x * da.y + ds.y * da.x) + n * da.x * da.y);
+        }
+        let determinant = xx * yy - xy * xy;
+        if !(determinant > 0.0) {
+            continue;
+        }
+        let u = -DVec2::new(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
+        let u = u.clamp_length_max(0.5 * reach / fan.len() as f64);
+        let Some(target) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else { continue };
+        let mut share = 1.0;
+        for _ in 0..4 {
+            let point = front.flat[v].lerp(target, share);
+            let fits = fan.iter().all(|&[a, b]| {
+                (front.flat[a as usize] - point).perp_dot(front.flat[b as usize] - point) >= least_area
+            });
+            if fits {
+                if let Some(place) = field.locate(point, front.place[slot].triangle) {
+                    front.flat[v] = point;
+                    front.place[slot] = place;
+                    front.height[v] = field.at(point, place).0.sqrt();
+                }
+                break;
+            }
+            front.shortened += 1;
+            share *= 0.5;
+        }
+    }
+}
