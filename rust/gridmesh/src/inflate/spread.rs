@@ -48,35 +48,37 @@ impl Front {
 /// of `f`: so read it needs no circle, and at the silhouette of any drawing the height becomes the
 /// distance from it. In a limb, which is stretched across only, vertices move less: `limb` is 0
 /// where the surface is round and 1 in a limb.
-pub(crate) fn unroll(front: &mut Front, field: &Field<'_>, limb: &[f64], depth: f64, least_area: f64) {
-    const LEGS: usize = 3;
+pub(crate) fn unrolled_heights(field: &Field<'_>, limb: &[f64]) -> Vec<f64> {
+    let height = |v: usize| {
+        let half = 0.25 * field.gradient[v].length_squared();
+        let t = half / (field.value[v] + half);
+        let k = 3.0 - 1.7 * limb[v];
+        (field.value[v] * (1.0 - t) / (1.0 + (k - 1.0) * t + (4.0 - k) * t * t)).sqrt()
+    };
+    (0..field.value.len()).map(|v| if field.value[v] > 0.0 { height(v) } else { 0.0 }).collect()
+}
+
+/// Slides every vertex down the slope by `share` of the way from its height to `goal`.
+pub(crate) fn slide(front: &mut Front, field: &Field<'_>, goal: &[f64], share: f64, depth: f64, least_area: f64) {
     let first = front.first;
     let target = (first..front.flat.len())
         .map(|v| {
-            let half = 0.25 * field.gradient[v].length_squared();
-            let t = half / (field.value[v] + half);
-            let top = front.height[v];
-            let k = 3.0 - 1.7 * limb[v];
-            let goal = top * ((1.0 - t) / (1.0 + (k - 1.0) * t + (4.0 - k) * t * t)).sqrt();
-            let mut point = front.flat[v];
-            let mut place = front.place[v - first];
-            for leg in 1..=LEGS {
-                let height = top + (goal - top) * leg as f64 / LEGS as f64;
-                let wanted = height * height;
-                for _ in 0..2 {
-                    let (value, gradient) = field.at(point, place);
-                    let slope = gradient.length();
-                    if slope == 0.0 {
-                        break;
-                    }
-                    let fall = value - wanted;
-                    let bend = depth * depth;
-                    // The root of fall = slope s + bend s^2, the one near zero.
-                    let s = 2.0 * fall / (slope + (slope * slope + 4.0 * bend * fall).max(0.0).sqrt());
-                    let next = point - gradient * (s / slope);
-                    let Some(found) = field.locate(next, place.triangle) else { break };
-                    (point, place) = (next, found);
+            let height = front.height[v] + share * (goal[v] - front.height[v]);
+            let (point, mut place) = (front.flat[v], front.place[v - first]);
+            let mut point = point;
+            let wanted = height * height;
+            for _ in 0..2 {
+                let (value, gradient) = field.at(point, place);
+                let slope = gradient.length();
+                let fall = value - wanted;
+                // The root near zero of fall = slope s + bend s^2; a sphere's field bends so.
+                let root = slope * slope + 4.0 * depth * depth * fall;
+                if !(slope > 0.0 && root > 0.0) {
+                    break;
                 }
+                let next = point - gradient * (2.0 * fall / (slope * (slope + root.sqrt())));
+                let Some(found) = field.locate(next, place.triangle) else { break };
+                (point, place) = (next, found);
             }
             point
         })
@@ -154,7 +156,7 @@ fn settle(front: &mut Front, field: &Field<'_>, target: &[DVec2], least_area: f6
 /// badness itself so that the worst triangles count most, is taken and shortened until no triangle
 /// falls below `least_area` in projection.
 pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, least_area: f64) {
-    #[allow(non_snake_case)] let FLATTER: f64 = std::env::var("FLATTER").map_or(1.0, |s| s.parse().unwrap()); let rim = true;
+    #[allow(non_snake_case)] let FLATTER: f64 = std::env::var("FLATTER").map_or(1.25, |s| s.parse().unwrap()); let rim = true;
     for v in front.first..front.flat.len() {
         let slot = v - front.first;
         let (_, gradient) = field.at(front.flat[v], front.place[slot]);
@@ -180,7 +182,7 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, least_area: f64) {
                 ds -= 2.0 * FLATTER * height * m;
                 extra = (2.0 * FLATTER).sqrt() * m;
             }
-            let floor = 0.02 * sides;
+            let floor = std::env::var("FLOOR").map_or(0.1, |s| s.parse::<f64>().unwrap()) * sides;
             let area = a.perp_dot(b);
             let area = if area > floor { area } else { floor };
             let weight = sides / area;
