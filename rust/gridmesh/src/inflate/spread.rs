@@ -182,7 +182,7 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, least_area: f64) {
                 ds -= 2.0 * FLATTER * height * m;
                 extra = (2.0 * FLATTER).sqrt() * m;
             }
-            let floor = std::env::var("FLOOR").map_or(0.1, |s| s.parse::<f64>().unwrap()) * sides;
+            let floor = std::env::var("FLOOR").map_or(0.02, |s| s.parse::<f64>().unwrap()) * sides;
             let area = a.perp_dot(b);
             let area = if area > floor { area } else { floor };
             let weight = sides / area;
@@ -201,6 +201,7 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, least_area: f64) {
         let u = -DVec2::new(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
         let u = u.clamp_length_max(0.5 * reach / fan.len() as f64);
         let Some(target) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else { continue };
+        let before = worst(front, fan, here);
         let mut share = 1.0;
         for _ in 0..4 {
             let point = front.flat[v].lerp(target, share);
@@ -208,15 +209,29 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, least_area: f64) {
                 (front.flat[a as usize] - point).perp_dot(front.flat[b as usize] - point) >= least_area
             });
             if fits {
-                if let Some(place) = field.locate(point, front.place[slot].triangle) {
+                let Some(place) = field.locate(point, front.place[slot].triangle) else { break };
+                let height = field.at(point, place).0.sqrt();
+                let after = worst(front, fan, point.extend(height));
+                if after >= before || after > 0.2 {
                     front.flat[v] = point;
                     front.place[slot] = place;
-                    front.height[v] = field.at(point, place).0.sqrt();
+                    front.height[v] = height;
+                    break;
                 }
-                break;
+            } else {
+                front.shortened += 1;
             }
-            front.shortened += 1;
             share *= 0.5;
         }
     }
+}
+
+/// Least ratio of twice the area to the sum of the squared sides of the triangles around a vertex at
+/// `point`; 0.29 if they are equilateral.
+fn worst(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
+    let ratio = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
+        a.cross(b).length() / (a.length_squared() + b.length_squared() + (b - a).length_squared())
+    };
+    fan.iter().map(ratio).fold(f64::INFINITY, f64::min)
 }
