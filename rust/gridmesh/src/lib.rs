@@ -14,7 +14,6 @@ pub mod error;
 pub mod growth;
 pub mod inflate;
 pub mod lattice;
-pub mod lattice;
 pub mod mapping;
 pub mod metrics;
 pub mod options;
