@@ -112,14 +112,15 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         let least_area = 4.0 * f64::from(f32::EPSILON) * extent * patch.lattice.edge_length;
         let limb = limbness(&flat, &field.gradient, depth);
         let goal = spread::unrolled_heights(&field, &limb);
-        let legs: usize = std::env::var("LEGS").map_or(3, |s| s.parse().unwrap());
-        let between: usize = std::env::var("BETWEEN").map_or(1, |s| s.parse().unwrap());
+        let crease = spread::creases(&field, &patch.loops, first);
+        let legs: usize = spread::tune().legs;
+        let between: usize = spread::tune().between;
         for leg in 0..legs {
-            spread::slide(&mut front, &field, &goal, 1.0 / (legs - leg) as f64, depth, least_area);
-            for _ in 0..between { spread::sweep(&mut front, &field, least_area); }
+            spread::slide(&mut front, &field, &goal, &crease, 1.0 / (legs - leg) as f64, depth, least_area);
+            for _ in 0..between { spread::sweep(&mut front, &field, &crease, least_area); }
         }
-        for _ in 0..std::env::var("SWEEPS").map_or(4, |s| s.parse().unwrap()) {
-            spread::sweep(&mut front, &field, least_area);
+        for _ in 0..spread::tune().sweeps {
+            spread::sweep(&mut front, &field, &crease, least_area);
         }
     }
     clock.stage("spread");

@@ -3,6 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use super::field::{Field, Place};
+use crate::patch::Loop;
+
+/// Turning angle in radians from which on a corner of the outline is re-entrant enough for a crease.
+const RE_ENTRANT: f64 = 0.5;
 
 /// The front of a body: a graph over the flat patch.
 pub(crate) struct Front {
@@ -59,24 +63,47 @@ pub(crate) fn unrolled_heights(field: &Field<'_>, limb: &[f64]) -> Vec<f64> {
 }
 
 /// Slides every vertex down the slope by `share` of the way from its height to `goal`.
-pub(crate) fn slide(front: &mut Front, field: &Field<'_>, goal: &[f64], share: f64, depth: f64, least_area: f64) {
+pub(crate) fn slide(
+    front: &mut Front,
+    field: &Field<'_>,
+    goal: &[f64],
+    crease: &[Option<Crease>],
+    share: f64,
+    depth: f64,
+    least_area: f64,
+) {
     let first = front.first;
     let target = (first..front.flat.len())
         .map(|v| {
             let height = front.height[v] + share * (goal[v] - front.height[v]);
-            let (point, mut place) = (front.flat[v], front.place[v - first]);
-            let mut point = point;
-            let wanted = height * height;
+            let (mut point, mut place) = (front.flat[v], front.place[v - first]);
+            if let Some(crease) = &crease[v] {
+                let away = point - crease.corner;
+                let onto = crease.corner + crease.inward * away.dot(crease.inward);
+                let next = point + share * (onto - point);
+                if let Some(found) = field.locate(next, place.triangle) {
+                    (point, place) = (next, found);
+                }
+            }
             for _ in 0..2 {
                 let (value, gradient) = field.at(point, place);
-                let slope = gradient.length();
-                let fall = value - wanted;
+                let direction = match &crease[v] {
+                    Some(crease) => crease.corner - point,
+                    None => -gradient,
+                };
+                let direction = direction.normalize_or_zero();
+                let slope = -gradient.dot(direction);
+                let fall = value - height * height;
                 // The root near zero of fall = slope s + bend s^2; a sphere's field bends so.
                 let root = slope * slope + 4.0 * depth * depth * fall;
                 if !(slope > 0.0 && root > 0.0) {
                     break;
                 }
-                let next = point - gradient * (2.0 * fall / (slope * (slope + root.sqrt())));
+                let mut way = 2.0 * fall / (slope + root.sqrt());
+                if let Some(crease) = &crease[v] {
+                    way = way.min(0.9 * (crease.corner - point).length());
+                }
+                let next = point + direction * way;
                 let Some(found) = field.locate(next, place.triangle) else { break };
                 (point, place) = (next, found);
             }
@@ -84,6 +111,54 @@ pub(crate) fn slide(front: &mut Front, field: &Field<'_>, goal: &[f64], share: f
         })
         .collect::<Vec<_>>();
     settle(front, field, &target, least_area);
+}
+
+/// Where the body has a crease above a re-entrant corner of the outline.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crease {
+    corner: DVec2,
+    inward: DVec2,
+    cos_limit: f64,
+}
+
+impl Crease {
+    /// Whether the two sides of the corner are both seen from `point`.
+    fn holds(&self, point: DVec2) -> bool {
+        let away = point - self.corner;
+        away.dot(self.inward) >= self.cos_limit * away.length()
+    }
+}
+
+/// For each vertex the re-entrant corner that it is to stand above, if any.
+///
+/// Above such a corner the body has a crease. A mesh that is a graph over the drawing follows it
+/// only if one of the corner's neighbours lies on it: the innermost one is chosen.
+pub(crate) fn creases(field: &Field<'_>, loops: &[Loop], first: usize) -> Vec<Option<Crease>> {
+    let mut creases = vec![None; field.vertices.len()];
+    for contour in loops {
+        let (start, n) = (contour.start as usize, contour.len());
+        for k in 0..n {
+            let corner = field.vertices[start + k];
+            let to_next = (field.vertices[start + (k + 1) % n] - corner).normalize_or_zero();
+            let to_previous = (field.vertices[start + (k + n - 1) % n] - corner).normalize_or_zero();
+            let turn = (-to_previous).angle_to(to_next);
+            if turn > -tune().crease {
+                continue;
+            }
+            let inward = (-to_next - to_previous).try_normalize().unwrap_or(to_next.perp());
+            let inner = field.topology.near[field.topology.range(start + k)]
+                .iter()
+                .map(|&v| v as usize)
+                .filter(|&v| v >= first)
+                .map(|v| (v, (field.vertices[v] - corner).normalize_or_zero().dot(inward)))
+                .reduce(|best, other| if other.1 > best.1 { other } else { best });
+            let cos_limit = to_next.dot(inward).abs();
+            if let Some((v, _)) = inner {
+                creases[v] = Some(Crease { corner, inward, cos_limit });
+            }
+        }
+    }
+    creases
 }
 
 /// The point of the plane below the foot of `point` on the surface `z^2 = field`.
@@ -155,8 +230,7 @@ fn settle(front: &mut Front, field: &Field<'_>, target: &[DVec2], least_area: f6
 /// plane of the vertex: convex in the vertex's position there. One Newton step, weighted by the
 /// badness itself so that the worst triangles count most, is taken and shortened until no triangle
 /// falls below `least_area` in projection.
-pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, least_area: f64) {
-    #[allow(non_snake_case)] let FLATTER: f64 = std::env::var("FLATTER").map_or(1.25, |s| s.parse().unwrap()); let rim = true;
+pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, creases: &[Option<Crease>], least_area: f64) {
     for v in front.first..front.flat.len() {
         let slot = v - front.first;
         let (_, gradient) = field.at(front.flat[v], front.place[slot]);
@@ -170,23 +244,30 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, least_area: f64) {
         for &[i, j] in fan {
             let (a, b) = (front.position(i as usize) - here, front.position(j as usize) - here);
             reach += a.length();
-            let (a, b) = (DVec2::new(a.dot(e), a.dot(f)), DVec2::new(b.dot(e), b.dot(f)));
             let mut sides = a.length_squared() + b.length_squared() + (b - a).length_squared();
+            let cross = a.cross(b);
+            let mut area = cross.length();
+            let mut facing = cross / area;
+            if !(cross.dot(normal) > tune().steep * area) {
+                // Folded: seen in the tangent plane, where it has to unfold.
+                facing = normal;
+                area = cross.dot(normal);
+            }
+            area = area.max(tune().floor * sides);
+            let widen = (a - b).cross(facing);
             let mut ds = -2.0 * (a + b);
             let mut extra = DVec2::ZERO;
-            if rim && (i as usize) < front.first && (j as usize) < front.first {
+            if (i as usize) < front.first && (j as usize) < front.first {
                 // Triangles on the silhouette are to be flatter, see above.
-                let m = (b - a).perp().normalize_or_zero();
+                let m = widen.normalize_or_zero();
                 let height = a.dot(m);
-                sides += FLATTER * height * height;
-                ds -= 2.0 * FLATTER * height * m;
-                extra = (2.0 * FLATTER).sqrt() * m;
+                sides += tune().flatter * height * height;
+                ds -= 2.0 * tune().flatter * height * m;
+                extra = (2.0 * tune().flatter).sqrt() * DVec2::new(m.dot(e), m.dot(f));
             }
-            let floor = std::env::var("FLOOR").map_or(0.02, |s| s.parse::<f64>().unwrap()) * sides;
-            let area = a.perp_dot(b);
-            let area = if area > floor { area } else { floor };
-            let weight = sides / area;
-            let da = (b - a).perp();
+            let ds = DVec2::new(ds.dot(e), ds.dot(f));
+            let da = DVec2::new(widen.dot(e), widen.dot(f));
+            let weight = (sides / area / 3.46).powf(tune().power);
             slope += weight * (ds - da * (sides / area)) / area;
             let k = weight / area;
             let (m, n) = (1.0 / area, 2.0 * sides / (area * area));
@@ -205,14 +286,14 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, least_area: f64) {
         let mut share = 1.0;
         for _ in 0..4 {
             let point = front.flat[v].lerp(target, share);
-            let fits = fan.iter().all(|&[a, b]| {
+            let fits = creases[v].as_ref().is_none_or(|crease| crease.holds(point) || !crease.holds(front.flat[v])) && fan.iter().all(|&[a, b]| {
                 (front.flat[a as usize] - point).perp_dot(front.flat[b as usize] - point) >= least_area
             });
             if fits {
                 let Some(place) = field.locate(point, front.place[slot].triangle) else { break };
                 let height = field.at(point, place).0.sqrt();
                 let after = worst(front, fan, point.extend(height));
-                if after >= before || after > 0.2 {
+                if after >= before || after > tune().good {
                     front.flat[v] = point;
                     front.place[slot] = place;
                     front.height[v] = height;
@@ -234,4 +315,11 @@ fn worst(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
         a.cross(b).length() / (a.length_squared() + b.length_squared() + (b - a).length_squared())
     };
     fan.iter().map(ratio).fold(f64::INFINITY, f64::min)
+}
+
+pub(crate) struct Tune { pub steep: f64, pub floor: f64, pub flatter: f64, pub crease: f64, pub legs: usize, pub between: usize, pub sweeps: usize, pub good: f64, pub power: f64 }
+pub(crate) fn tune() -> &'static Tune {
+    static T: std::sync::OnceLock<Tune> = std::sync::OnceLock::new();
+    fn g<T: std::str::FromStr>(n: &str, d: T) -> T { std::env::var(n).ok().and_then(|s| s.parse().ok()).unwrap_or(d) }
+    T.get_or_init(|| Tune { steep: g("STEEP", 0.2), floor: g("FLOOR", 0.02), flatter: g("FLATTER", 1.25), crease: g("CREASE", 0.5), legs: g("LEGS", 3), between: g("BETWEEN", 1), sweeps: g("SWEEPS", 3), good: g("GOOD", 0.2), power: g("POWER", 1.0) })
 }
