@@ -113,7 +113,10 @@ impl fmt::Display for Error {
                 write!(f, "point {point} of the {what} is NaN or infinite; all coordinates must be finite")
             }
             Error::TooFewPoints { what, distinct } => {
-                write!(f, "the {what} has {distinct} distinct points; at least 3 are needed, draw a closed shape")
+                write!(
+                    f,
+                    "the {what} has {distinct} distinct points; at least 3 are needed, draw a closed shape"
+                )
             }
             Error::ZeroArea { what } => {
                 write!(f, "the {what} encloses no area: its points lie on one line; draw a closed shape")
@@ -124,7 +127,10 @@ impl fmt::Display for Error {
                  draw an outline that does not cross itself"
             ),
             Error::HoleMisplaced { hole, reason } => {
-                write!(f, "hole {hole} {reason}; each hole must lie inside the outline and apart from the others")
+                write!(
+                    f,
+                    "hole {hole} {reason}; each hole must lie inside the outline and apart from the others"
+                )
             }
             Error::InvalidOption { name, value, allowed } => {
                 write!(f, "{name} is {value}; allowed: {allowed}")
@@ -139,9 +145,14 @@ impl fmt::Display for Error {
                  use a larger edge length"
             ),
             Error::NoPatch { reason, at: [x, y] } => {
-                write!(f, "no valid mesh was found: {reason} near ({x:.6}, {y:.6}); simplify the drawing there")
+                write!(
+                    f,
+                    "no valid mesh was found: {reason} near ({x:.6}, {y:.6}); simplify the drawing there"
+                )
             }
-            Error::Solver { stage, reason } => write!(f, "the linear solve of the {stage} failed: {reason}"),
+            Error::Solver { stage, reason } => {
+                write!(f, "the linear solve of the {stage} failed: {reason}")
+            }
             Error::Cancelled => write!(f, "cancelled"),
         }
     }

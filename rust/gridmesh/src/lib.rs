@@ -1,9 +1,25 @@
 //! Semi-regular triangle meshes from closed curves.
 #![forbid(unsafe_code)]
 
+pub mod assemble;
 pub mod axial;
+pub mod band;
+pub mod boundary;
+pub mod cells;
+pub mod contours;
+pub mod curve;
 pub mod dir;
 pub mod error;
+pub mod growth;
 pub mod lattice;
+pub mod mapping;
+pub mod options;
+mod outline;
 pub mod patch;
+mod place;
 pub mod progress;
+pub mod raster;
+pub mod relax;
+mod segments;
+pub mod sketch;
+pub mod target;

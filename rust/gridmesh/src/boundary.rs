@@ -1,0 +1,321 @@
+//! The closed lattice path that bounds a growing patch, and the one move that extends it.
+
+use std::sync::Arc;
+
+use crate::axial::Axial;
+use crate::cells::{Cells, Layout};
+use crate::dir::Dir;
+
+/// What a lattice point is to the patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cell {
+    /// Not in the patch.
+    Outside,
+    /// In the patch with all six neighbours.
+    Interior,
+    /// On the boundary: the path comes in by one direction and goes on by the other.
+    Boundary {
+        /// Direction of the step that arrives here.
+        enter: Dir,
+        /// Direction of the step that goes on.
+        leave: Dir,
+    },
+}
+
+const OUTSIDE: u8 = 0;
+const INTERIOR: u8 = 1;
+
+impl Cell {
+    fn pack(self) -> u8 {
+        match self {
+            Cell::Outside => OUTSIDE,
+            Cell::Interior => INTERIOR,
+            Cell::Boundary { enter, leave } => (2 + 6 * enter.index() + leave.index()) as u8,
+        }
+    }
+
+    fn unpack(code: u8) -> Self {
+        match code {
+            OUTSIDE => Cell::Outside,
+            INTERIOR => Cell::Interior,
+            _ => {
+                let code = i32::from(code) - 2;
+                Cell::Boundary { enter: Dir::new(code / 6), leave: Dir::new(code % 6) }
+            }
+        }
+    }
+}
+
+/// Adding one point to the patch: its link meets the boundary in a single arc of `edges` edges.
+///
+/// ```text
+///   edges = 1          edges = 2          edges = 3          edges = 4
+///       p                -- p --           / p \              \ p /
+///      / \                / | \            -- -- --           -- -- -- around p
+///   --*---*--          --*--*--*--
+/// ```
+/// The patch gains `edges` triangles, the boundary `2 - edges` edges, and `p` turns by
+/// `3 - edges` (figure 8 of the paper; its fifth case, five edges, is a notch one point wide).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Expansion {
+    /// The point that joins.
+    pub point: Axial,
+    /// Number of boundary edges it covers, 1 to 5.
+    pub edges: i32,
+    /// Direction from the point to the first covered vertex, in the order of the path.
+    pub first: Dir,
+}
+
+impl Expansion {
+    /// Direction from the point to the `i`-th vertex of the arc, 0 to `edges`.
+    fn arc(&self, i: i32) -> Dir {
+        self.first.rotate(-i)
+    }
+}
+
+/// A simple closed lattice path with the patch on its left.
+///
+/// The linked list lives in the cells: a vertex knows the step that arrives and the step that
+/// leaves, so that no point can occur twice, and lookup, insertion and removal take constant time.
+/// Always: the turns add up to six, and there are `2 * vertices - 2 - length` triangles.
+#[derive(Clone, Debug)]
+pub struct Boundary {
+    cells: Cells<u8>,
+    some: Axial,
+    length: usize,
+    triangles: usize,
+    bend: i64,
+}
+
+/// Cells overwritten since a [`Boundary::mark`].
+#[derive(Debug, Default)]
+pub(crate) struct Journal {
+    changed: Vec<(Axial, u8)>,
+    state: Option<(Axial, usize, usize, i64)>,
+}
+
+impl Boundary {
+    /// The six neighbours of `centre` around it: the paper's seed (section IV-B).
+    ///
+    /// `None` if one of them has no cell.
+    pub fn hexagon(layout: Arc<Layout>, centre: Axial) -> Option<Self> {
+        let mut cells = Cells::new(layout, OUTSIDE);
+        let mut complete = cells.set(centre, INTERIOR);
+        for dir in Dir::ALL {
+            let cell = Cell::Boundary { enter: dir.rotate(1), leave: dir.rotate(2) };
+            complete &= cells.set(centre + dir, cell.pack());
+        }
+        let some = centre + Dir::new(0);
+        complete.then_some(Self { cells, some, length: 6, triangles: 6, bend: 6 })
+    }
+
+    /// The points that the boundary can reach.
+    pub fn layout(&self) -> &Arc<Layout> {
+        self.cells.layout()
+    }
+
+    /// What a point is to the patch.
+    pub fn cell(&self, point: Axial) -> Cell {
+        Cell::unpack(self.cells.get(point))
+    }
+
+    fn put(&mut self, point: Axial, cell: Cell) {
+        self.cells.set(point, cell.pack());
+    }
+
+    /// True for a point that is not in the patch.
+    pub fn is_outside(&self, point: Axial) -> bool {
+        self.cells.get(point) == OUTSIDE
+    }
+
+    /// True for a boundary vertex.
+    pub fn is_boundary(&self, point: Axial) -> bool {
+        self.cells.get(point) > INTERIOR
+    }
+
+    /// Number of boundary vertices.
+    pub fn length(&self) -> usize {
+        self.length
+    }
+
+    /// Number of triangles of the patch.
+    pub fn triangles(&self) -> usize {
+        self.triangles
+    }
+
+    /// The sum of absolute turns along the boundary: the paper's `err_dc`, equation (1).
+    pub fn bend(&self) -> i64 {
+        self.bend
+    }
+
+    /// The turn at a boundary vertex, positive where convex; `None` for other points.
+    pub fn turn(&self, point: Axial) -> Option<i32> {
+        match self.cell(point) {
+            Cell::Boundary { enter, leave } => Some(enter.turn_to(leave)),
+            _ => None,
+        }
+    }
+
+    /// The boundary vertices in order, the patch on the left.
+    pub fn path(&self) -> Vec<Axial> {
+        let mut path = Vec::with_capacity(self.length);
+        let mut at = self.some;
+        for _ in 0..self.length {
+            path.push(at);
+            if let Cell::Boundary { leave, .. } = self.cell(at) {
+                at = at + leave;
+            }
+        }
+        path
+    }
+
+    /// The expansion by `point`, if it is valid adjacent (section IV-B, figures 7 and 8).
+    ///
+    /// It is when it lies outside and its link meets the boundary in one arc of at least an edge,
+    /// that is, when it has one more boundary neighbour than boundary edges in its link. The paper
+    /// asks for two boundary neighbours only; that lets the boundary touch itself.
+    pub fn expansion(&self, point: Axial) -> Option<Expansion> {
+        let layout = self.cells.layout();
+        if self.cells.get(point) != OUTSIDE || layout.index(point).is_none() {
+            return None;
+        }
+        let codes = Dir::ALL.map(|dir| self.cells.get(point + dir));
+        let mut vertices = 0;
+        let mut edges = 0;
+        let mut first = None;
+        for i in 0..6 {
+            if codes[i] <= INTERIOR {
+                continue;
+            }
+            vertices += 1;
+            // The path runs clockwise round an outside point: from neighbour i to neighbour i - 1.
+            let leaves_along = |i: usize| codes[i] > INTERIOR && (codes[i] as usize - 2) % 6 == (i + 4) % 6;
+            if leaves_along(i) {
+                edges += 1;
+                if !leaves_along((i + 1) % 6) {
+                    first = Some(Dir::ALL[i]);
+                }
+            }
+        }
+        match first {
+            Some(first) if vertices == edges + 1 => Some(Expansion { point, edges, first }),
+            _ => None,
+        }
+    }
+
+    /// How an expansion changes [`Boundary::bend`].
+    pub fn bend_change(&self, expansion: &Expansion) -> i64 {
+        let turn = |i: i32| self.turn(expansion.point + expansion.arc(i)).unwrap_or(0);
+        let ends = [turn(0), turn(expansion.edges)];
+        let covered: i32 = (1..expansion.edges).map(|i| turn(i).abs()).sum();
+        let straightened: i32 = ends.iter().map(|t| (t - 1).abs() - t.abs()).sum();
+        i64::from((3 - expansion.edges).abs() + straightened - covered)
+    }
+
+    /// Adds a point to the patch. The expansion must be one that [`Boundary::expansion`] gave for
+    /// the boundary as it is.
+    pub fn expand(&mut self, expansion: &Expansion) {
+        self.bend += self.bend_change(expansion);
+        let p = expansion.point;
+        let (first, last) = (expansion.arc(0), expansion.arc(expansion.edges));
+        if let Cell::Boundary { enter, .. } = self.cell(p + first) {
+            self.put(p + first, Cell::Boundary { enter, leave: first.opposite() });
+        }
+        for i in 1..expansion.edges {
+            self.put(p + expansion.arc(i), Cell::Interior);
+        }
+        if let Cell::Boundary { leave, .. } = self.cell(p + last) {
+            self.put(p + last, Cell::Boundary { enter: last, leave });
+        }
+        self.put(p, Cell::Boundary { enter: first.opposite(), leave: last });
+        self.some = p;
+        self.length = (self.length as i64 + 2 - i64::from(expansion.edges)) as usize;
+        self.triangles += expansion.edges as usize;
+    }
+
+    /// Like [`Boundary::expand`], remembering what was there.
+    pub(crate) fn expand_logged(&mut self, expansion: &Expansion, journal: &mut Journal) {
+        journal.state.get_or_insert((self.some, self.length, self.triangles, self.bend));
+        let p = expansion.point;
+        journal.changed.push((p, self.cells.get(p)));
+        for i in 0..=expansion.edges {
+            let q = p + expansion.arc(i);
+            journal.changed.push((q, self.cells.get(q)));
+        }
+        self.expand(expansion);
+    }
+
+    /// Takes back all that a journal remembers.
+    pub(crate) fn roll_back(&mut self, journal: Journal) {
+        for (point, code) in journal.changed.into_iter().rev() {
+            self.cells.set(point, code);
+        }
+        if let Some((some, length, triangles, bend)) = journal.state {
+            (self.some, self.length, self.triangles, self.bend) = (some, length, triangles, bend);
+        }
+    }
+
+    /// The neighbours of a boundary vertex that lie in the patch and are not next to it on the
+    /// boundary, counter-clockwise.
+    pub fn inner_neighbours(&self, vertex: Axial) -> impl Iterator<Item = Axial> {
+        let (from, count) = match self.cell(vertex) {
+            Cell::Boundary { enter, leave } => (leave, 2 - enter.turn_to(leave)),
+            _ => (Dir::new(0), 0),
+        };
+        (1..=count).map(move |i| vertex + from.rotate(i))
+    }
+
+    /// The neighbours of a boundary vertex that do not lie on its patch side, clockwise from the
+    /// next vertex of the path to the one before.
+    pub fn outer_neighbours(&self, vertex: Axial) -> impl Iterator<Item = Axial> {
+        let (from, count) = match self.cell(vertex) {
+            Cell::Boundary { enter, leave } => (leave, 2 + enter.turn_to(leave)),
+            _ => (Dir::new(0), 0),
+        };
+        (1..=count).map(move |i| vertex + from.rotate(-i))
+    }
+
+    /// A boundary vertex that an edge inside the patch joins to this one, if there is any.
+    ///
+    /// Such a chord would be an edge of four triangles after stitching (section III-B, figures 5
+    /// and 9).
+    pub fn chord(&self, vertex: Axial) -> Option<Axial> {
+        self.inner_neighbours(vertex).find(|&p| self.is_boundary(p))
+    }
+
+    /// Proves all that the documentation says of a boundary, chords aside. For tests; walks it.
+    ///
+    /// # Errors
+    /// A sentence that names the broken fact.
+    pub fn check(&self) -> Result<(), String> {
+        let path = self.path();
+        let (mut turns, mut bend) = (0, 0);
+        for (i, &p) in path.iter().enumerate() {
+            let next = path[(i + 1) % path.len()];
+            match (self.cell(p), self.cell(next)) {
+                (Cell::Boundary { leave, .. }, Cell::Boundary { enter, .. })
+                    if leave == enter && p + leave == next => {}
+                cells => return Err(format!("broken link from {p:?} to {next:?}: {cells:?}")),
+            }
+            let turn = self.turn(p).unwrap_or(3);
+            if turn.abs() > 2 {
+                return Err(format!("the path reverses at {p:?}"));
+            }
+            turns += turn;
+            bend += i64::from(turn.abs());
+        }
+        let on_boundary = self.cells.layout().points().filter(|&p| self.is_boundary(p)).count();
+        let interior = self.cells.layout().points().filter(|&p| self.cell(p) == Cell::Interior).count();
+        let euler = 2 * (on_boundary + interior) - 2 - self.length;
+        let facts = [
+            ("turn sum", turns == 6),
+            ("bend", bend == self.bend),
+            ("length", on_boundary == self.length && path.len() == self.length),
+            ("triangles", euler == self.triangles),
+        ];
+        match facts.iter().find(|fact| !fact.1) {
+            Some((what, _)) => Err(format!("the {what} is wrong")),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! What [`mesh_sketch`](crate::sketch::mesh_sketch) can be asked for, and what it reports.
+
+use glam::DVec2;
+
+use crate::error::{Error, Result};
+
+/// The largest mesh that is supported, in triangles of the flat patch.
+pub const MAX_TRIANGLES: f64 = 20e6;
+
+/// Triangles of the flat patch when nothing is asked for.
+pub const DEFAULT_TRIANGLES: usize = 2000;
+
+/// Drawn corners that turn by more than this are kept, unless told otherwise: 40 degrees.
+pub const DEFAULT_CORNER_ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
+
+/// How the lattice path along a contour is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoundaryMethod {
+    /// The path of least cost for the lattice and the greatest distance.
+    Optimal,
+    /// The paper's growth and optimisation, sections IV-B to IV-D.
+    Grown,
+}
+
+/// What to do with an outline that crosses itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SelfCrossing {
+    /// Refuse it, naming the crossing.
+    Error,
+    /// Take its outer outline.
+    Union,
+}
+
+/// A mirror axis for a symmetric mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mirror {
+    /// The axis of the drawing's own symmetry, if it has one.
+    Auto,
+    /// The line through a point along a direction.
+    Axis {
+        /// A point of the axis.
+        point: DVec2,
+        /// Its direction; not zero.
+        direction: DVec2,
+    },
+}
+
+/// Options of [`mesh_sketch`](crate::sketch::mesh_sketch).
+#[derive(Clone, Debug, PartialEq)]
+pub struct SketchOptions {
+    /// Edge length of the lattice in the units of the drawing; exclusive with `triangles`.
+    pub edge_length: Option<f64>,
+    /// Triangles of the flat patch, reached within 10 %; 2000 if neither is given.
+    pub triangles: Option<usize>,
+    /// How the boundary is found.
+    pub boundary: BoundaryMethod,
+    /// Greatest distance of the lattice path from the curve, in edges: 0.5 to 4.
+    pub max_distance: f64,
+    /// Weight of the squared distance against a turn: at least 0.
+    pub closeness: f64,
+    /// Angle of the lattice in radians; `None` lets the drawing's tangents decide.
+    pub angle: Option<f64>,
+    /// Corners that turn by more than this (radians, 0 to pi) get a vertex of their own.
+    pub corner_angle: f64,
+    /// Mirror axis.
+    pub mirror: Option<Mirror>,
+    /// What to do with an outline that crosses itself.
+    pub self_crossing: SelfCrossing,
+    /// Search nodes spent on proving a boundary optimal whose first solution had conflicts.
+    pub proof_nodes: usize,
+    /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and
+    /// may hold inverted triangles.
+    pub relax: bool,
+}
+
+impl Default for SketchOptions {
+    fn default() -> Self {
+        Self {
+            edge_length: None,
+            triangles: None,
+            boundary: BoundaryMethod::Grown,
+            max_distance: 1.5,
+            closeness: 0.3,
+            angle: None,
+            corner_angle: DEFAULT_CORNER_ANGLE,
+            mirror: None,
+            self_crossing: SelfCrossing::Error,
+            proof_nodes: 0,
+            relax: true,
+        }
+    }
+}
+
+impl SketchOptions {
+    /// Checks every value by itself.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`].
+    pub fn check(&self) -> Result<()> {
+        let refuse = |name, value: f64, allowed| {
+            Err(Error::InvalidOption { name, value: format!("{value}"), allowed })
+        };
+        if self.edge_length.is_some() && self.triangles.is_some() {
+            return Err(Error::InvalidOption {
+                name: "triangles",
+                value: "given beside edge_length".to_owned(),
+                allowed: "one of edge_length and triangles, or neither",
+            });
+        }
+        if let Some(h) = self.edge_length
+            && !(h.is_finite() && h > 0.0)
+        {
+            return refuse("edge_length", h, "a finite length above 0");
+        }
+        if let Some(n) = self.triangles {
+            if n < 6 {
+                return refuse("triangles", n as f64, "at least 6");
+            }
+            if n as f64 > MAX_TRIANGLES {
+                return Err(Error::TooLarge { triangles: n as f64, limit: MAX_TRIANGLES });
+            }
+        }
+        if !(0.5..=4.0).contains(&self.max_distance) {
+            return refuse("max_distance", self.max_distance, "0.5 to 4 edge lengths");
+        }
+        if !(0.0..=1e6).contains(&self.closeness) {
+            return refuse("closeness", self.closeness, "0 to 1e6");
+        }
+        if let Some(angle) = self.angle
+            && !angle.is_finite()
+        {
+            return refuse("angle", angle, "a finite angle in radians, or none");
+        }
+        if !(0.0..=std::f64::consts::PI).contains(&self.corner_angle) {
+            return refuse("corner_angle", self.corner_angle, "0 to pi radians");
+        }
+        if let Some(Mirror::Axis { point, direction }) = self.mirror
+            && !(point.is_finite() && direction.is_finite() && direction.length() > 0.0)
+        {
+            return refuse("mirror", direction.length(), "a finite point and a direction other than zero");
+        }
+        Ok(())
+    }
+}
+
+/// What was done, in plain numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SketchReport {
+    /// Triangles of the flat patch.
+    pub triangles: usize,
+    /// Vertices of the stitched body whose valence is not six.
+    pub irregular: usize,
+    /// The least number of them that any lattice body of this genus has.
+    pub minimum_irregular: usize,
+    /// Sum of absolute turns along the boundary (the paper's `err_dc`).
+    pub turns: usize,
+    /// Lower bound of `turns` for this lattice and distance, if it was computed.
+    pub turns_bound: Option<usize>,
+    /// Turns plus `closeness` times the squared distances of the path, in edges.
+    pub cost: f64,
+    /// Lower bound of `cost`, if it was computed.
+    pub cost_bound: Option<f64>,
+    /// True if the boundary is proved to be the cheapest.
+    pub optimal: bool,
+    /// Greatest distance that the boundary was allowed, in edges.
+    pub max_distance_used: f64,
+    /// Greatest distance from the drawn curve to the mesh boundary, in edges; at most 2, or the
+    /// drawing is refused.
+    pub max_deviation: f64,
+    /// Smallest angle of the flat patch, in radians.
+    pub min_angle: f64,
+    /// Drawn corners sharper than `corner_angle`.
+    pub corners: usize,
+    /// Corners that got no vertex of their own.
+    pub released_corners: usize,
+    /// Input points dropped because they repeat their predecessor.
+    pub repaired: usize,
+    /// Lattice placements tried before one gave a valid patch.
+    pub placements: usize,
+    /// Seconds spent in each stage.
+    pub seconds: Vec<(&'static str, f64)>,
+}

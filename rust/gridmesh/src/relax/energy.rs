@@ -1,0 +1,263 @@
+//! Energies of a triangle, and their sum over the triangles around one vertex.
+//!
+//! With J the linear map from the equilateral triangle of edge one, `stretch` = |J|^2 is two
+//! thirds of the sum of squared edge lengths and `det` = det J is the signed area over that of the
+//! equilateral triangle. Seen as functions of one vertex, `stretch` is a quadratic with Hessian
+//! 8/3 and `det` is linear, so a 2 x 2 Newton step costs a few operations for each triangle; and
+//! stretch / det is convex where det is positive (a square over a linear function).
+
+use glam::DVec2;
+
+use crate::lattice::ROW_HEIGHT;
+
+/// Second derivative of `stretch` in one vertex, times the identity.
+const STRETCH_HESSIAN: f64 = 8.0 / 3.0;
+
+/// Value and derivatives of an energy by `stretch` (u) and `det` (d).
+#[derive(Clone, Copy)]
+pub(super) struct Derivatives {
+    pub value: f64,
+    pub u: f64,
+    pub d: f64,
+    pub uu: f64,
+    pub ud: f64,
+    pub dd: f64,
+}
+
+/// An energy of a triangle: a function of `stretch` and `det`.
+pub(super) trait Energy {
+    /// True if the energy is infinite where `det` is not positive, and convex elsewhere.
+    const BARRIER: bool;
+    fn value(&self, stretch: f64, det: f64) -> f64;
+    fn derivatives(&self, stretch: f64, det: f64) -> Derivatives;
+}
+
+/// |J|^2 / det + (det + 1 / det) / 2: three for a unit equilateral triangle, infinite at area zero.
+pub(super) struct Barrier;
+
+impl Energy for Barrier {
+    const BARRIER: bool = true;
+
+    fn value(&self, stretch: f64, det: f64) -> f64 {
+        if det > 0.0 { (stretch + 0.5) / det + 0.5 * det } else { f64::INFINITY }
+    }
+
+    fn derivatives(&self, stretch: f64, det: f64) -> Derivatives {
+        let inverse = 1.0 / det;
+        let ratio = (stretch + 0.5) * inverse;
+        Derivatives {
+            value: ratio + 0.5 * det,
+            u: inverse,
+            d: 0.5 - ratio * inverse,
+            uu: 0.0,
+            ud: -inverse * inverse,
+            dd: 2.0 * ratio * inverse * inverse,
+        }
+    }
+}
+
+/// The fourth power of (a third of) a barrier with less weight on the area: what counts is the
+/// worst triangle.
+pub(super) struct Worst {
+    pub area: f64,
+}
+
+impl Energy for Worst {
+    const BARRIER: bool = true;
+
+    fn value(&self, stretch: f64, det: f64) -> f64 {
+        if det <= 0.0 {
+            return f64::INFINITY;
+        }
+        let e = ((stretch + self.area) / det + self.area * det) / (2.0 + 2.0 * self.area);
+        let e2 = e * e;
+        e2 * e2
+    }
+
+    fn derivatives(&self, stretch: f64, det: f64) -> Derivatives {
+        let scale = 1.0 / (2.0 + 2.0 * self.area);
+        let inverse = 1.0 / det;
+        let ratio = (stretch + self.area) * inverse * scale;
+        let e = ratio + self.area * det * scale;
+        let (eu, ed) = (inverse * scale, self.area * scale - ratio * inverse);
+        let (eud, edd) = (-inverse * inverse * scale, 2.0 * ratio * inverse * inverse);
+        let (first, second) = (4.0 * e * e * e, 12.0 * e * e);
+        Derivatives {
+            value: e * e * e * e,
+            u: first * eu,
+            d: first * ed,
+            uu: second * eu * eu,
+            ud: first * eud + second * eu * ed,
+            dd: first * edd + second * ed * ed,
+        }
+    }
+}
+
+/// (|J|^2 + (det^2 + 1) / 2) / chi with chi = (det + sqrt(det^2 + eps^2)) / 2 in place of det:
+/// finite for inverted triangles too, which it drives to positive area.
+pub(super) struct Regularised {
+    pub eps: f64,
+}
+
+impl Energy for Regularised {
+    const BARRIER: bool = false;
+
+    fn value(&self, stretch: f64, det: f64) -> f64 {
+        let chi = 0.5 * (det + (det * det + self.eps * self.eps).sqrt());
+        (stretch + 0.5 * (det * det + 1.0)) / chi
+    }
+
+    fn derivatives(&self, stretch: f64, det: f64) -> Derivatives {
+        let root = (det * det + self.eps * self.eps).sqrt();
+        let chi = 0.5 * (det + root);
+        let (chi1, chi2) = (chi / root, 0.5 * self.eps * self.eps / (root * root * root));
+        let inverse = 1.0 / chi;
+        let value = (stretch + 0.5 * (det * det + 1.0)) * inverse;
+        Derivatives {
+            value,
+            u: inverse,
+            d: det * inverse - value * chi1 * inverse,
+            uu: 0.0,
+            ud: -chi1 * inverse * inverse,
+            dd: inverse - 2.0 * det * chi1 * inverse * inverse
+                + value * (2.0 * chi1 * chi1 * inverse * inverse - chi2 * inverse),
+        }
+    }
+}
+
+/// `det` of the triangle with two edges `a` and `b` from one vertex.
+pub(super) fn det(a: DVec2, b: DVec2) -> f64 {
+    a.perp_dot(b) / ROW_HEIGHT
+}
+
+pub(super) fn stretch(a: DVec2, b: DVec2) -> f64 {
+    let e = b - a;
+    (2.0 / 3.0) * (a.dot(a) + b.dot(b) + e.dot(e))
+}
+
+/// Sum over the triangles around a vertex, as a function of the vertex.
+#[derive(Clone, Copy)]
+pub(super) struct Local {
+    pub value: f64,
+    pub gradient: DVec2,
+    pub xx: f64,
+    pub xy: f64,
+    pub yy: f64,
+    /// Least `det`.
+    pub det: f64,
+    /// Greatest squared length of an opposite edge.
+    pub edge: f64,
+}
+
+/// The energy of the triangles (x, ring[i], ring[i + 1]).
+pub(super) fn value<E: Energy>(energy: &E, x: DVec2, ring: &[u32], positions: &[DVec2]) -> f64 {
+    let mut sum = 0.0;
+    let mut a = positions[ring[0] as usize] - x;
+    for &v in &ring[1..] {
+        let b = positions[v as usize] - x;
+        sum += energy.value(stretch(a, b), det(a, b));
+        a = b;
+    }
+    sum
+}
+
+/// The energy of the triangles (x, ring[i], ring[i + 1]) with gradient and Hessian in x.
+pub(super) fn local<E: Energy>(energy: &E, x: DVec2, ring: &[u32], positions: &[DVec2]) -> Local {
+    let mut sum =
+        Local { value: 0.0, gradient: DVec2::ZERO, xx: 0.0, xy: 0.0, yy: 0.0, det: f64::INFINITY, edge: 0.0 };
+    let mut a = positions[ring[0] as usize] - x;
+    for &v in &ring[1..] {
+        let b = positions[v as usize] - x;
+        let e = b - a;
+        let det = a.perp_dot(b) * (1.0 / ROW_HEIGHT);
+        let edge = e.dot(e);
+        let d = energy.derivatives((2.0 / 3.0) * (a.dot(a) + b.dot(b) + edge), det);
+        let up = (-4.0 / 3.0) * (a + b);
+        let n = e.perp() * (1.0 / ROW_HEIGHT);
+        sum.value += d.value;
+        sum.gradient += d.u * up + d.d * n;
+        let (pu, pn) = (d.uu * up + d.ud * n, d.ud * up + d.dd * n);
+        let identity = STRETCH_HESSIAN * d.u;
+        sum.xx += identity + pu.x * up.x + pn.x * n.x;
+        sum.xy += pu.x * up.y + pn.x * n.y;
+        sum.yy += identity + pu.y * up.y + pn.y * n.y;
+        sum.det = sum.det.min(det);
+        sum.edge = sum.edge.max(edge);
+        a = b;
+    }
+    sum
+}
+
+impl Local {
+    /// The Newton step; the Hessian is shifted to be positive where it is not.
+    pub fn newton(&self) -> DVec2 {
+        let (mut xx, mut yy) = (self.xx, self.yy);
+        let half = 0.5 * (xx + yy);
+        let radius = (0.25 * (xx - yy) * (xx - yy) + self.xy * self.xy).sqrt();
+        let floor = 1e-3 * (half.abs() + radius);
+        if half - radius < floor {
+            let shift = floor - (half - radius);
+            xx += shift;
+            yy += shift;
+        }
+        let inverse = 1.0 / (xx * yy - self.xy * self.xy);
+        let g = self.gradient;
+        DVec2::new(self.xy * g.y - yy * g.x, self.xy * g.x - xx * g.y) * inverse
+    }
+
+    /// Second derivative along `t`.
+    pub fn along(&self, t: DVec2) -> f64 {
+        t.x * t.x * self.xx + 2.0 * t.x * t.y * self.xy + t.y * t.y * self.yy
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ring() -> (Vec<u32>, Vec<DVec2>) {
+        let mut positions: Vec<DVec2> =
+            (0..6).map(|i| DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 6.0)).collect();
+        positions[2] *= 0.7;
+        positions[4] *= 1.3;
+        (vec![0, 1, 2, 3, 4, 5, 0], positions)
+    }
+
+    fn derivatives_match_differences<E: Energy>(energy: &E, x: DVec2) {
+        let (ring, positions) = ring();
+        let at = |x: DVec2| local(energy, x, &ring, &positions);
+        let l = at(x);
+        assert!((l.value - value(energy, x, &ring, &positions)).abs() < 1e-12 * l.value.abs());
+        let h = 1e-5;
+        let (px, mx) = (at(x + DVec2::X * h), at(x - DVec2::X * h));
+        let (py, my) = (at(x + DVec2::Y * h), at(x - DVec2::Y * h));
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-5 * (1.0 + a.abs().max(b.abs())), "{a} {b}");
+        close(l.gradient.x, (px.value - mx.value) / (2.0 * h));
+        close(l.gradient.y, (py.value - my.value) / (2.0 * h));
+        close(l.xx, (px.gradient.x - mx.gradient.x) / (2.0 * h));
+        close(l.xy, (py.gradient.x - my.gradient.x) / (2.0 * h));
+        close(l.yy, (py.gradient.y - my.gradient.y) / (2.0 * h));
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_value() {
+        for x in [DVec2::ZERO, DVec2::new(0.2, -0.1), DVec2::new(-0.3, 0.25)] {
+            derivatives_match_differences(&Barrier, x);
+            derivatives_match_differences(&Worst { area: 0.25 }, x);
+            derivatives_match_differences(&Regularised { eps: 0.3 }, x);
+        }
+        // Outside the ring: two inverted triangles.
+        derivatives_match_differences(&Regularised { eps: 0.3 }, DVec2::new(1.4, 0.6));
+    }
+
+    #[test]
+    fn unit_equilateral_triangle_is_the_minimum() {
+        let hexagon: Vec<DVec2> =
+            (0..6).map(|i| DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 6.0)).collect();
+        let ring = [0, 1, 2, 3, 4, 5, 0];
+        let l = local(&Barrier, DVec2::ZERO, &ring, &hexagon);
+        assert!((l.value - 18.0).abs() < 1e-12);
+        assert!(l.gradient.length() < 1e-12);
+        assert!(local(&Worst { area: 0.25 }, DVec2::ZERO, &ring, &hexagon).gradient.length() < 1e-12);
+    }
+}

@@ -1,0 +1,163 @@
+//! The stages of the placement: untangle, even out, help the worst, release corners.
+
+use glam::DVec2;
+
+use super::check::first_inverted;
+use super::energy::{Barrier, Energy, Regularised, Worst, det};
+use super::sweep::{Active, Motion};
+use crate::error::Result;
+use crate::progress::Progress;
+
+/// Triangles of less than this share of the equilateral triangle's area count as tangled.
+const TANGLED: f64 = 1e-3;
+
+impl Motion<'_> {
+    /// Vertices of tangled triangles, and the least `det` of all triangles.
+    fn tangled(&self) -> (Vec<u32>, f64) {
+        let (mut vertices, mut least) = (Vec::new(), f64::INFINITY);
+        for &t in &self.band.triangles {
+            let [a, b, c] = t.map(|v| self.band.positions[v as usize]);
+            let d = det(b - a, c - a);
+            // A NaN is tangled too.
+            if !matches!(d.partial_cmp(&TANGLED), Some(std::cmp::Ordering::Greater)) {
+                vertices.extend(t);
+            }
+            least = least.min(d);
+        }
+        (vertices, least)
+    }
+
+    /// Sweeps around the tangled triangles until there is none; false if some stay inverted.
+    pub fn untangle(&mut self, sweeps: usize, done: &mut usize, progress: Progress<'_>) -> Result<bool> {
+        for sweep in 0..sweeps {
+            let (vertices, least) = self.tangled();
+            if vertices.is_empty() {
+                return Ok(true);
+            }
+            progress.report(sweep as f64 / sweeps as f64)?;
+            *done += 1;
+            let eps = (0.04 + least.min(0.0).powi(2)).sqrt();
+            let rings = if sweep < 8 { 1 } else { 2 };
+            let mut active = Active::near(&self.band, vertices, rings);
+            self.sweep(&Regularised { eps }, &mut active, f64::INFINITY);
+        }
+        // Where the drawing is thinner than a thousandth of an edge, thin triangles are right.
+        Ok(first_inverted(&self.band.positions, &self.band.triangles, DVec2::ZERO).is_none())
+    }
+
+    /// Spaces boundary vertices evenly around those of tangled triangles, which is where projected
+    /// vertices bunch; with `release`, those that are pinned become free first. Returns the
+    /// vertices released.
+    pub fn spread_tangled(&mut self, reach: usize, release: bool) -> Vec<u32> {
+        let (vertices, _) = self.tangled();
+        let n_rim = self.band.n_rim as u32;
+        let mut rim: Vec<u32> = vertices
+            .into_iter()
+            .flat_map(|v| {
+                let around: &[u32] =
+                    if (v as usize) < self.band.n_free { self.band.around(v as usize) } else { &[] };
+                around.iter().copied().chain([v]).collect::<Vec<_>>()
+            })
+            .filter(|&v| v < n_rim)
+            .collect();
+        rim.sort_unstable();
+        rim.dedup();
+        let mut released = Vec::new();
+        if release {
+            for &v in &rim {
+                if std::mem::take(&mut self.slide.pinned[v as usize]) {
+                    released.push(v);
+                }
+            }
+        }
+        for v in rim {
+            for moved in self.slide.spread(v as usize, reach) {
+                let s = self.slide.s[moved];
+                self.band.positions[moved] = self.slide.point(moved, s);
+            }
+        }
+        released
+    }
+
+    /// Sweeps with a barrier energy until nothing moves by more than `tolerance`.
+    pub fn settle<E: Energy>(
+        &mut self,
+        energy: &E,
+        active: &mut Active,
+        sweeps: usize,
+        tolerance: f64,
+        progress: Progress<'_>,
+    ) -> Result<usize> {
+        for sweep in 0..sweeps {
+            progress.report(sweep as f64 / sweeps as f64)?;
+            if self.sweep(energy, active, tolerance) == 0 {
+                return Ok(sweep + 1);
+            }
+        }
+        Ok(sweeps)
+    }
+
+    /// Evens out the valid triangulation, then gives the worst triangles the say.
+    pub fn improve(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<usize> {
+        let n = self.band.n_free;
+        let even = self.settle(&Barrier, &mut Active::all(n), 8, tolerance, progress.part(0.0, 0.4))?;
+        let worst = &Worst { area: 0.07 };
+        let all = &mut Active::all(n);
+        Ok(even + self.settle(worst, all, 12, 0.5 * tolerance, progress.part(0.4, 1.0))?)
+    }
+
+    /// Frees the pinned vertices at which a triangle starves, and lets their surroundings settle.
+    /// Returns the vertices released.
+    ///
+    /// With interior angle a of the boundary at the vertex, no triangulation there has a least
+    /// angle above a / 2, so a triangle starves below .45 a, where 14 degrees are always enough.
+    pub fn release_starved(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<Vec<u32>> {
+        let mut released = Vec::new();
+        for _ in 0..4 {
+            let starved: Vec<u32> = (0..self.band.n_rim)
+                .filter(|&v| self.slide.pinned[v] && self.starves(v))
+                .map(|v| v as u32)
+                .collect();
+            if starved.is_empty() || !self.sliding {
+                break;
+            }
+            for &v in &starved {
+                self.slide.pinned[v as usize] = false;
+                self.slide.home[v as usize] = self.slide.s[v as usize];
+            }
+            let mut active = Active::near(&self.band, starved.iter().copied(), 2);
+            self.settle(&Worst { area: 0.07 }, &mut active, 30, 0.25 * tolerance, progress)?;
+            released.extend(starved);
+        }
+        released.sort_unstable();
+        Ok(released)
+    }
+
+    fn starves(&self, v: usize) -> bool {
+        let enough = 14f64.to_radians();
+        let x = self.band.positions[v];
+        let mut interior = 0.0;
+        let mut least = f64::INFINITY;
+        for pair in self.band.around(v).windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|w| self.band.positions[w as usize]);
+            interior += (a - x).angle_to(b - x);
+            least = least.min(least_angle([x, a, b]));
+        }
+        least < enough.min(0.45 * interior)
+    }
+
+    /// Least angle of the triangles of the band, in radians.
+    pub fn least_angle(&self) -> f64 {
+        let angles = self.band.triangles.iter().map(|t| least_angle(t.map(|v| self.band.positions[v as usize])));
+        angles.fold(std::f64::consts::FRAC_PI_3, f64::min)
+    }
+}
+
+fn least_angle(p: [DVec2; 3]) -> f64 {
+    // The least angle lies opposite the shortest edge.
+    let edges = [p[2] - p[1], p[0] - p[2], p[1] - p[0]];
+    let lengths = edges.map(|e| e.length_squared());
+    let i = (0..3).min_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
+    let (a, b) = (edges[(i + 1) % 3], edges[(i + 2) % 3]);
+    (-a).perp_dot(b).atan2((-a).dot(b)).abs()
+}
