@@ -41,13 +41,7 @@ pub fn space_points(py: Python<'_>, points: &[DVec3]) -> PyResult<Py<PyArray2<f6
 
 /// (n, 2) float64 from a whole and a fraction.
 pub fn sources(py: Python<'_>, sources: &[(u32, f64)]) -> PyResult<Py<PyArray2<f64>>> {
-    table(
-        py,
-        sources
-            .iter()
-            .map(|&(segment, parameter)| [f64::from(segment), parameter])
-            .collect(),
-    )
+    table(py, sources.iter().map(|&(segment, parameter)| [f64::from(segment), parameter]).collect())
 }
 
 /// (n, 3) int32.

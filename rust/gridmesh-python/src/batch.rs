@@ -7,9 +7,11 @@ use std::thread;
 use glam::DVec2;
 use gridmesh::error::{Error, Result};
 use gridmesh::inflate::{InflateOptions, inflate};
+use gridmesh::options::SketchOptions;
 use gridmesh::progress::Progress;
-use gridmesh::sketch::{SketchOptions, mesh_sketch};
-use gridmesh::surface::{Surface, stitch};
+use gridmesh::sketch::mesh_sketch;
+use gridmesh::stitch::stitch;
+use gridmesh::surface::Surface;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
@@ -41,16 +43,11 @@ impl Job {
         drawings: &[Option<Drawing>],
         watch: &Watch,
     ) -> Result<Vec<Option<Result<Surface, Failure>>>> {
-        let threads = self
-            .threads
-            .map_or(0, |threads| threads.min(drawings.len().max(1)));
+        let threads = self.threads.map_or(0, |threads| threads.min(drawings.len().max(1)));
         let pool = ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
-            .map_err(|err| Error::Solver {
-                stage: "thread pool",
-                reason: err.to_string(),
-            })?;
+            .map_err(|err| Error::Solver { stage: "thread pool", reason: err.to_string() })?;
         let done = AtomicUsize::new(0);
         let (finished, wait) = channel::<()>();
         thread::scope(|scope| {
@@ -60,9 +57,7 @@ impl Job {
                     drawings
                         .par_iter()
                         .map(|drawing| {
-                            let result = drawing
-                                .as_ref()
-                                .map(|drawing| guarded(|| self.one(drawing, watch)));
+                            let result = drawing.as_ref().map(|drawing| guarded(|| self.one(drawing, watch)));
                             done.fetch_add(1, Ordering::Relaxed);
                             result
                         })
@@ -76,10 +71,7 @@ impl Job {
             if watch.is_stopped() || !watch.report(1.0) {
                 return Err(Error::Cancelled);
             }
-            results.map_err(|_| Error::Solver {
-                stage: "thread pool",
-                reason: "a worker thread died".into(),
-            })
+            results.map_err(|_| Error::Solver { stage: "thread pool", reason: "a worker thread died".into() })
         })
     }
 

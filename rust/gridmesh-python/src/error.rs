@@ -41,10 +41,7 @@ pub fn from_core(py: Python<'_>, err: &Error) -> PyErr {
 }
 
 /// Runs `work` without the interpreter lock; a panic, always a bug, becomes an error of kind `internal`.
-pub fn detached<T: Send>(
-    py: Python<'_>,
-    work: impl FnOnce() -> Result<T> + Send,
-) -> Result<T, Failure> {
+pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> Result<T, Failure> {
     py.detach(|| guarded(work))
 }
 
@@ -69,18 +66,14 @@ impl Failure {
     pub fn into_py(self, py: Python<'_>) -> PyErr {
         match self {
             Failure::Refused(err) => from_core(py, &err),
-            Failure::Panic(text) => error(
-                py,
-                "internal",
-                format!("a bug in gridmesh, please report it with this input: {text}"),
-            ),
+            Failure::Panic(text) => {
+                error(py, "internal", format!("a bug in gridmesh, please report it with this input: {text}"))
+            }
         }
     }
 }
 
 fn text_of(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| payload.downcast_ref::<&str>().copied())
-        .unwrap_or("no message")
-        .to_owned()
+    text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no message").to_owned()
 }

@@ -2,8 +2,7 @@
 
 use glam::DVec2;
 use numpy::{
-    AllowTypeChange, PyArrayDescrMethods, PyArrayLike1, PyArrayLike2, PyUntypedArray,
-    PyUntypedArrayMethods,
+    AllowTypeChange, PyArrayDescrMethods, PyArrayLike1, PyArrayLike2, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyOverflowError, PyTypeError};
 use pyo3::prelude::*;
@@ -26,23 +25,13 @@ pub struct Argument<'a, 'py> {
 impl<'py> Argument<'_, 'py> {
     /// A `TypeError` that names the type found and what is allowed.
     pub fn wrong_type(&self) -> PyErr {
-        let found = self
-            .value
-            .get_type()
-            .name()
-            .map_or_else(|_| "unknown".into(), |name| name.to_string());
-        PyTypeError::new_err(format!(
-            "{} is of type {found}; allowed: {}",
-            self.name, self.allowed
-        ))
+        let found = self.value.get_type().name().map_or_else(|_| "unknown".into(), |name| name.to_string());
+        PyTypeError::new_err(format!("{} is of type {found}; allowed: {}", self.name, self.allowed))
     }
 
     /// A `GridMeshError` of kind `invalid_option` that shows the value and what is allowed.
     pub fn wrong_value(&self) -> PyErr {
-        let shown = self
-            .value
-            .repr()
-            .map_or_else(|_| "not allowed".into(), |text| text.to_string());
+        let shown = self.value.repr().map_or_else(|_| "not allowed".into(), |text| text.to_string());
         error(
             self.value.py(),
             "invalid_option",
@@ -51,11 +40,7 @@ impl<'py> Argument<'_, 'py> {
     }
 
     fn wrong_shape(&self, found: &str) -> PyErr {
-        error(
-            self.value.py(),
-            "invalid_shape",
-            format!("{} {found}; allowed: {}", self.name, self.allowed),
-        )
+        error(self.value.py(), "invalid_shape", format!("{} {found}; allowed: {}", self.name, self.allowed))
     }
 
     /// A number; whether it is in range is for the library to say.
@@ -65,9 +50,7 @@ impl<'py> Argument<'_, 'py> {
         }
         match self.value.extract::<f64>() {
             Ok(number) => Ok(number),
-            Err(err) if err.is_instance_of::<PyOverflowError>(self.value.py()) => {
-                Err(self.wrong_value())
-            }
+            Err(err) if err.is_instance_of::<PyOverflowError>(self.value.py()) => Err(self.wrong_value()),
             Err(_) => Err(self.wrong_type()),
         }
     }
@@ -79,9 +62,7 @@ impl<'py> Argument<'_, 'py> {
         }
         match self.value.extract::<usize>() {
             Ok(number) => Ok(number),
-            Err(err) if err.is_instance_of::<PyOverflowError>(self.value.py()) => {
-                Err(self.wrong_value())
-            }
+            Err(err) if err.is_instance_of::<PyOverflowError>(self.value.py()) => Err(self.wrong_value()),
             Err(_) => Err(self.wrong_type()),
         }
     }
@@ -93,11 +74,7 @@ impl<'py> Argument<'_, 'py> {
 
     /// One of a few words.
     pub fn word<T: Copy>(&self, words: &[(&str, T)]) -> PyResult<T> {
-        let text = self
-            .value
-            .cast::<PyString>()
-            .map_err(|_| self.wrong_type())?
-            .to_string();
+        let text = self.value.cast::<PyString>().map_err(|_| self.wrong_type())?.to_string();
         words
             .iter()
             .find(|(word, _)| *word == text)
@@ -107,11 +84,7 @@ impl<'py> Argument<'_, 'py> {
 
     /// `None`, or what `read` makes of the value.
     pub fn optional<T>(self, read: impl FnOnce(Self) -> PyResult<T>) -> PyResult<Option<T>> {
-        if self.value.is_none() {
-            Ok(None)
-        } else {
-            read(self).map(Some)
-        }
+        if self.value.is_none() { Ok(None) } else { read(self).map(Some) }
     }
 
     /// Anything that numpy can read as an (n, 2) array of real numbers. The points are copied.
@@ -125,12 +98,7 @@ impl<'py> Argument<'_, 'py> {
             return Err(self.wrong_shape(&format!("has shape {:?}", array.shape())));
         }
         let points = array.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>()?;
-        Ok(points
-            .as_array()
-            .rows()
-            .into_iter()
-            .map(|row| DVec2::new(row[0], row[1]))
-            .collect())
+        Ok(points.as_array().rows().into_iter().map(|row| DVec2::new(row[0], row[1])).collect())
     }
 
     /// Anything that numpy can read as a pair of real numbers.

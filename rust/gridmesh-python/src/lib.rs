@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 use gridmesh::inflate::InflateOptions;
-use gridmesh::sketch::SketchOptions;
+use gridmesh::options::SketchOptions;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
@@ -40,15 +40,17 @@ use crate::watch::Watch;
 /// holes : sequence of (k, 2) arrays, optional
 ///     Contours inside the outline, in the same way.
 /// edge_length : float, optional
-///     Edge length of the mesh, in the units of the outline. Not together with `triangles`.
+///     Edge length of the mesh, in the units of the outline; positive. Not together with `triangles`.
 /// triangles : int, optional
-///     Number of triangles of the flat patch, reached within 10 %. 2000 if neither is given.
+///     Number of triangles of the flat patch, from 6 to 20 million, reached within 10 %. 2000 if
+///     neither is given.
 /// boundary : {"optimal", "grown"}
 ///     "optimal": the boundary of least cost for this lattice and `max_distance`, where cost = turns +
 ///     `closeness` x squared distance in edge lengths. "grown": the growth of the paper's sections
 ///     IV-B to IV-D.
 /// max_distance : float
-///     Largest distance of the lattice boundary from the outline before it is moved onto it, in edge lengths.
+///     Largest distance of the lattice boundary from the outline before it is moved onto it, in edge
+///     lengths; 0.5 to 4.
 /// closeness : float
 ///     Price of a squared distance of one edge length against a turn of 60 degrees; at least 0.
 /// angle : float, optional
@@ -77,7 +79,9 @@ use crate::watch::Watch;
 ///     "minimum_irregular" (the least that any such body has), "turns", "turns_bound", "cost",
 ///     "cost_bound" (bounds are None where none was computed), "optimal", "max_distance_used",
 ///     "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
-///     (radians), "released_corners", "repaired" and "seconds" (per stage).
+///     (radians), "corners" (drawn ones), "released_corners" (those without a vertex of their own),
+///     "repaired" (repeated points dropped), "placements" (of the lattice, tried) and "seconds" (per
+///     stage).
 ///
 /// Raises
 /// ------
@@ -100,7 +104,7 @@ use crate::watch::Watch;
 #[pyfunction]
 #[pyo3(
     signature = (outline, holes = None, *, progress = None, **options),
-    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, progress=None)"
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='grown', max_distance=1.5, closeness=0.3, angle=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, progress=None)"
 )]
 fn mesh_sketch(
     py: Python<'_>,
@@ -111,9 +115,7 @@ fn mesh_sketch(
 ) -> PyResult<Patch> {
     let drawing = drawing(outline, holes)?;
     let mut chosen = SketchOptions::default();
-    options::read("mesh_sketch", options, |name, value| {
-        options::set_sketch(&mut chosen, name, value)
-    })?;
+    options::read("mesh_sketch", options, |name, value| options::set_sketch(&mut chosen, name, value))?;
     let sketch = Watch::new(progress)?.run(py, |progress| {
         gridmesh::sketch::mesh_sketch(&drawing.outline, &drawing.holes, &chosen, progress)
     })?;
@@ -152,7 +154,7 @@ fn mesh_sketch(
 #[pyo3(text_signature = "(patch)")]
 fn stitch(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
     let core = core_patch(patch)?;
-    let surface = error::detached(py, || Ok(gridmesh::surface::stitch(&core)));
+    let surface = error::detached(py, || Ok(gridmesh::stitch::stitch(&core)));
     Surface::new(py, &surface.map_err(|failure| failure.into_py(py))?)
 }
 
@@ -183,7 +185,7 @@ fn stitch(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 #[pyo3(text_signature = "(patch)")]
 fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
     let core = core_patch(patch)?;
-    let surface = error::detached(py, || Ok(gridmesh::surface::flat(&core)));
+    let surface = error::detached(py, || Ok(gridmesh::stitch::flat(&core)));
     Surface::new(py, &surface.map_err(|failure| failure.into_py(py))?)
 }
 
@@ -194,8 +196,9 @@ fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 /// patch : Patch
 /// depth : float
 ///     Scales z; at 1 a circle becomes a sphere.
-/// profile : {"round", "flat", "peak"}
-///     Cross section of the body: rounded, a plateau with a rounded rim, or a ridge.
+/// profile : {"round", "even", "flat", "peak"}
+///     Cross section of the body. "round": a circle becomes a sphere, a long limb of half width w is about
+///     1.41 w high; "even": the limb is about w high; "flat": a plateau with a rounded rim; "peak": a tent.
 /// front, back : float or (n,) array, optional
 ///     Depth of each side, one number or one per point of the outline; None: `depth`.
 /// corner_angle : float
@@ -242,12 +245,9 @@ fn inflate(
 ) -> PyResult<Surface> {
     let core = core_patch(patch)?;
     let mut chosen = InflateOptions::default();
-    options::read("inflate", options, |name, value| {
-        options::set_inflate(&mut chosen, name, value)
-    })?;
-    let surface = Watch::new(progress)?.run(py, |progress| {
-        gridmesh::inflate::inflate(&core, &chosen, progress)
-    })?;
+    options::read("inflate", options, |name, value| options::set_inflate(&mut chosen, name, value))?;
+    let surface =
+        Watch::new(progress)?.run(py, |progress| gridmesh::inflate::inflate(&core, &chosen, progress))?;
     Surface::new(py, &surface)
 }
 
@@ -330,32 +330,19 @@ fn job(
     threads: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Job> {
-    let mut job = Job {
-        sketch: SketchOptions::default(),
-        inflate: Some(InflateOptions::default()),
-        threads: None,
-    };
+    let mut job =
+        Job { sketch: SketchOptions::default(), inflate: Some(InflateOptions::default()), threads: None };
     let mut shape = InflateOptions::default();
     options::read("map_sketches", options, |name, value| {
         let in_sketch = options::set_sketch(&mut job.sketch, name, value)?;
         let in_shape = options::set_inflate(&mut shape, name, value)?;
         Ok(in_sketch || in_shape)
     })?;
-    let wanted = inflate.map_or(Ok(true), |value| {
-        Argument {
-            name: "inflate",
-            value,
-            allowed: "True or False",
-        }
-        .bool()
-    })?;
+    let wanted = inflate
+        .map_or(Ok(true), |value| Argument { name: "inflate", value, allowed: "True or False" }.bool())?;
     job.inflate = wanted.then_some(shape);
     if let Some(value) = threads {
-        let threads = Argument {
-            name: "threads",
-            value,
-            allowed: "a positive whole number, or None",
-        };
+        let threads = Argument { name: "threads", value, allowed: "a positive whole number, or None" };
         match threads.count()? {
             0 => return Err(threads.wrong_value()),
             count => job.threads = Some(count),
@@ -366,35 +353,16 @@ fn job(
 
 fn drawing(outline: &Bound<'_, PyAny>, holes: Option<&Bound<'_, PyAny>>) -> PyResult<Drawing> {
     let allowed = "an (n, 2) array of real numbers";
-    let outline = Argument {
-        name: "outline",
-        value: outline,
-        allowed,
-    }
-    .points()?;
+    let outline = Argument { name: "outline", value: outline, allowed }.points()?;
     let mut rings: Vec<Vec<DVec2>> = Vec::new();
     if let Some(value) = holes {
-        let all = Argument {
-            name: "holes",
-            value,
-            allowed: "a sequence of (k, 2) arrays of real numbers",
-        };
+        let all = Argument { name: "holes", value, allowed: "a sequence of (k, 2) arrays of real numbers" };
         for ring in value.try_iter().map_err(|_| all.wrong_type())? {
             let name = format!("hole {}", rings.len());
-            rings.push(
-                Argument {
-                    name: &name,
-                    value: &ring?,
-                    allowed,
-                }
-                .points()?,
-            );
+            rings.push(Argument { name: &name, value: &ring?, allowed }.points()?);
         }
     }
-    Ok(Drawing {
-        outline,
-        holes: rings,
-    })
+    Ok(Drawing { outline, holes: rings })
 }
 
 fn map_item(item: &Bound<'_, PyAny>) -> PyResult<Drawing> {
@@ -410,26 +378,15 @@ fn as_item_error(py: Python<'_>, err: PyErr) -> PyResult<Py<PyAny>> {
     if err.is_instance_of::<GridMeshError>(py) {
         Ok(err.into_value(py).into_any())
     } else if err.is_instance_of::<PyTypeError>(py) {
-        Ok(error(py, "invalid_type", err.value(py).to_string())
-            .into_value(py)
-            .into_any())
+        Ok(error(py, "invalid_type", err.value(py).to_string()).into_value(py).into_any())
     } else {
         Err(err)
     }
 }
 
 fn core_patch(patch: &Bound<'_, PyAny>) -> PyResult<Arc<gridmesh::patch::Patch>> {
-    let argument = Argument {
-        name: "patch",
-        value: patch,
-        allowed: "a Patch, as mesh_sketch returns it",
-    };
-    Ok(patch
-        .cast::<Patch>()
-        .map_err(|_| argument.wrong_type())?
-        .get()
-        .inner
-        .clone())
+    let argument = Argument { name: "patch", value: patch, allowed: "a Patch, as mesh_sketch returns it" };
+    Ok(patch.cast::<Patch>().map_err(|_| argument.wrong_type())?.get().inner.clone())
 }
 
 #[pymodule]

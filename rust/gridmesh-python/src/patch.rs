@@ -54,12 +54,7 @@ pub struct Patch {
 
 impl Patch {
     pub fn new(inner: CorePatch, report: Py<PyDict>) -> Self {
-        Self {
-            inner: Arc::new(inner),
-            report,
-            vertices: PyOnceLock::new(),
-            triangles: PyOnceLock::new(),
-        }
+        Self { inner: Arc::new(inner), report, vertices: PyOnceLock::new(), triangles: PyOnceLock::new() }
     }
 }
 
@@ -67,46 +62,34 @@ impl Patch {
 impl Patch {
     #[getter]
     fn vertices(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
-        let made = self
-            .vertices
-            .get_or_try_init(py, || arrays::plane_points(py, &self.inner.vertices))?;
+        let made = self.vertices.get_or_try_init(py, || arrays::plane_points(py, &self.inner.vertices))?;
         Ok(made.clone_ref(py))
     }
 
     #[getter]
     fn triangles(&self, py: Python<'_>) -> PyResult<Py<PyArray2<i32>>> {
-        let made = self
-            .triangles
-            .get_or_try_init(py, || arrays::triangles(py, &self.inner.triangles))?;
+        let made = self.triangles.get_or_try_init(py, || arrays::triangles(py, &self.inner.triangles))?;
         Ok(made.clone_ref(py))
     }
 
     #[getter]
     fn loops(&self, py: Python<'_>) -> PyResult<Py<PyList>> {
-        arrays::list(py, &self.inner.loops, |contour| {
-            Ok(arrays::indices(py, contour.vertices()))
-        })
+        arrays::list(py, &self.inner.loops, |contour| Ok(arrays::indices(py, contour.vertices())))
     }
 
     #[getter]
     fn arc(&self, py: Python<'_>) -> PyResult<Py<PyList>> {
-        arrays::list(py, &self.inner.loops, |contour| {
-            Ok(arrays::row(py, contour.arc.clone()))
-        })
+        arrays::list(py, &self.inner.loops, |contour| Ok(arrays::row(py, contour.arc.clone())))
     }
 
     #[getter]
     fn source(&self, py: Python<'_>) -> PyResult<Py<PyList>> {
-        arrays::list(py, &self.inner.loops, |contour| {
-            arrays::sources(py, &contour.source)
-        })
+        arrays::list(py, &self.inner.loops, |contour| arrays::sources(py, &contour.source))
     }
 
     #[getter]
     fn corner(&self, py: Python<'_>) -> PyResult<Py<PyList>> {
-        arrays::list(py, &self.inner.loops, |contour| {
-            Ok(arrays::row(py, contour.corner.clone()))
-        })
+        arrays::list(py, &self.inner.loops, |contour| Ok(arrays::row(py, contour.corner.clone())))
     }
 
     #[getter]
@@ -149,27 +132,15 @@ impl Patch {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let py = slf.py();
         let this = slf.get();
-        let lengths: Vec<f64> = this
-            .inner
-            .loops
-            .iter()
-            .map(|contour| contour.length)
-            .collect();
+        let lengths: Vec<f64> = this.inner.loops.iter().map(|contour| contour.length).collect();
         let fields = (
             this.vertices(py)?,
             this.triangles(py)?,
             (this.arc(py)?, this.source(py)?, this.corner(py)?, lengths),
-            (
-                this.inner.lattice.origin.to_array(),
-                this.angle(),
-                this.edge_length(),
-            ),
+            (this.inner.lattice.origin.to_array(), this.angle(), this.edge_length()),
             this.report(py),
         );
-        Ok((
-            py.import("gridmesh._native")?.getattr("_patch")?,
-            fields.into_pyobject(py)?.into_any(),
-        ))
+        Ok((py.import("gridmesh._native")?.getattr("_patch")?, fields.into_pyobject(py)?.into_any()))
     }
 }
 
@@ -198,12 +169,7 @@ pub fn _patch(
         .filter(|row| row.len() == 2)
         .map(|row| DVec2::new(row[0], row[1]))
         .collect();
-    let index = |i: i32| {
-        u32::try_from(i)
-            .ok()
-            .filter(|&i| (i as usize) < vertices.len())
-            .ok_or_else(broken)
-    };
+    let index = |i: i32| u32::try_from(i).ok().filter(|&i| (i as usize) < vertices.len()).ok_or_else(broken);
     let mut corners = Vec::new();
     for row in triangles.as_array().rows() {
         match row.to_slice() {
@@ -216,38 +182,16 @@ pub fn _patch(
     for (((arc, source), corner), length) in arcs.iter().zip(&sources).zip(&turns).zip(lengths) {
         let arc = arc.as_array().to_vec();
         let start = loops.last().map_or(0, |last| last.vertices().end);
-        let source: Vec<_> = source
-            .as_array()
-            .rows()
-            .into_iter()
-            .map(|row| (row[0] as u32, row[1]))
-            .collect();
+        let source: Vec<_> =
+            source.as_array().rows().into_iter().map(|row| (row[0] as u32, row[1])).collect();
         let corner = corner.as_array().to_vec();
         let end = start as usize + arc.len();
         if source.len() != arc.len() || corner.len() != arc.len() || end > vertices.len() {
             return Err(broken());
         }
-        loops.push(Loop {
-            start,
-            arc,
-            source,
-            corner,
-            length,
-        });
+        loops.push(Loop { start, arc, source, corner, length });
     }
     let ([x, y], angle, edge_length) = lattice;
-    let lattice = Lattice {
-        origin: DVec2::new(x, y),
-        angle,
-        edge_length,
-    };
-    Ok(Patch::new(
-        CorePatch {
-            vertices,
-            triangles: corners,
-            loops,
-            lattice,
-        },
-        report,
-    ))
+    let lattice = Lattice { origin: DVec2::new(x, y), angle, edge_length };
+    Ok(Patch::new(CorePatch { vertices, triangles: corners, loops, lattice }, report))
 }

@@ -1,6 +1,6 @@
 //! Reports as dicts of plain numbers.
 
-use gridmesh::sketch::SketchReport;
+use gridmesh::options::SketchReport;
 use gridmesh::surface::SurfaceReport;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -19,8 +19,10 @@ pub fn sketch(py: Python<'_>, report: &SketchReport) -> PyResult<Py<PyDict>> {
     dict.set_item("max_distance_used", report.max_distance_used)?;
     dict.set_item("max_deviation", report.max_deviation)?;
     dict.set_item("min_angle", report.min_angle)?;
+    dict.set_item("corners", report.corners)?;
     dict.set_item("released_corners", report.released_corners)?;
     dict.set_item("repaired", report.repaired)?;
+    dict.set_item("placements", report.placements)?;
     dict.set_item("seconds", seconds(py, &report.seconds)?)?;
     Ok(dict.unbind())
 }
@@ -35,6 +37,9 @@ pub fn surface(py: Python<'_>, report: &SurfaceReport) -> PyResult<Py<PyDict>> {
     dict.set_item("volume", report.volume)?;
     dict.set_item("min_angle", report.min_angle)?;
     dict.set_item("self_intersections", report.self_intersections)?;
+    dict.set_item("embedded", report.embedded)?;
+    dict.set_item("shortened", report.shortened)?;
+    dict.set_item("repaired", report.repaired)?;
     dict.set_item("seconds", seconds(py, &report.seconds)?)?;
     Ok(dict.unbind())
 }

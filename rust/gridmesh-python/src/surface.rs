@@ -21,10 +21,13 @@ use crate::{arrays, reports};
 ///     The vertices of the drawn contours, loop by loop, in the order of the patch's loops. Their x
 ///     and y are those of the patch, bit for bit; their z is 0.
 /// uv : (3 t, 2) float64
-///     Texture coordinates in 0 to 1 of each triangle's three corners, in the order of `triangles`.
+///     Texture coordinates in 0 to 1 of each triangle's three corners, in the order of `triangles`: the
+///     front as drawn, the back beside it as seen from behind.
 /// report : dict
 ///     Plain numbers: "triangles", "irregular" (vertices whose valence is not 6), "watertight", "genus",
-///     "volume", "min_angle" (radians), "self_intersections", and "seconds", a dict of times per stage.
+///     "volume", "min_angle" (radians), "self_intersections" (pairs of triangles), "embedded" (True if
+///     their absence is proved), "shortened" and "repaired" (fallbacks taken), and "seconds", a dict of
+///     times per stage.
 #[pyclass(frozen, module = "gridmesh")]
 pub struct Surface {
     #[pyo3(get)]
@@ -56,13 +59,8 @@ impl Surface {
 #[pymethods]
 impl Surface {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let (triangles, vertices) = (
-            self.triangles.bind(py).len()?,
-            self.vertices.bind(py).len()?,
-        );
-        Ok(format!(
-            "<gridmesh.Surface: {triangles} triangles, {vertices} vertices>"
-        ))
+        let (triangles, vertices) = (self.triangles.bind(py).len()?, self.vertices.bind(py).len()?);
+        Ok(format!("<gridmesh.Surface: {triangles} triangles, {vertices} vertices>"))
     }
 
     // A surface cannot change: a copy is the surface itself.
@@ -77,17 +75,8 @@ impl Surface {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let py = slf.py();
         let this = slf.get();
-        let fields = (
-            &this.vertices,
-            &this.triangles,
-            &this.silhouette,
-            &this.uv,
-            &this.report,
-        );
-        Ok((
-            py.import("gridmesh._native")?.getattr("_surface")?,
-            fields.into_pyobject(py)?.into_any(),
-        ))
+        let fields = (&this.vertices, &this.triangles, &this.silhouette, &this.uv, &this.report);
+        Ok((py.import("gridmesh._native")?.getattr("_surface")?, fields.into_pyobject(py)?.into_any()))
     }
 }
 
@@ -100,11 +89,5 @@ pub fn _surface(
     uv: Py<PyArray2<f64>>,
     report: Py<PyDict>,
 ) -> Surface {
-    Surface {
-        vertices,
-        triangles,
-        silhouette,
-        uv,
-        report,
-    }
+    Surface { vertices, triangles, silhouette, uv, report }
 }

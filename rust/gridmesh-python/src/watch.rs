@@ -59,12 +59,7 @@ impl Watch {
 
     /// The result, unless the callable or a signal handler raised an exception: then that.
     pub fn finish<T>(&self, py: Python<'_>, result: Result<T, Failure>) -> PyResult<T> {
-        match self
-            .raised
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .take()
-        {
+        match self.raised.lock().unwrap_or_else(PoisonError::into_inner).take() {
             Some(raised) => Err(raised),
             None => result.map_err(|failure| failure.into_py(py)),
         }
@@ -99,10 +94,7 @@ impl Watch {
     }
 
     fn is_time_to_look(&self) -> bool {
-        let mut next_look = self
-            .next_look
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let mut next_look = self.next_look.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();
         let due = now >= *next_look;
         if due {

@@ -24,7 +24,7 @@ class _Options(TypedDict, total=False):
     proof_nodes: int
     relax: bool
     depth: float
-    profile: Literal["round", "flat", "peak"]
+    profile: Literal["round", "even", "flat", "peak"]
     front: _Side
     back: _Side
 
@@ -77,7 +77,7 @@ def mesh_sketch(
     *,
     edge_length: float | None = None,
     triangles: int | None = None,
-    boundary: Literal["optimal", "grown"] = "optimal",
+    boundary: Literal["optimal", "grown"] = "grown",
     max_distance: float = 1.5,
     closeness: float = 0.3,
     angle: float | None = None,
@@ -94,7 +94,7 @@ def inflate(
     patch: Patch,
     *,
     depth: float = 1.0,
-    profile: Literal["round", "flat", "peak"] = "round",
+    profile: Literal["round", "even", "flat", "peak"] = "round",
     front: _Side = None,
     back: _Side = None,
     corner_angle: float = 0.6981317007977318,
