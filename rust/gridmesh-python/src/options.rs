@@ -70,8 +70,13 @@ pub fn set_inflate(options: &mut InflateOptions, name: &str, value: &Bound<'_, P
     match name {
         "depth" => options.depth = argument("a positive number").float()?,
         "profile" => {
-            let words = [("round", Profile::Round), ("flat", Profile::Flat), ("peak", Profile::Peak)];
-            options.profile = argument("'round', 'flat' or 'peak'").word(&words)?;
+            let words = [
+                ("round", Profile::Round),
+                ("even", Profile::Even),
+                ("flat", Profile::Flat),
+                ("peak", Profile::Peak),
+            ];
+            options.profile = argument("'round', 'even', 'flat' or 'peak'").word(&words)?;
         }
         "front" => options.front = argument(side).optional(depths)?,
         "back" => options.back = argument(side).optional(depths)?,

@@ -4,6 +4,20 @@ from typing import Any, Literal, TypedDict, Unpack, final
 import numpy as np
 import numpy.typing as npt
 
+__all__ = [
+    "GridMeshError",
+    "Patch",
+    "Surface",
+    "__version__",
+    "_patch",
+    "_surface",
+    "flat",
+    "inflate",
+    "map_sketches",
+    "mesh_sketch",
+    "stitch",
+]
+
 __version__: str
 
 _Points = npt.ArrayLike
@@ -108,3 +122,5 @@ def map_sketches(
     progress: _Progress | None = None,
     **options: Unpack[_Options],
 ) -> list[Surface | GridMeshError]: ...
+def _patch(vertices: Any, triangles: Any, contours: Any, lattice: Any, report: Any) -> Patch: ...
+def _surface(vertices: Any, triangles: Any, silhouette: Any, uv: Any, report: Any) -> Surface: ...
