@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """GridMesh: smooth bodies with clean triangle meshes from drawn strokes.
 
-    operators -> strokes, curves (Blender to arrays) -> outlines, api (numpy only) -> meshes (arrays to Blender)
+    operators -> strokes, curves (from Blender) -> outlines, api (numpy only) -> meshes (to Blender)
 
 `properties` holds what the redo panel shows, `ui` the sidebar and the menus. The native module `gridmesh` is
 imported when it is first needed, so that the extension registers, and can say what is wrong, without it; and

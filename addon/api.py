@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from .outlines import Sketch, Stroke, StrokeError, nest, prepare, project
+from .outlines import Sketch, Stroke, StrokeError, area, nest, prepare, project
 
 NATIVE_VERSION = "0.1.0"
-"""Version of the `gridmesh` module that this extension is shipped with; newer patch releases serve as well."""
+"""Version of the `gridmesh` module that this extension is shipped with; newer patch releases serve too."""
 
 
 class NativeError(RuntimeError):
@@ -142,6 +142,9 @@ def _surfaces(
     return [surface(outline, holes) for outline, holes in drawings]
 
 
-def edge_length_for(area: float, triangles: int) -> float:
-    """Edge length of that many equilateral triangles on an area."""
-    return float(np.sqrt(area / triangles * 4 / np.sqrt(3)))
+def suggested_edge_length(sketches: list[Sketch], triangles: int) -> float | None:
+    """Edge length at which the largest sketch has about that many triangles; None if none has an area."""
+    largest = max((area(sketch.outline) for sketch in sketches), default=0.0)
+    if largest <= 0 or triangles <= 0:
+        return None
+    return float(np.sqrt(largest / triangles * 4 / np.sqrt(3)))

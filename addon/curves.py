@@ -24,13 +24,14 @@ def read(context: bpy.types.Context, ob: bpy.types.Object) -> tuple[list[Stroke]
     if ob.mode == "EDIT":
         ob.update_from_editmode()
     with _bare(context, ob) as mesh:
-        points, lines, failure = _outlines(mesh)
+        points, lines, failure = _outlines(mesh) if mesh is not None else (np.zeros((0, 3)), [], "")
     if failure:
         return [], [Failure(f"'{ob.name}'", failure)], []
     if not lines:
         what = "text" if ob.type == "FONT" else "splines of two or more points"
         return [], [], [f"'{ob.name}' has no {what}; draw a closed shape in it"]
-    points = points @ np.array(ob.matrix_world.to_3x3()).T + np.array(ob.matrix_world.translation)
+    with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name later
+        points = points @ np.array(ob.matrix_world.to_3x3()).T + np.array(ob.matrix_world.translation)
     splines = _splines(ob, lines)
     slots = [slot.material for slot in ob.material_slots]
     strokes = []
@@ -55,9 +56,10 @@ def read(context: bpy.types.Context, ob: bpy.types.Object) -> tuple[list[Stroke]
 
 
 @contextmanager
-def _bare(context: bpy.types.Context, ob: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
+def _bare(context: bpy.types.Context, ob: bpy.types.Object) -> Iterator[bpy.types.Mesh | None]:
     """Mesh of a copy of the object that has neither bevel nor extrusion nor fill, for a short time.
 
+    None if the object is empty.
     Only where modifiers or shape keys ask for it is the copy put into the scene and evaluated there.
     """
     data = ob.data.copy()
@@ -78,8 +80,7 @@ def _bare(context: bpy.types.Context, ob: bpy.types.Object) -> Iterator[bpy.type
         seen.to_mesh_clear()
     finally:
         bpy.data.objects.remove(copy)
-        data_blocks = bpy.data.curves
-        data_blocks.remove(data)
+        bpy.data.curves.remove(data)
 
 
 def _outlines(mesh: bpy.types.Mesh) -> tuple[np.ndarray, list[tuple[np.ndarray, bool]], str]:

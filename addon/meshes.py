@@ -40,7 +40,7 @@ class Transaction:
 
 
 def made_before(context: bpy.types.Context) -> dict[tuple[str, str, int], bpy.types.Object]:
-    """Objects of this view layer that were made from strokes, by the key of the stroke; the first of duplicates."""
+    """Objects of this view layer that were made from strokes, by stroke; the first one of duplicates."""
     found: dict[tuple[str, str, int], bpy.types.Object] = {}
     for ob in context.view_layer.objects:
         key = stroke_key(ob)
@@ -58,6 +58,11 @@ def stroke_key(ob: bpy.types.Object) -> tuple[str, str, int] | None:
     return key if None not in key else None
 
 
+def selected_bodies(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Objects in the selection that were made from strokes."""
+    return [ob for ob in context.view_layer.objects.selected if stroke_key(ob) is not None]
+
+
 def obstacle(ob: bpy.types.Object) -> str:
     """Why the object cannot be brought up to date in place; empty if it can."""
     if not ob.is_editable or not ob.data.is_editable:
@@ -65,7 +70,7 @@ def obstacle(ob: bpy.types.Object) -> str:
     if ob.mode != "OBJECT":
         return f"'{ob.name}' is being edited; leave its mode or turn off Update Existing"
     if ob.data.shape_keys is not None:
-        return f"'{ob.name}' has shape keys, which do not fit a new mesh; remove them or turn off Update Existing"
+        return f"'{ob.name}' has shape keys, which fit no new mesh; remove them or turn off Update Existing"
     return ""
 
 
@@ -146,14 +151,18 @@ def fill(mesh: bpy.types.Mesh, body: Body) -> None:
 
 
 def _refresh(ob: bpy.types.Object, body: Body) -> None:
-    """Replace the geometry of an object made earlier; keep its name, materials, modifiers, children and shading.
+    """Replace the geometry of an object made earlier; keep name, materials, modifiers, children, shading.
 
     Where the drawing plane moved, the object moves along, from wherever it was put meanwhile.
     """
     mesh = ob.data
     flat_shaded = _flat_shaded(mesh)
+    groups = [group.name for group in ob.vertex_groups]
     mesh.clear_geometry()
     fill(mesh, body)
+    for name in groups:  # cleared with the geometry, but modifiers refer to them
+        if name not in ob.vertex_groups:
+            ob.vertex_groups.new(name=name)
     if flat_shaded:
         mesh.shade_flat()
     before = np.array(list(ob[LINK].get("matrix", ())), float)

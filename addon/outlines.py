@@ -104,10 +104,10 @@ class Sketch:
 def fit_plane(points: np.ndarray) -> Plane:
     """Best-fit plane through points (n, 3) that are finite and not on one line.
 
-    The normal points up (+Z of the world). On a plane that is vertical within 6 degrees it points to the front
-    (-Y), and where that too is level, to the right (+X). The x axis is level, except on planes that are
-    horizontal within 25 degrees, where it follows the world's X. The origin is the middle of the points' bounds
-    in this frame, so that equal strokes get equal frames however densely they are drawn.
+    The normal points up (+Z of the world). On a plane that is vertical within 6 degrees it points to the
+    front (-Y), and where the plane stands across the front, to the right (+X). The x axis is level, except
+    on planes that are horizontal within 25 degrees, where it follows the world's X. The origin is the middle
+    of the points' bounds in this frame.
 
     Raises
     ------
@@ -210,8 +210,8 @@ def close(points: np.ndarray, tolerance: float) -> tuple[np.ndarray, float]:
     """Close an open planar stroke (n, 2), n >= 3, the way it was meant.
 
     Where its ends cross, both are cut off at the crossing; where they pass each other at a distance, at the
-    nearest approach; otherwise the ends are joined as they are. Nothing longer than `tolerance` times the size
-    of the stroke is cut off or bridged. Returns the closed outline (closed implicitly) and the gap bridged.
+    nearest approach; otherwise the ends are joined as they are. Nothing longer than `tolerance` times the
+    size of the stroke is cut off or bridged. Returns the outline (closed implicitly) and the gap bridged.
 
     Raises
     ------
@@ -275,7 +275,7 @@ def _last_crossing(
 def _nearest_approach(
     points: np.ndarray, head: np.ndarray, tail: np.ndarray
 ) -> tuple[int, int, float] | None:
-    """Find the point of `head` and the end point of a segment of `tail` that are nearest, and their distance."""
+    """Find the point of `head` and the end of a segment of `tail` that are nearest, and their distance."""
     if not len(head) or not len(tail):
         return None
     ends = points[tail + 1]
@@ -297,8 +297,8 @@ def _blocks(rows: np.ndarray, columns: int) -> list[np.ndarray]:
 def nest(sketches: list[Sketch]) -> list[Sketch]:
     """Make sketches inside others their holes, by the even-odd rule.
 
-    A sketch inside an odd number of others of the same source and layer that lie in its plane becomes a hole of
-    the smallest one; the others are returned, in order. Cost is quadratic in the sketches of a layer.
+    A sketch inside an odd number of others of the same source and layer that lie in its plane becomes a hole
+    of the smallest one; the others are returned, in order. Cost is quadratic in the sketches of a layer.
     """
     layers: dict[tuple[str, str], list[Sketch]] = {}
     for sketch in sketches:
@@ -316,7 +316,7 @@ def nest(sketches: list[Sketch]) -> list[Sketch]:
 
 
 def _inside(one: Sketch, other: Sketch) -> bool:
-    """Whether `one` lies in the plane of `other` and inside it (strokes that cross are not told apart here)."""
+    """Whether `one` lies in the plane of `other` and its first point inside; crossings are not looked for."""
     if one.size >= other.size or abs(one.plane.axes[2] @ other.plane.axes[2]) < 0.99:
         return False
     points = project(one, other.plane)

@@ -55,7 +55,7 @@ class SketchOptions:
     )
     max_distance: FloatProperty(
         name="Max Distance",
-        description="Largest distance of the grid's rim from the stroke before it is moved onto it, in edge lengths",
+        description="Distance in edge lengths up to which the grid may stray from the stroke before its rim is moved onto it",
         default=1.5,
         soft_min=0.5,
         soft_max=3.0,

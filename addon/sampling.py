@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Curves as polylines: Bezier, Catmull-Rom and NURBS strokes are sampled as Blender draws them. numpy only."""
+"""Curves as polylines: Bezier, Catmull-Rom and NURBS strokes, sampled as Blender draws them. numpy only."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class SamplingError(ValueError):
 def bezier(
     points: np.ndarray, left: np.ndarray, right: np.ndarray, cyclic: bool, resolution: int = RESOLUTION
 ) -> np.ndarray:
-    """Sample a Bezier spline with control points and handles (n, 3); the control points are among the samples."""
+    """Sample a Bezier spline with control points and handles (n, 3); its points are among the samples."""
     if len(points) < 2:
         return points
     after = np.roll(np.arange(len(points)), -1)
@@ -33,7 +33,7 @@ def bezier(
 
 
 def catmull_rom(points: np.ndarray, cyclic: bool, resolution: int = RESOLUTION) -> np.ndarray:
-    """Sample a uniform Catmull-Rom spline through points (n, 3); its tangents are those of a Bezier spline."""
+    """Sample a uniform Catmull-Rom spline through points (n, 3), as a Bezier spline."""
     if len(points) < 3:
         return points
     if cyclic:

@@ -55,10 +55,9 @@ def annotation(scene: bpy.types.Scene) -> Any:
     return scene.annotation if hasattr(scene, "annotation") else scene.grease_pencil
 
 
-def read_objects(context: bpy.types.Context) -> Reading:
-    """Read all strokes of `source_objects` that are not hidden, as modifiers leave them."""
+def read_objects(context: bpy.types.Context, objects: list[bpy.types.Object]) -> Reading:
+    """Read all strokes of the objects that are not hidden, as modifiers leave them."""
     reading = Reading()
-    objects = source_objects(context)
     depsgraph = context.evaluated_depsgraph_get()
     for ob in objects:
         if ob.type == "GREASEPENCIL":
@@ -115,7 +114,7 @@ def _hidden(layer: Any) -> bool:
 
 
 def layer_to_world(ob: bpy.types.Object, layer: Any) -> np.ndarray:
-    """Matrix (4, 4) from a layer to the world. A layer with a parent of its own does not follow its object."""
+    """Matrix (4, 4) from a layer to the world. A layer with its own parent does not follow its object."""
     parent = layer.parent
     if parent is None:
         return np.array(ob.matrix_world @ layer.matrix_local)
@@ -199,7 +198,8 @@ def _read_geometry(
             stroke = Stroke(points=np.zeros((0, 3)), **about)
             reading.failures.append(Failure(stroke.label, str(error)))
             continue
-        reading.strokes.append(Stroke(points=points @ world[:3, :3].T + world[:3, 3], **about))
+        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name later
+            reading.strokes.append(Stroke(points=points @ world[:3, :3].T + world[:3, 3], **about))
     return reading
 
 
@@ -228,12 +228,12 @@ def _sampler(table: _Attributes, positions: np.ndarray, cyclic: np.ndarray, offs
 
 
 def read_annotations(context: bpy.types.Context) -> Reading:
-    """Read the annotation strokes of the scene at the current frame. They have no material and are never cyclic."""
+    """Read the annotation strokes of the scene at the current frame. They have no material, none is cyclic."""
     data = annotation(context.scene)
     if data is None:
         return Reading(notes=["the scene has no annotations; draw some with the Annotate tool"])
     reading = Reading()
-    for layer, frame in _annotation_frames(data):
+    for layer, frame in _annotation_frames(data, context.scene.frame_current):
         count = len(frame.strokes)
         for index, stroke in enumerate(frame.strokes):
             points = np.empty(len(stroke.points) * 3, np.float32)
@@ -255,7 +255,9 @@ def read_annotations(context: bpy.types.Context) -> Reading:
     return reading
 
 
-def _annotation_frames(data: Any) -> Iterator[tuple[Any, Any]]:
+def _annotation_frames(data: Any, current: int) -> Iterator[tuple[Any, Any]]:
+    """Visible layers with the frame that is shown: the last one that is not in the future."""
     for layer in data.layers:
-        if not layer.annotation_hide and layer.active_frame is not None:
-            yield layer, layer.active_frame
+        begun = [frame for frame in layer.frames if frame.frame_number <= current]
+        if begun and not layer.annotation_hide:
+            yield layer, max(begun, key=lambda frame: frame.frame_number)

@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from . import strokes
+from . import meshes, strokes
 from .operators.strokes import OBJECT_OT_gridmesh_from_strokes
 
 # Menus that get an entry; which of them exist depends on the Blender version.
@@ -22,7 +22,7 @@ MENUS = (
 )
 
 
-class VIEW3D_PT_gridmesh(bpy.types.Panel):
+class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
     """Make meshes from what is drawn."""
 
     bl_label = "GridMesh"
@@ -34,14 +34,17 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):
         """Draw a button for each kind of drawing that is there."""
         idname = OBJECT_OT_gridmesh_from_strokes.bl_idname
         column = self.layout.column()
-        row = column.column()
-        row.enabled = bool(strokes.source_objects(context))
+        drawings, bodies = strokes.source_objects(context), meshes.selected_bodies(context)
+        row = column.row()
+        row.enabled = bool(drawings)
         row.operator(idname, icon="MESH_DATA").source = "OBJECTS"
+        row = column.row()
+        row.enabled = bool(drawings or bodies)
         again = row.operator(idname, text="Update Bodies", icon="FILE_REFRESH")
         again.source, again.update_existing = "OBJECTS", True
         if strokes.annotation(context.scene) is not None:
             column.operator(idname, text="Annotations to Mesh").source = "ANNOTATIONS"
-        if not row.enabled:
+        if not drawings:
             self.layout.label(text="Select a drawing or a curve", icon="INFO")
 
 

@@ -16,12 +16,12 @@ _NAMED = 3
 """A message names this many strokes; the others are counted."""
 
 
-class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Operator):
-    """Make a smooth body with a clean triangle mesh from each closed stroke"""
+class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Operator):  # noqa: N801
+    """Make a smooth body with a clean triangle mesh from each closed stroke"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_from_strokes"
     bl_label = "Strokes to Mesh"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
 
     source: EnumProperty(
         name="Source",
@@ -45,7 +45,7 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
     )
     close_gaps: FloatProperty(
         name="Close Gaps",
-        description="Largest gap that is closed, and longest overshoot that is cut off, relative to the stroke's size",
+        description="Largest gap that is closed and longest overshoot that is cut off, in parts of the stroke's size",
         subtype="FACTOR",
         default=0.2,
         min=0.0,
@@ -58,7 +58,7 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
     )
     update_existing: BoolProperty(
         name="Update Existing",
-        description="Replace the mesh of the object that was made from a stroke before, and keep all else of it",
+        description="Replace the mesh of the object made from the stroke before, and keep all else of it",
         default=False,
         options={"SKIP_SAVE"},
     )
@@ -77,7 +77,9 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Ask for an object with strokes, or annotations."""
-        if strokes.source_objects(context) or strokes.annotation(context.scene) is not None:
+        if strokes.source_objects(context) or meshes.selected_bodies(context):
+            return True
+        if strokes.annotation(context.scene) is not None:
             return True
         cls.poll_message_set("Select a grease pencil, curve or text object with closed strokes")
         return False
@@ -91,9 +93,8 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
             self.use = "SELECTED" if any(stroke.selected for stroke in read) else "ALL"
         if not self.properties.is_property_set("edge_length"):
             sketches, _ = api.sketches_of(self._chosen(read), close_gaps=self.close_gaps, holes=False)
-            areas = [outlines.area(sketch.outline) for sketch in sketches]
-            if areas and max(areas) > 0:
-                self.edge_length = api.edge_length_for(max(areas), self.triangles)
+            length = api.suggested_edge_length(sketches, self.triangles)
+            self.edge_length = length if length is not None else self.edge_length
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -150,9 +151,12 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
     def _read(self, context: bpy.types.Context) -> strokes.Reading:
         if self.source == "ANNOTATIONS":
             return strokes.read_annotations(context)
-        if not strokes.source_objects(context):
-            return strokes.Reading(notes=["no object with strokes is selected; select a drawing or a curve"])
-        return strokes.read_objects(context)
+        objects = strokes.source_objects(context)
+        if objects:
+            return strokes.read_objects(context, objects)
+        if self.update_existing:
+            return _read_for(context, meshes.selected_bodies(context))
+        return strokes.Reading(notes=["no object with strokes is selected; select a drawing or a curve"])
 
     def _chosen(self, found: list[outlines.Stroke]) -> list[outlines.Stroke]:
         """Strokes that `use` asks for; without those that are open where only closed ones are wanted."""
@@ -177,6 +181,24 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
         )
         gaps = sum(body.sketch.closed_gap > 0 for body in bodies)
         return f"{text}; {_counted(gaps, 'gap')} closed" if gaps else text
+
+
+def _read_for(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> strokes.Reading:
+    """Read the strokes that the bodies were made from, and name the bodies whose stroke is gone."""
+    made = {meshes.stroke_key(body): body for body in bodies}
+    names = dict.fromkeys(key[0] for key in made)
+    objects = [ob for ob in map(context.view_layer.objects.get, names) if ob is not None]
+    sources = [ob for ob in objects if ob.type in strokes.SOURCE_TYPES]
+    reading = strokes.read_objects(context, sources)
+    reading.strokes = [stroke for stroke in reading.strokes if stroke.key in made]
+    found = {stroke.key for stroke in reading.strokes}
+    for key, body in made.items():
+        if key not in found:
+            source, layer, index = key
+            where = f"'{source}', layer '{layer}'" if layer else f"'{source}'"
+            reason = f"its stroke ({where}, stroke {index + 1}) is gone or hidden; select the drawing instead"
+            reading.failures.append(api.Failure(f"'{body.name}'", reason))
+    return reading
 
 
 _PLURALS = {"body": "bodies", "irregular vertex": "irregular vertices"}
@@ -214,9 +236,8 @@ def _warnings(bodies: list[api.Body], failures: list[api.Failure]) -> list[str]:
         )
     crossed = sum(body.report.get("self_intersections", 0) > 0 for body in bodies)
     if crossed:
-        warnings.append(
-            f"{_counted(crossed, 'body')} cut through themselves; use a smaller depth or more triangles"
-        )
+        cut = "cuts through itself" if crossed == 1 else "cut through themselves"
+        warnings.append(f"{_counted(crossed, 'body')} {cut}; use a smaller depth or more triangles")
     if failures:
         warnings.append(f"{_counted(len(failures), 'stroke')} left out:\n{_listed(map(str, failures))}")
     return warnings

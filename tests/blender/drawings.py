@@ -19,6 +19,11 @@ def bean(n=120, size=1.0):
     return np.stack([r * np.cos(t), r * np.sin(t), 0 * t], axis=1)
 
 
+def at(points, x, y, z):
+    """Points moved to another place."""
+    return points + np.array([x, y, z], float)
+
+
 def on_plane(points, x, y, origin=(0.0, 0.0, 0.0)):
     """Points in the plane z = 0, moved into the plane spanned by x and y."""
     x, y = np.asarray(x, float), np.asarray(y, float)
@@ -38,8 +43,8 @@ def grease_pencil(strokes, *, cyclic=True, name="Drawing", layer="Lines", ob=Non
         drawing.add_strokes([len(stroke) for stroke in strokes])
         points = np.concatenate(strokes).astype(np.float32)
         drawing.attributes["position"].data.foreach_set("vector", points.ravel())
-        for at, stroke in enumerate(drawing.strokes):
-            if cyclic if isinstance(cyclic, bool) else cyclic[at]:
+        for index, stroke in enumerate(drawing.strokes):
+            if cyclic if isinstance(cyclic, bool) else cyclic[index]:
                 stroke.cyclic = True
         drawing.tag_positions_changed()
     if active:
@@ -66,8 +71,8 @@ def bezier_circle(*, name="Curve", dimensions="3D", radius=1.0):
     spline = data.splines.new("BEZIER")
     spline.bezier_points.add(3)
     spline.use_cyclic_u = True
-    for point, at in zip(spline.bezier_points, circle(4, radius), strict=True):
-        point.co = at
+    for point, place in zip(spline.bezier_points, circle(4, radius), strict=True):
+        point.co = place
         point.handle_left_type = point.handle_right_type = "AUTO"
     return linked(name, data)
 
@@ -81,6 +86,7 @@ def linked(name, data):
 
 def activate(*objects):
     """Make the objects the selection and the first one active."""
+    bpy.context.view_layer.update()
     for ob in list(bpy.context.view_layer.objects.selected):
         ob.select_set(False)
     for ob in objects:

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from drawings import (
     activate,
+    at,
     bean,
     bezier_circle,
     check_body,
@@ -17,6 +18,8 @@ from drawings import (
     vertices,
     world_vertices,
 )
+
+from addon import sampling
 
 
 @pytest.mark.smoke
@@ -59,7 +62,7 @@ def test_bevel_object():
 
 
 def test_each_spline_is_a_stroke_with_its_material():
-    ob = curve([circle(), circle() + [4, 0, 0]])
+    ob = curve([circle(), at(circle(), 4, 0, 0)])
     for name in ("Red", "Blue"):
         ob.data.materials.append(bpy.data.materials.new(name))
     ob.data.splines[1].material_index = 1
@@ -67,7 +70,7 @@ def test_each_spline_is_a_stroke_with_its_material():
 
 
 def test_selected_spline():
-    ob = curve([circle(), circle() + [4, 0, 0]])
+    ob = curve([circle(), at(circle(), 4, 0, 0)])
     for point in (*ob.data.splines[0].points, *ob.data.splines[1].points):
         point.select = False
     ob.data.splines[1].points[3].select = True
@@ -84,6 +87,13 @@ def test_curve_in_edit_mode_is_read_as_edited():
     assert bpy.context.mode == "EDIT_CURVE"
 
 
+def test_several_curves_in_edit_mode():
+    first, second = curve([circle()], name="First"), curve([at(circle(), 4, 0, 0)], name="Second")
+    activate(first, second)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert sorted(body.name for body in run()) == ["First.mesh", "Second.mesh"]
+
+
 def test_modifier_on_a_curve():
     ob = bezier_circle()
     ob.data.extrude = 0.1
@@ -91,7 +101,7 @@ def test_modifier_on_a_curve():
     modifier.deform_method, modifier.deform_axis, modifier.factor = "STRETCH", "X", 1.0
     body = run_one()
     check_body(body)
-    assert body.dimensions.x > 3
+    assert body.dimensions.x > 2.9
 
 
 def test_shape_key_on_a_curve():
@@ -139,10 +149,25 @@ def test_text(thickness):
         check_body(body)
 
 
+@pytest.mark.parametrize("order", [3, 4, 5])
+def test_nurbs_are_sampled_as_blender_does(order):
+    points = bean(11)
+    ob = curve([points])
+    (spline,) = ob.data.splines
+    spline.type, spline.order_u, spline.resolution_u = "NURBS", order, 64
+    mesh = ob.to_mesh()
+    drawn = vertices(mesh)
+    ours = sampling.nurbs(points, np.ones(11), True, order, 0, 64)
+    apart = np.linalg.norm(ours[:, None] - drawn[None], axis=2)
+    step = np.linalg.norm(np.diff(drawn, axis=0), axis=1).max()
+    assert apart.min(axis=0).max() < step
+    assert apart.min(axis=1).max() < step
+
+
 def test_hair_curves():
     data = bpy.data.hair_curves.new("Hair")
     data.add_curves([60, 80])
-    points = np.concatenate([circle(60), bean(80) + [4, 0, 0]]).astype(np.float32)
+    points = np.concatenate([circle(60), at(bean(80), 4, 0, 0)]).astype(np.float32)
     data.attributes["position"].data.foreach_set("vector", points.ravel())
     attribute = data.attributes.new("cyclic", "BOOLEAN", "CURVE")
     attribute.data.foreach_set("value", np.ones(2, bool))
@@ -167,7 +192,7 @@ def annotate(strokes):
 
 
 def test_annotations():
-    annotate([circle(60, turn=6.1, closed=False) + [0, 0, 2]])
+    annotate([at(circle(60, turn=6.1, closed=False), 0, 0, 2)])
     body = run_one(source="ANNOTATIONS")
     check_body(body)
     assert body.name == "Notes.mesh"

@@ -3,7 +3,18 @@
 import bpy
 import numpy as np
 import pytest
-from drawings import activate, bean, check_body, circle, fingerprint, grease_pencil, run, run_one, vertices
+from drawings import (
+    activate,
+    at,
+    bean,
+    check_body,
+    circle,
+    fingerprint,
+    grease_pencil,
+    run,
+    run_one,
+    vertices,
+)
 
 
 def redraw(ob, points):
@@ -51,9 +62,9 @@ def test_without_update_a_second_object_is_made(drawn):
 
 def test_update_follows_the_stroke(drawn):
     ob, body = drawn
-    redraw(ob, bean() * [1, 2, 1] + [5, 0, 0])
+    redraw(ob, at(bean() * [1, 2, 1], 5, 0, 0))
     run(update_existing=True)
-    points = bean() * [1, 2, 1] + [5, 0, 0]
+    points = at(bean() * [1, 2, 1], 5, 0, 0)
     assert np.allclose(body.location, (points.min(axis=0) + points.max(axis=0)) / 2, atol=1e-5)
     assert np.allclose(body.dimensions[:2], np.ptp(points, axis=0)[:2], rtol=0.02)
 
@@ -68,7 +79,7 @@ def test_update_keeps_where_the_body_was_put(drawn):
     run(triangles=900, update_existing=True)
     assert body.matrix_world == before
     activate(ob)
-    redraw(ob, bean() + [1, 0, 0])
+    redraw(ob, at(bean(), 1, 0, 0))
     run(update_existing=True)
     assert np.allclose(body.location, before @ bpy_vector(1, 0, 0), atol=1e-5)
 
@@ -112,8 +123,8 @@ def test_update_ignores_bodies_that_left_the_scene(drawn):
 
 
 def test_update_of_several_strokes_matches_each():
-    ob = grease_pencil([circle(), bean() + [4, 0, 0]])
-    grease_pencil([circle(radius=2) + [9, 0, 0]], ob=ob, layer="More")
+    ob = grease_pencil([circle(), at(bean(), 4, 0, 0)])
+    grease_pencil([at(circle(radius=2), 9, 0, 0)], ob=ob, layer="More")
     bodies = run()
     before = [body.dimensions.copy() for body in bodies]
     activate(ob)
@@ -164,3 +175,35 @@ def test_shape_of_an_updated_body_is_that_of_a_new_one(drawn):
     activate(ob)
     fresh = run_one(triangles=900)
     assert np.array_equal(vertices(fresh.data), vertices(body.data))
+
+
+class TestBodySelected:
+    """The body is what is selected after the first run: an update must work from there."""
+
+    def test_its_stroke_is_found(self):
+        ob = grease_pencil([circle(), at(bean(), 4, 0, 0)])
+        first, second = run()
+        activate(second)
+        count = len(first.data.polygons)
+        assert run(triangles=1500, update_existing=True) == []
+        assert len(first.data.polygons) == count
+        assert len(second.data.polygons) > 2 * count
+        assert bpy.context.view_layer.objects.active == second
+        assert not ob.select_get()
+
+    def test_its_stroke_is_gone(self, drawn):
+        ob, body = drawn
+        bpy.data.objects.remove(ob)
+        activate(body)
+        before = fingerprint()
+        with pytest.raises(RuntimeError, match=r"'Drawing.mesh': its stroke \(.*\) is gone or hidden"):
+            bpy.ops.object.gridmesh_from_strokes(update_existing=True)
+        assert fingerprint() == before
+
+    def test_without_update_it_is_no_source(self, drawn):
+        _, body = drawn
+        activate(body)
+        before = fingerprint()
+        with pytest.raises(RuntimeError, match="No object with strokes is selected"):
+            bpy.ops.object.gridmesh_from_strokes()
+        assert fingerprint() == before
