@@ -21,6 +21,7 @@ pub mod options;
 mod outline;
 pub mod patch;
 mod place;
+mod pockets;
 pub mod progress;
 pub mod raster;
 pub mod relax;

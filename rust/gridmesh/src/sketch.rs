@@ -242,6 +242,7 @@ impl Job<'_> {
             optimal: outline.optimal,
             max_distance_used: outline.max_distance_used,
             max_deviation: placed.max_deviation,
+            bridged_inlets: placed.bridged_inlets,
             min_angle: min_angle(&patch),
             corners: placed.corners,
             released_corners: placed.released_corners,
