@@ -31,3 +31,4 @@ pub mod stitch;
 pub mod surface;
 pub mod target;
 pub mod trace;
+mod union;
