@@ -13,6 +13,8 @@ use super::sides::wrong_sides;
 const STEP: u32 = TURN / 4;
 /// Greatest number of rounds.
 const ROUNDS: usize = 100;
+/// Rounds without fewer conflicts than ever before after which it is no use.
+const PATIENCE: usize = 25;
 /// Vertices on each side of a conflict that are free to move when it is priced.
 const REACH: usize = 16;
 
@@ -25,8 +27,10 @@ pub(super) struct Contour {
 /// Where a dive ended.
 pub(super) struct Dive {
     pub rounds: usize,
-    /// What is left; empty if the walks bound a patch.
+    /// The conflicts that are left.
     pub conflicts: Vec<Conflict>,
+    /// The vertices left that have the patch on their wrong side.
+    pub wrong: Vec<Vertex>,
 }
 
 /// Prices conflicts and searches again near them until none is left.
@@ -55,6 +59,7 @@ pub(super) fn dive_from(
 ) -> Result<Dive> {
     let mut finder = Finder::default();
     let mut rounds = 0;
+    let (mut fewest, mut since) = (usize::MAX, 0);
     loop {
         let conflicts = finder.find(contours, walks);
         let repeated = conflicts.iter().any(|conflict| conflict.chord.is_none());
@@ -63,8 +68,16 @@ pub(super) fn dive_from(
         } else {
             Vec::new()
         };
-        if (conflicts.is_empty() && wrong.is_empty()) || rounds == limit {
-            return Ok(Dive { rounds, conflicts });
+        let left = conflicts.len() + wrong.len();
+        if left < fewest {
+            (fewest, since) = (left, rounds);
+        }
+        if left == 0 || rounds == limit || rounds - since == PATIENCE {
+            return Ok(Dive {
+                rounds,
+                conflicts,
+                wrong,
+            });
         }
         rounds += 1;
         progress.report(rounds as f64 / limit as f64)?;
@@ -153,14 +166,21 @@ pub(super) fn windows(at: &[usize], reach: usize, n: usize) -> Option<Vec<(usize
     let mut found: Vec<(usize, usize)> = Vec::new();
     // From the widest gap on, so that no range but the last goes round the end.
     let gaps = (0..at.len()).map(|k| {
-        let next = if k + 1 < at.len() { at[k + 1] } else { at[0] + n };
+        let next = if k + 1 < at.len() {
+            at[k + 1]
+        } else {
+            at[0] + n
+        };
         (next - at[k], k)
     });
     let (gap, k) = gaps.max().unwrap_or((0, 0));
     if gap <= 2 * reach + 2 {
         return None;
     }
-    let turned = at[k + 1..].iter().copied().chain(at[..=k].iter().map(|i| i + n));
+    let turned = at[k + 1..]
+        .iter()
+        .copied()
+        .chain(at[..=k].iter().map(|i| i + n));
     for i in turned {
         let (from, to) = (i + n - reach, i + n + reach);
         match found.last_mut() {

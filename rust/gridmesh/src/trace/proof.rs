@@ -21,6 +21,8 @@ const ROOT_STEPS: usize = 40;
 const STEPS: usize = 6;
 /// Likewise, when no proof was asked for.
 const QUICK_STEPS: usize = 8;
+/// Rounds of conflict pricing from the prices of a proof on.
+const DIVE: usize = 20;
 
 /// What is known after a proof was tried.
 pub(super) struct Proof {
@@ -157,7 +159,10 @@ pub(super) fn prove(
             tree.look(Some(ban), multipliers.clone(), STEPS, progress)?;
         }
     }
-    let open = tree.open.peek().map_or(u32::MAX, |Reverse((bound, _))| *bound);
+    let open = tree
+        .open
+        .peek()
+        .map_or(u32::MAX, |Reverse((bound, _))| *bound);
     let bound = open.min(tree.stuck).min(tree.best);
     Ok(Proof {
         bound,
@@ -209,7 +214,7 @@ impl Tree<'_> {
                 self.offer(&walks);
             } else if step % 8 == 4 {
                 // Prices that nearly suffice are a good place to look for valid walks from.
-                self.dive(bans.as_ref(), &multipliers, &walks, progress)?;
+                self.dive(&walks, progress)?;
             }
             if bound >= self.best {
                 return Ok(());
@@ -237,10 +242,14 @@ impl Tree<'_> {
             known.and_then(|i| multipliers.get(i)).copied().unwrap_or(0)
         };
         let first = |pairs: &[[Use; 2]]| {
-            let best = pairs.iter().enumerate().max_by_key(|(i, pair)| (price(pair), Reverse(*i)));
+            let best = pairs
+                .iter()
+                .enumerate()
+                .max_by_key(|(i, pair)| (price(pair), Reverse(*i)));
             best.map(|(_, pair)| *pair)
         };
-        let branch = first(&conflicts).or_else(|| first(&self.pairs).filter(|pair| price(pair) > 0));
+        let branch =
+            first(&conflicts).or_else(|| first(&self.pairs).filter(|pair| price(pair) > 0));
         match branch {
             Some(branch) => {
                 self.open.push(Reverse((best_bound, self.parts.len())));
@@ -257,7 +266,11 @@ impl Tree<'_> {
 
     /// The cheapest walks of a part at some prices, and the lower bound that they give; none if
     /// it is not below the best cost known.
-    fn evaluate(&mut self, bans: Option<&Rc<Ban>>, multipliers: &[u32]) -> Option<(u32, Vec<Walk>)> {
+    fn evaluate(
+        &mut self,
+        bans: Option<&Rc<Ban>>,
+        multipliers: &[u32],
+    ) -> Option<(u32, Vec<Walk>)> {
         for prices in &mut self.prices {
             prices.clear();
         }
@@ -313,7 +326,11 @@ impl Tree<'_> {
             .zip(&*multipliers)
             .map(|(pair, &price)| {
                 let count = pair.iter().map(|u| i32::from(self.is_used(u))).sum::<i32>();
-                if count == 0 && price == 0 { 0 } else { count - 1 }
+                if count == 0 && price == 0 {
+                    0
+                } else {
+                    count - 1
+                }
             })
             .collect();
         self.mark(walks, false);
@@ -359,29 +376,19 @@ impl Tree<'_> {
     /// Takes walks without conflicts if they are the best known.
     fn offer(&mut self, walks: &[Walk]) {
         let cost: u32 = walks.iter().map(|walk| walk.cost).sum();
-        if cost < self.best
-            && turned_once(walks)
-            && wrong_sides(self.contours, walks).is_empty()
-        {
+        if cost < self.best && turned_once(walks) && wrong_sides(self.contours, walks).is_empty() {
             self.best = cost;
             self.found = Some(walks.to_vec());
         }
     }
 
-    /// Looks for valid walks from some prices on.
-    fn dive(
-        &mut self,
-        bans: Option<&Rc<Ban>>,
-        multipliers: &[u32],
-        walks: &[Walk],
-        progress: Progress<'_>,
-    ) -> Result<()> {
-        let _ = (bans, multipliers);
+    /// Looks for valid walks from the prices at hand on.
+    fn dive(&mut self, walks: &[Walk], progress: Progress<'_>) -> Result<()> {
         let mut walks = walks.to_vec();
         let mut prices = self.prices.clone();
-        let limit = 20;
-        let dive = dive_from(self.contours, &mut walks, &mut prices, self.search, limit, progress)?;
-        if dive.conflicts.is_empty() {
+        let (contours, search) = (self.contours, &mut *self.search);
+        let dive = dive_from(contours, &mut walks, &mut prices, search, DIVE, progress)?;
+        if dive.conflicts.is_empty() && dive.wrong.is_empty() {
             self.offer(&walks);
         }
         Ok(())

@@ -1,5 +1,7 @@
 //! Shortest closed paths over (place, incoming direction).
 
+use crate::axial::Axial;
+
 use super::graph::{BLOCKED, Graph, State, TURN};
 use super::prices::Prices;
 use super::queue::Queue;
@@ -137,7 +139,7 @@ impl Search {
             };
             let here = key + graph.cost[node as usize];
             for &link in graph.links(node, turned(dir, 3)) {
-                let Some(before) = graph.follow_back(link, sheet) else {
+                let Some(before) = graph.follow(link, sheet) else {
                     continue;
                 };
                 for turn in TURNS {
@@ -253,7 +255,9 @@ impl Search {
             );
             (found, start, goal, 0)
         } else {
-            let ahead = u32::try_from(turn(to) - turn(from) + 1).ok().filter(|&k| k < 3)?;
+            let ahead = u32::try_from(turn(to) - turn(from) + 1)
+                .ok()
+                .filter(|&k| k < 3)?;
             let (start, goal) = (state(from, 1), state(to, ahead));
             self.make_room(18 * n as usize);
             let found = self.run(
@@ -389,6 +393,13 @@ impl Walk {
         self.step(i).node
     }
 
+    /// The lattice points in order.
+    pub fn points(&self, graph: &Graph) -> impl Iterator<Item = Axial> {
+        self.steps
+            .iter()
+            .map(|step| graph.points[step.node as usize])
+    }
+
     /// Direction of the step that leaves vertex `i`.
     pub fn leave(&self, i: usize) -> u32 {
         u32::from(self.step(i + 1).enter)
@@ -397,7 +408,11 @@ impl Walk {
     /// The turn at vertex `i`.
     pub fn turn(&self, i: usize) -> i32 {
         let turn = (self.leave(i) + 6 - u32::from(self.step(i).enter)) % 6;
-        if turn > 3 { turn as i32 - 6 } else { turn as i32 }
+        if turn > 3 {
+            turn as i32 - 6
+        } else {
+            turn as i32
+        }
     }
 
     /// Search cost without prices.
