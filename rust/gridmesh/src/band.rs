@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 use crate::axial::Axial;
 use crate::dir::Dir;
-use crate::lattice::{Lattice, ROW_HEIGHT};
+use crate::lattice::ROW_HEIGHT;
 use crate::target::Target;
 
 /// How much farther than the path's greatest distance a stretch of curve may be from its point.
@@ -352,6 +352,7 @@ fn ceil(x: f64) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lattice::Lattice;
     use crate::segments::nearest_on_segment;
 
     /// Every node of a brute-force band over a box, as (point, first, last).

@@ -7,6 +7,7 @@ pub mod curve;
 pub mod dir;
 pub mod error;
 pub mod lattice;
+pub mod orient;
 pub mod patch;
 pub mod progress;
 mod segments;

@@ -301,15 +301,9 @@ fn failure(dive: &Dive, contours: &[Contour], walks: &[Walk]) -> Option<TraceFai
         let node = walks[v.contour as usize].node(v.index as usize);
         contours[v.contour as usize].graph.points[node as usize]
     };
-    if let Some(&vertex) = dive.wrong.first() {
-        return Some(TraceFailure::WrongSide {
-            contour: vertex.contour as usize,
-            at: point(vertex),
-        });
-    }
-    dive.conflicts.first().map(|conflict| {
+    if let Some(conflict) = dive.conflicts.first() {
         let contours = [conflict.a, conflict.b].map(|v| v.contour as usize);
-        match conflict.chord {
+        return Some(match conflict.chord {
             Some(_) => TraceFailure::Chord {
                 contours,
                 between: [conflict.a, conflict.b].map(point),
@@ -318,7 +312,11 @@ fn failure(dive: &Dive, contours: &[Contour], walks: &[Walk]) -> Option<TraceFai
                 contours,
                 at: point(conflict.a),
             },
-        }
+        });
+    }
+    dive.wrong.first().map(|&vertex| TraceFailure::WrongSide {
+        contour: vertex.contour as usize,
+        at: point(vertex),
     })
 }
 
