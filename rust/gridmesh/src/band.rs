@@ -262,7 +262,7 @@ impl Scan {
                 ends.insert(node.point, i);
             }
         }
-        for start in 0..self.heads {
+        for (start, rep) in rep.iter_mut().enumerate().take(self.heads) {
             let head = self.nodes[start];
             let Some(&end) = ends.get(&head.point) else {
                 continue;
@@ -276,7 +276,7 @@ impl Scan {
                 tail.distance = head.distance;
                 tail.parameter = head.parameter + f64::from(n);
             }
-            rep[start] = (end as u32, 1);
+            *rep = (end as u32, 1);
         }
     }
 }
@@ -370,7 +370,7 @@ mod tests {
                     .collect();
                 let within = |i: usize| d[i % n] <= max_distance + SLACK;
                 for first in (0..n).filter(|&i| within(i) && !within(i + n - 1)) {
-                    let last = (first..).find(|&i| !within(i + 1)).unwrap();
+                    let last = (first..2 * n).find(|&i| !within(i + 1)).unwrap_or(2 * n);
                     if (first..=last).any(|i| d[i % n] <= max_distance) {
                         found.push((p, first as u32, last as u32));
                     }

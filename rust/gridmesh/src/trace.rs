@@ -222,7 +222,13 @@ fn attempt(
     let mut prices: Vec<Prices> = contours.iter().map(none).collect();
     let mut walks = roots.clone();
     let share = progress.part(0.3, 0.7);
-    let dive = dive::dive(&contours, &mut walks, &mut prices, &mut search, share)?;
+    let mut dive = dive::dive(&contours, &mut walks, &mut prices, &mut search, share)?;
+    if failure(&dive, &contours, &walks).is_some() {
+        dive::keep_apart(&contours, &mut walks, &mut prices, &mut search);
+        let rounds = dive.rounds;
+        dive = dive::dive(&contours, &mut walks, &mut prices, &mut search, share)?;
+        dive.rounds += rounds;
+    }
     if let Some(failure) = failure(&dive, &contours, &walks) {
         return Err(failure);
     }

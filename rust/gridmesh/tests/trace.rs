@@ -1,4 +1,5 @@
 //! Traced boundaries are boundaries of patches, whatever the drawing.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -267,7 +268,7 @@ fn a_proof_only_makes_it_better() {
         let targets = targets(&drawing, 1200.0, 0.3);
         let quick = TraceOptions::default();
         let long = TraceOptions {
-            proof_nodes: 40,
+            proof_nodes: 12,
             ..TraceOptions::default()
         };
         let a = trace(&targets, &quick, Progress::NONE).unwrap();
@@ -294,6 +295,28 @@ fn a_hexagon_on_the_lattice_is_itself() {
     let traced = trace(&targets, &TraceOptions::default(), Progress::NONE).unwrap();
     assert!(traced.optimal);
     assert_eq!((traced.turns, check(&traced.paths)), (6, 6 * 64));
+}
+
+/// Necks of all widths at all angles: the two walls must not end up on each other's side.
+#[test]
+fn walls_of_a_neck_do_not_stay_exchanged() {
+    let mut drawings = drawings();
+    let drawing = &mut drawings[4];
+    assert_eq!(drawing.name, "thin dumbbell");
+    for half in [0.02, 0.04] {
+        for p in &mut drawing.outline {
+            if p.y.abs() < 1.0 {
+                p.y = half * p.y.signum();
+            }
+        }
+        for triangles in [700.0, 1000.0, 2000.0, 4000.0] {
+            for k in 0..7 {
+                let targets = targets(drawing, triangles, 0.15 * f64::from(k));
+                let traced = trace(&targets, &TraceOptions::default(), Progress::NONE).unwrap();
+                check(&traced.paths);
+            }
+        }
+    }
 }
 
 /// Two walls of a hole on one line of the lattice cost the same as their exchange.

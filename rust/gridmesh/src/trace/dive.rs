@@ -1,5 +1,8 @@
 //! Conflict pricing: from the cheapest paths to ones without conflicts.
 
+use rustc_hash::FxHashMap;
+
+use crate::axial::Axial;
 use crate::error::Result;
 use crate::progress::Progress;
 
@@ -13,6 +16,8 @@ use super::sides::wrong_sides;
 const STEP: u32 = TURN / 4;
 /// Greatest number of rounds.
 const ROUNDS: usize = 100;
+/// What it costs to be where another wall is nearer, in a second dive.
+const APART: u32 = 2 * TURN;
 /// Rounds without fewer conflicts than ever before after which it is no use.
 const PATIENCE: usize = 25;
 /// Vertices on each side of a conflict that are free to move when it is priced.
@@ -98,6 +103,38 @@ pub(super) fn dive_from(
             let at: Vec<usize> = of_contour.map(|vertex| vertex.index as usize).collect();
             let (contour, prices) = (&contours[c as usize], &prices[c as usize]);
             resolve(contour, walk, prices, search, &at, REACH);
+        }
+    }
+}
+
+/// Charges every node for whose point another stretch of curve, or another contour, is nearer; and
+/// searches all walks again.
+///
+/// From there walls that have changed sides in a narrow part find back: each has its own half.
+pub(super) fn keep_apart(
+    contours: &[Contour],
+    walks: &mut [Walk],
+    prices: &mut [Prices],
+    search: &mut Search,
+) {
+    let mut nearest: FxHashMap<Axial, f64> = FxHashMap::default();
+    for Contour { graph, .. } in contours {
+        for (&point, &squared) in graph.points.iter().zip(&graph.squared) {
+            let least = nearest.entry(point).or_insert(squared);
+            *least = least.min(squared);
+        }
+    }
+    for ((contour, prices), walk) in contours.iter().zip(prices).zip(walks) {
+        let Contour { graph, potential } = contour;
+        prices.clear();
+        for node in 0..graph.n_nodes() as u32 {
+            let (point, squared) = (graph.points[node as usize], graph.squared[node as usize]);
+            if nearest.get(&point).is_some_and(|&least| least < squared) {
+                prices.raise_visit(node, APART);
+            }
+        }
+        if let Some((found, _)) = search.closed(graph, potential, prices, u32::MAX) {
+            *walk = found;
         }
     }
 }

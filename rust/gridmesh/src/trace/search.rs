@@ -183,7 +183,7 @@ impl Search {
             if bound >= best {
                 break;
             }
-            if let Some((found, cost)) = self.from_start(graph, potential, prices, start, best) {
+            if let Some((found, cost)) = self.once_round(graph, potential, prices, start, best) {
                 best = cost;
                 walk = Some(found);
             }
@@ -192,7 +192,7 @@ impl Search {
     }
 
     /// A* from a start on the first sheet to the same state on the second.
-    fn from_start(
+    fn once_round(
         &mut self,
         graph: &Graph,
         potential: &Potential,

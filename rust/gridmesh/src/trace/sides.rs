@@ -29,7 +29,7 @@ pub(super) fn wrong_sides(contours: &[Contour], walks: &[Walk]) -> Vec<Vertex> {
                     (
                         Axial::new(-from.r, from.q + from.r),
                         dir.rotate(1),
-                        dir.index() % 3 == 0,
+                        dir.index().is_multiple_of(3),
                     )
                 } else {
                     (from, dir, true)
