@@ -25,23 +25,51 @@ pub enum Cell {
 const OUTSIDE: u8 = 0;
 const INTERIOR: u8 = 1;
 
-impl Cell {
-    fn pack(self) -> u8 {
-        match self {
-            Cell::Outside => OUTSIDE,
-            Cell::Interior => INTERIOR,
-            Cell::Boundary { enter, leave } => (2 + 6 * enter.index() + leave.index()) as u8,
-        }
-    }
+/// Boundary cells are packed as this plus eight times the entering direction plus the leaving one.
+const BOUNDARY: u8 = 64;
 
+const fn packed(enter: usize, leave: usize) -> u8 {
+    BOUNDARY + 8 * enter as u8 + leave as u8
+}
+
+const fn enter_of(code: u8) -> usize {
+    ((code - BOUNDARY) >> 3) as usize
+}
+
+const fn leave_of(code: u8) -> usize {
+    (code & 7) as usize
+}
+
+/// The turn of each packed cell; zero for codes that are not boundary cells.
+const TURN: [i8; 256] = {
+    let mut table = [0; 256];
+    let mut enter = 0;
+    while enter < 6 {
+        let mut leave = 0;
+        while leave < 6 {
+            let turn = Dir::new(enter).turn_to(Dir::new(leave));
+            table[packed(enter as usize, leave as usize) as usize] = turn as i8;
+            leave += 1;
+        }
+        enter += 1;
+    }
+    table
+};
+
+/// `i` modulo six, for `i` below twelve.
+const fn wrap(i: usize) -> usize {
+    if i >= 6 { i - 6 } else { i }
+}
+
+impl Cell {
     fn unpack(code: u8) -> Self {
         match code {
             OUTSIDE => Cell::Outside,
             INTERIOR => Cell::Interior,
-            _ => {
-                let code = i32::from(code) - 2;
-                Cell::Boundary { enter: Dir::new(code / 6), leave: Dir::new(code % 6) }
-            }
+            _ => Cell::Boundary {
+                enter: Dir::ALL[wrap(enter_of(code))],
+                leave: Dir::ALL[wrap(leave_of(code))],
+            },
         }
     }
 }
@@ -64,12 +92,14 @@ pub struct Expansion {
     pub edges: i32,
     /// Direction from the point to the first covered vertex, in the order of the path.
     pub first: Dir,
+    /// Bit `d` is set if the neighbour in direction `d` is a boundary vertex.
+    pub beside: u8,
 }
 
 impl Expansion {
     /// Direction from the point to the `i`-th vertex of the arc, 0 to `edges`.
     fn arc(&self, i: i32) -> Dir {
-        self.first.rotate(-i)
+        Dir::ALL[wrap(self.first.index() + 6 - i as usize)]
     }
 }
 
@@ -102,8 +132,7 @@ impl Boundary {
         let mut cells = Cells::new(layout, OUTSIDE);
         let mut complete = cells.set(centre, INTERIOR);
         for dir in Dir::ALL {
-            let cell = Cell::Boundary { enter: dir.rotate(1), leave: dir.rotate(2) };
-            complete &= cells.set(centre + dir, cell.pack());
+            complete &= cells.set(centre + dir, packed(dir.rotate(1).index(), dir.rotate(2).index()));
         }
         let some = centre + Dir::new(0);
         complete.then_some(Self { cells, some, length: 6, triangles: 6, bend: 6 })
@@ -119,13 +148,20 @@ impl Boundary {
         Cell::unpack(self.cells.get(point))
     }
 
-    fn put(&mut self, point: Axial, cell: Cell) {
-        self.cells.set(point, cell.pack());
-    }
-
     /// True for a point that is not in the patch.
     pub fn is_outside(&self, point: Axial) -> bool {
         self.cells.get(point) == OUTSIDE
+    }
+
+    /// Calls `visit` with the neighbours of a point that lie outside the patch, and their cells.
+    pub(crate) fn outside_around(&self, point: Axial, mut visit: impl FnMut(Axial, usize)) {
+        let values = self.cells.values();
+        let Some(around) = self.layout().neighbours(point) else { return };
+        for (i, dir) in Dir::ALL.into_iter().enumerate() {
+            if values[around[i]] == OUTSIDE {
+                visit(point + dir, around[i]);
+            }
+        }
     }
 
     /// True for a boundary vertex.
@@ -150,10 +186,8 @@ impl Boundary {
 
     /// The turn at a boundary vertex, positive where convex; `None` for other points.
     pub fn turn(&self, point: Axial) -> Option<i32> {
-        match self.cell(point) {
-            Cell::Boundary { enter, leave } => Some(enter.turn_to(leave)),
-            _ => None,
-        }
+        let code = self.cells.get(point);
+        (code > INTERIOR).then(|| i32::from(TURN[code as usize]))
     }
 
     /// The boundary vertices in order, the patch on the left.
@@ -175,37 +209,32 @@ impl Boundary {
     /// that is, when it has one more boundary neighbour than boundary edges in its link. The paper
     /// asks for two boundary neighbours only; that lets the boundary touch itself.
     pub fn expansion(&self, point: Axial) -> Option<Expansion> {
-        let layout = self.cells.layout();
-        if self.cells.get(point) != OUTSIDE || layout.index(point).is_none() {
+        if self.cells.get(point) != OUTSIDE {
             return None;
         }
-        let codes = Dir::ALL.map(|dir| self.cells.get(point + dir));
-        let mut vertices = 0;
-        let mut edges = 0;
-        let mut first = None;
-        for i in 0..6 {
-            if codes[i] <= INTERIOR {
-                continue;
-            }
-            vertices += 1;
-            // The path runs clockwise round an outside point: from neighbour i to neighbour i - 1.
-            let leaves_along = |i: usize| codes[i] > INTERIOR && (codes[i] as usize - 2) % 6 == (i + 4) % 6;
-            if leaves_along(i) {
-                edges += 1;
-                if !leaves_along((i + 1) % 6) {
-                    first = Some(Dir::ALL[i]);
-                }
+        let values = self.cells.values();
+        let codes = self.cells.layout().neighbours(point)?.map(|i| values[i]);
+        let (mut beside, mut along) = (0u8, 0u8);
+        for (i, &code) in codes.iter().enumerate() {
+            if code > INTERIOR {
+                beside |= 1 << i;
+                // The path runs clockwise round an outside point: from neighbour i to i - 1.
+                along |= u8::from(leave_of(code) == wrap(i + 4)) << i;
             }
         }
-        match first {
-            Some(first) if vertices == edges + 1 => Some(Expansion { point, edges, first }),
-            _ => None,
+        let edges = along.count_ones();
+        if edges == 0 || beside.count_ones() != edges + 1 {
+            return None;
         }
+        // The arc begins where an edge leaves along the link and none arrives.
+        let arrived = (along >> 1) | ((along & 1) << 5);
+        let first = Dir::ALL[wrap((along & !arrived).trailing_zeros() as usize)];
+        Some(Expansion { point, edges: edges as i32, first, beside })
     }
 
     /// How an expansion changes [`Boundary::bend`].
     pub fn bend_change(&self, expansion: &Expansion) -> i64 {
-        let turn = |i: i32| self.turn(expansion.point + expansion.arc(i)).unwrap_or(0);
+        let turn = |i: i32| i32::from(TURN[self.cells.get(expansion.point + expansion.arc(i)) as usize]);
         let ends = [turn(0), turn(expansion.edges)];
         let covered: i32 = (1..expansion.edges).map(|i| turn(i).abs()).sum();
         let straightened: i32 = ends.iter().map(|t| (t - 1).abs() - t.abs()).sum();
@@ -215,22 +244,28 @@ impl Boundary {
     /// Adds a point to the patch. The expansion must be one that [`Boundary::expansion`] gave for
     /// the boundary as it is.
     pub fn expand(&mut self, expansion: &Expansion) {
-        self.bend += self.bend_change(expansion);
         let p = expansion.point;
-        let (first, last) = (expansion.arc(0), expansion.arc(expansion.edges));
-        if let Cell::Boundary { enter, .. } = self.cell(p + first) {
-            self.put(p + first, Cell::Boundary { enter, leave: first.opposite() });
+        let layout = self.cells.layout();
+        let (Some(here), Some(around)) = (layout.index(p), layout.neighbours(p)) else { return };
+        let values = self.cells.values_mut();
+        let edges = expansion.edges;
+        let (first, last) = (expansion.arc(0).index(), expansion.arc(edges).index());
+        let bend = |code: u8| i64::from(TURN[code as usize].abs());
+        for i in 0..=edges as usize {
+            self.bend -= bend(values[around[wrap(first + 6 - i)]]);
         }
-        for i in 1..expansion.edges {
-            self.put(p + expansion.arc(i), Cell::Interior);
+        values[around[first]] = packed(enter_of(values[around[first]]), wrap(first + 3));
+        for i in 1..edges as usize {
+            values[around[wrap(first + 6 - i)]] = INTERIOR;
         }
-        if let Cell::Boundary { leave, .. } = self.cell(p + last) {
-            self.put(p + last, Cell::Boundary { enter: last, leave });
+        values[around[last]] = packed(last, leave_of(values[around[last]]));
+        values[here] = packed(wrap(first + 3), last);
+        for cell in [here, around[first], around[last]] {
+            self.bend += bend(values[cell]);
         }
-        self.put(p, Cell::Boundary { enter: first.opposite(), leave: last });
         self.some = p;
-        self.length = (self.length as i64 + 2 - i64::from(expansion.edges)) as usize;
-        self.triangles += expansion.edges as usize;
+        self.length = (self.length as i64 + 2 - i64::from(edges)) as usize;
+        self.triangles += edges as usize;
     }
 
     /// Like [`Boundary::expand`], remembering what was there.

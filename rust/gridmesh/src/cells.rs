@@ -57,9 +57,39 @@ impl Layout {
     }
 
     /// The cell number of a point, if it has one. Constant time.
+    #[inline]
     pub fn index(&self, point: Axial) -> Option<usize> {
         let row = self.rows.get((point.r - self.first_row) as usize)?;
         (row.start <= point.q && point.q < row.end).then(|| (row.base + i64::from(point.q)) as usize)
+    }
+
+    /// The cell numbers of the six neighbours of a point, counter-clockwise from the eastern one, if
+    /// it and they all have cells. Constant time.
+    #[inline]
+    pub fn neighbours(&self, point: Axial) -> Option<[usize; 6]> {
+        let row = (point.r - self.first_row) as usize;
+        let rows = self.rows.get(row.wrapping_sub(1)..=row + 1)?;
+        let (below, here, above) = (rows[0], rows[1], rows[2]);
+        let q = point.q;
+        let complete = here.start < q
+            && q + 1 < here.end
+            && above.start < q
+            && q < above.end
+            && below.start <= q
+            && q + 1 < below.end;
+        let at = |row: Row, q: i32| (row.base + i64::from(q)) as usize;
+        complete.then(|| {
+            [at(here, q + 1), at(above, q), at(above, q - 1), at(here, q - 1), at(below, q), at(below, q + 1)]
+        })
+    }
+
+    /// The first point of each row, and the cell numbers of the row.
+    pub fn rows(&self) -> impl DoubleEndedIterator<Item = (Axial, std::ops::Range<usize>)> {
+        let ranges = self.rows.iter().map(|row| (row, (row.base + i64::from(row.start)) as usize));
+        ranges.enumerate().map(|(i, (row, from))| {
+            let first = Axial::new(row.start, self.first_row + i as i32);
+            (first, from..from + (row.end - row.start) as usize)
+        })
     }
 
     /// All points that have a cell, in the order of their numbers.
@@ -86,6 +116,7 @@ impl<T: Copy> Cells<T> {
     }
 
     /// The value of a point; the one that all cells began with where there is no cell.
+    #[inline]
     pub fn get(&self, point: Axial) -> T {
         self.layout.index(point).map_or(self.elsewhere, |i| self.values[i])
     }
@@ -98,6 +129,16 @@ impl<T: Copy> Cells<T> {
     /// Puts a value into the cell of a point; false if it has none.
     pub fn set(&mut self, point: Axial, value: T) -> bool {
         self.get_mut(point).map(|cell| *cell = value).is_some()
+    }
+
+    /// The values by cell number.
+    pub fn values(&self) -> &[T] {
+        &self.values
+    }
+
+    /// The values by cell number, to change.
+    pub fn values_mut(&mut self) -> &mut [T] {
+        &mut self.values
     }
 
     /// The layout.
@@ -125,6 +166,11 @@ mod tests {
         }
         for (i, p) in layout.points().enumerate() {
             assert_eq!(layout.index(p), Some(i));
+            let each: Option<Vec<usize>> = p.neighbours().into_iter().map(|n| layout.index(n)).collect();
+            assert_eq!(layout.neighbours(p).map(|n| n.to_vec()), each);
+        }
+        for (first, cells) in layout.rows() {
+            assert_eq!(layout.index(first), Some(cells.start));
         }
         assert_eq!(layout.points().count(), layout.len());
         assert!(Layout::around([].into_iter(), 2).is_empty());

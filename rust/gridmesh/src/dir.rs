@@ -43,6 +43,7 @@ impl Dir {
     }
 
     /// The direction whose offset this is.
+    #[inline]
     pub fn from_offset(offset: Axial) -> Option<Dir> {
         Self::ALL.into_iter().find(|dir| dir.offset() == offset)
     }

@@ -4,11 +4,19 @@ use std::collections::VecDeque;
 
 use crate::axial::Axial;
 use crate::boundary::{Boundary, Cell, Expansion, Journal};
-use crate::cells::Cells;
 use crate::dir::Dir;
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::raster::Raster;
+
+/// Which refused points may become acceptable after an expansion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watch {
+    /// Those beside the new point: enough if acceptance depends on the point and its link.
+    Point,
+    /// Those beside the ends of its arc too, whose turns have changed.
+    Ends,
+}
 
 /// Expands the boundary breadth first by every valid adjacent point that `admit` lets in, until
 /// none is left. Returns the number of points added.
@@ -21,30 +29,27 @@ use crate::raster::Raster;
 /// Only if cancelled.
 pub fn grow(
     boundary: &mut Boundary,
+    watch: Watch,
     mut admit: impl FnMut(&Boundary, &Expansion) -> bool,
     progress: Progress<'_>,
 ) -> Result<usize> {
-    let mut queue: VecDeque<Axial> = VecDeque::new();
-    let mut waiting = Cells::new(boundary.layout().clone(), false);
-    let push = |queue: &mut VecDeque<Axial>, waiting: &mut Cells<bool>, point: Axial| {
-        if let Some(is_waiting) = waiting.get_mut(point)
-            && !*is_waiting
-        {
-            *is_waiting = true;
-            queue.push_back(point);
-        }
+    let mut queue: VecDeque<(Axial, usize)> = VecDeque::new();
+    let mut waiting = vec![false; boundary.layout().len()];
+    let enqueue_around = |boundary: &Boundary, waiting: &mut [bool], vertex, queue: &mut VecDeque<_>| {
+        boundary.outside_around(vertex, |point, cell| {
+            if !waiting[cell] {
+                waiting[cell] = true;
+                queue.push_back((point, cell));
+            }
+        });
     };
     for vertex in boundary.path() {
-        for point in boundary.outer_neighbours(vertex) {
-            push(&mut queue, &mut waiting, point);
-        }
+        enqueue_around(boundary, &mut waiting, vertex, &mut queue);
     }
     let mut added = 0;
-    while let Some(point) = queue.pop_front() {
-        waiting.set(point, false);
-        let Some(expansion) = boundary.expansion(point) else {
-            continue;
-        };
+    while let Some((point, cell)) = queue.pop_front() {
+        waiting[cell] = false;
+        let Some(expansion) = boundary.expansion(point) else { continue };
         if !admit(boundary, &expansion) {
             continue;
         }
@@ -53,12 +58,10 @@ pub fn grow(
         if added % (1 << 16) == 0 {
             progress.report(0.5)?;
         }
-        let ends = [expansion.first, expansion.first.rotate(-expansion.edges)];
-        for vertex in [point, point + ends[0], point + ends[1]] {
-            for beside in boundary.outer_neighbours(vertex) {
-                if boundary.is_outside(beside) {
-                    push(&mut queue, &mut waiting, beside);
-                }
+        enqueue_around(boundary, &mut waiting, point, &mut queue);
+        if watch == Watch::Ends {
+            for end in [expansion.first, expansion.first.rotate(-expansion.edges)] {
+                enqueue_around(boundary, &mut waiting, point + end, &mut queue);
             }
         }
     }
@@ -77,12 +80,8 @@ pub fn grow_inside(raster: &Raster, progress: Progress<'_>) -> Result<Option<Bou
     let Some(mut boundary) = seed else {
         return Ok(None);
     };
-    let within = |boundary: &Boundary, expansion: &Expansion| {
-        let p = expansion.point;
-        raster.is_inside(p)
-            && Dir::ALL.into_iter().all(|dir| !raster.is_crossed(p, dir) || !boundary.is_boundary(p + dir))
-    };
-    grow(&mut boundary, within, progress)?;
+    let within = |_: &Boundary, expansion: &Expansion| raster.is_free(expansion.point, expansion.beside);
+    grow(&mut boundary, Watch::Point, within, progress)?;
     Ok(Some(boundary))
 }
 
@@ -169,7 +168,7 @@ pub fn straighten(
         let lowers = |boundary: &Boundary, expansion: &Expansion| {
             expansion.edges >= 2 && boundary.bend_change(expansion) < 0 && admit(expansion.point)
         };
-        added += grow(boundary, lowers, progress)?;
+        added += grow(boundary, Watch::Ends, lowers, progress)?;
         let filled = fill_steps(boundary, &admit);
         if filled == 0 {
             return Ok(added);

@@ -78,7 +78,7 @@ impl Default for SketchOptions {
         Self {
             edge_length: None,
             triangles: None,
-            boundary: BoundaryMethod::Grown,
+            boundary: BoundaryMethod::Optimal,
             max_distance: 1.5,
             closeness: 0.3,
             angle: None,

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use crate::axial::Axial;
 use crate::band::Band;
 use crate::curve::ClosedCurve;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::growth::{clear_chords, grow_inside, straighten};
 use crate::lattice::Lattice;
 use crate::mapping::{complete, project};
@@ -14,6 +14,7 @@ use crate::options::SketchOptions;
 use crate::progress::Progress;
 use crate::raster::Raster;
 use crate::target::Target;
+use crate::trace::{TraceFailure, TraceOptions, trace};
 
 /// Narrow parts are widened to this many edges before growing; wider than two rows of triangles.
 const NECK_WIDTH: f64 = 2.4;
@@ -123,5 +124,49 @@ pub(crate) fn grown(
         arcs: vec![arcs],
         max_distance_used: options.max_distance,
         ..Outline::default()
+    }))
+}
+
+/// The boundary of least cost for this lattice: a shortest path for each contour.
+pub(crate) fn traced(
+    contours: &[ClosedCurve],
+    lattice: &Lattice,
+    options: &SketchOptions,
+    progress: Progress<'_>,
+) -> Result<Result<Outline, Obstacle>> {
+    let targets: Vec<Target> = contours.iter().map(|contour| Target::new(contour, lattice)).collect();
+    let wanted = TraceOptions {
+        max_distance: options.max_distance,
+        closeness: options.closeness,
+        proof_nodes: options.proof_nodes,
+    };
+    let obstacle =
+        |reason, at: Axial| Ok(Err(Obstacle { reason, at: lattice.from_units(Lattice::units(at)) }));
+    let traced = match trace(&targets, &wanted, progress) {
+        Ok(traced) => traced,
+        Err(TraceFailure::Cancelled) => return Err(Error::Cancelled),
+        Err(TraceFailure::NoPath { at, .. }) => {
+            return obstacle("no closed lattice path follows the drawing", at);
+        }
+        Err(TraceFailure::Conflict { at, .. }) => {
+            return obstacle("the lattice has no room for two parts of the boundary", at);
+        }
+        Err(TraceFailure::WrongRegion { at, .. }) => {
+            return obstacle("the lattice path does not go round once", at);
+        }
+    };
+    let arcs = traced
+        .paths
+        .iter()
+        .zip(&targets)
+        .map(|(path, target)| path.parameters.iter().map(|parameter| parameter * target.step).collect());
+    Ok(Ok(Outline {
+        arcs: arcs.collect(),
+        turns_bound: Some(traced.turns_bound),
+        cost: traced.cost,
+        cost_bound: Some(traced.cost_bound),
+        optimal: traced.optimal,
+        max_distance_used: traced.max_distance_used,
+        paths: traced.paths.into_iter().map(|path| path.points).collect(),
     }))
 }

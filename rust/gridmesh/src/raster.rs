@@ -1,5 +1,6 @@
 //! The lattice as a closed curve cuts it: which edges it crosses, which points it encloses.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -83,6 +84,12 @@ impl Raster {
         }
     }
 
+    /// True if the point is inside and the curve crosses none of its edges in the directions whose
+    /// bits are set.
+    pub fn is_free(&self, point: Axial, directions: u8) -> bool {
+        self.cells.get(point) & (directions | INSIDE) == INSIDE
+    }
+
     /// The storage layout, to share.
     pub fn layout(&self) -> &Arc<Layout> {
         self.cells.layout()
@@ -104,22 +111,7 @@ impl Raster {
     /// The paper leaves the choice to the user's stroke; any seed in the same chamber grows to the
     /// same patch, and the deepest lies in the widest chamber.
     pub fn seed(&self) -> Option<Axial> {
-        let mut depth: Cells<u16> = Cells::new(self.layout().clone(), 0);
-        let points: Vec<Axial> = self.layout().points().filter(|&p| self.is_inside(p)).collect();
-        for (forward, dirs) in [(true, [3, 4, 5]), (false, [0, 1, 2])] {
-            let mut sweep = |p: Axial| {
-                let near = dirs.map(|d| depth.get(p + Dir::new(d)));
-                let least = near.into_iter().min().unwrap_or(0).saturating_add(1);
-                if let Some(cell) = depth.get_mut(p) {
-                    *cell = if forward { least } else { least.min(*cell) };
-                }
-            };
-            if forward {
-                points.iter().for_each(|&p| sweep(p));
-            } else {
-                points.iter().rev().for_each(|&p| sweep(p));
-            }
-        }
+        let depth = self.depths();
         let free = |p: Axial| {
             Dir::ALL.into_iter().all(|dir| {
                 self.is_inside(p + dir)
@@ -128,13 +120,46 @@ impl Raster {
             })
         };
         let mut best: Option<(u16, Axial)> = None;
-        for p in points {
-            let d = depth.get(p);
-            if best.is_none_or(|(deepest, _)| d > deepest) && free(p) {
-                best = Some((d, p));
+        for (first, cells) in self.layout().rows() {
+            for (&d, q) in depth[cells].iter().zip(first.q..) {
+                let p = Axial::new(q, first.r);
+                if d > best.map_or(1, |(deepest, _)| deepest) && free(p) {
+                    best = Some((d, p));
+                }
             }
         }
         best.map(|(_, p)| p)
+    }
+
+    /// Lattice steps from each cell to the nearest outside one: two sweeps, which suffice for a
+    /// norm whose unit disk is the lattice's hexagon.
+    fn depths(&self) -> Vec<u16> {
+        let inside = self.cells.values();
+        let mut depth = vec![0u16; inside.len()];
+        let step = |depth: &[u16], near: [usize; 3]| {
+            near.into_iter().map(|i| depth[i]).min().unwrap_or(0).saturating_add(1)
+        };
+        for (first, cells) in self.layout().rows() {
+            let Some(shift) = self.shifts(first, &cells) else { continue };
+            for i in cells.filter(|&i| inside[i] & INSIDE != 0) {
+                depth[i] = step(&depth, [3, 4, 5].map(|d| i.wrapping_add_signed(shift[d])));
+            }
+        }
+        for (first, cells) in self.layout().rows().rev() {
+            let Some(shift) = self.shifts(first, &cells) else { continue };
+            for i in cells.rev().filter(|&i| inside[i] & INSIDE != 0) {
+                depth[i] = depth[i].min(step(&depth, [0, 1, 2].map(|d| i.wrapping_add_signed(shift[d]))));
+            }
+        }
+        depth
+    }
+
+    /// How far the cells of the six neighbours lie from a point's own: the same all along a row.
+    /// `None` for a row without inner points.
+    fn shifts(&self, first: Axial, cells: &Range<usize>) -> Option<[isize; 6]> {
+        let inside = self.cells.values()[cells.clone()].iter().position(|&bits| bits & INSIDE != 0)?;
+        let around = self.layout().neighbours(Axial::new(first.q + inside as i32, first.r))?;
+        Some(around.map(|i| i as isize - (cells.start + inside) as isize))
     }
 }
 

@@ -8,14 +8,11 @@ use crate::contours::read_contours;
 use crate::curve::ClosedCurve;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
-use crate::options::{DEFAULT_TRIANGLES, MAX_TRIANGLES, SketchOptions, SketchReport};
-use crate::outline::{Obstacle, Outline, grown};
+use crate::options::{BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SketchOptions, SketchReport};
+use crate::outline::{Obstacle, Outline, grown, traced};
 use crate::patch::Patch;
-use crate::place::{Placed, deviation, min_angle, place};
+use crate::place::{Placed, min_angle, place};
 use crate::progress::Progress;
-
-/// A drawing strays from the mesh where it lies farther outside than this, in edges.
-const STRAY: f64 = 2.0;
 
 /// Lattice placements tried before the drawing is called too coarse for its edge length: shifts of
 /// the origin in edges.
@@ -114,22 +111,11 @@ impl Job<'_> {
                 }
             };
             let started = Instant::now();
-            let placed = place(
-                &self.contours,
-                &lattice,
-                outline.clone(),
-                self.options,
-                progress.part(part(1), part(2)),
-            )?;
+            let placed =
+                place(&self.contours, &lattice, &outline, self.options, progress.part(part(1), part(2)))?;
             self.lap("placement", started);
             match placed {
-                Ok(placed) => {
-                    let (sketch, lost) = self.report(&outline, placed);
-                    match lost {
-                        None => return Ok(Ok(sketch)),
-                        Some(at) => obstacle = Some(Obstacle { reason: "a part of the drawing is lost", at }),
-                    }
-                }
+                Ok(placed) => return Ok(Ok(self.report(&outline, placed))),
                 Err(found) => obstacle = Some(found),
             }
         }
@@ -154,7 +140,7 @@ impl Job<'_> {
         let mut obstacle = Obstacle { reason: "the number of triangles is not reached", at: DVec2::ZERO };
         for _ in 0..CORRECTIONS {
             let lattice = self.lattice(edge_length, shift);
-            let outline = match grown(&self.contours[0], &lattice, self.options, progress)? {
+            let outline = match self.path(&lattice, progress)? {
                 Ok(outline) => outline,
                 Err(found) => {
                     obstacle = found;
@@ -187,12 +173,20 @@ impl Job<'_> {
         })
     }
 
+    fn path(&self, lattice: &Lattice, progress: Progress<'_>) -> Result<Result<Outline, Obstacle>> {
+        match self.options.boundary {
+            BoundaryMethod::Grown => grown(&self.contours[0], lattice, self.options, progress),
+            BoundaryMethod::Optimal => traced(&self.contours, lattice, self.options, progress),
+        }
+    }
+
     /// The edge length at which a grown patch has about `n` triangles: growth stops inside the
     /// curve, on average 0.28 triangles for each edge length of curve short of its area.
     fn first_guess(&self, n: usize) -> f64 {
         const SHORT: f64 = 0.28;
         let area = self.area / (0.5 * crate::lattice::ROW_HEIGHT);
-        let short = SHORT * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
+        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.0 } else { SHORT };
+        let short = short * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
         2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
     }
 
@@ -233,12 +227,10 @@ impl Job<'_> {
         Ok(Error::TooCoarse { triangles: asked.round() as usize, least: at(works) })
     }
 
-    /// The patch with its numbers, and a place of the drawing that it loses, if it loses any.
-    fn report(&mut self, outline: &Outline, placed: Placed) -> (Sketch, Option<DVec2>) {
+    /// The patch with its numbers.
+    fn report(&mut self, outline: &Outline, placed: Placed) -> Sketch {
         let started = Instant::now();
         let patch = placed.patch;
-        let h = patch.lattice.edge_length;
-        let (max_deviation, at) = deviation(&self.contours, &patch, STRAY * h);
         let mut report = SketchReport {
             triangles: patch.triangles.len(),
             irregular: outline.irregular(),
@@ -249,7 +241,7 @@ impl Job<'_> {
             cost_bound: outline.cost_bound,
             optimal: outline.optimal,
             max_distance_used: outline.max_distance_used,
-            max_deviation: max_deviation / h,
+            max_deviation: placed.max_deviation,
             min_angle: min_angle(&patch),
             corners: placed.corners,
             released_corners: placed.released_corners,
@@ -259,8 +251,7 @@ impl Job<'_> {
         };
         self.lap("report", started);
         report.seconds = self.seconds.clone();
-        let lost = (max_deviation > STRAY * h).then_some(at);
-        (Sketch { patch, report }, lost)
+        Sketch { patch, report }
     }
 }
 

@@ -7,7 +7,7 @@ use gridmesh::assemble::assemble;
 use gridmesh::axial::Axial;
 use gridmesh::boundary::{Boundary, Cell};
 use gridmesh::cells::Layout;
-use gridmesh::growth::{clear_chords, grow, straighten};
+use gridmesh::growth::{Watch, clear_chords, grow, straighten};
 use gridmesh::progress::Progress;
 use proptest::prelude::*;
 
@@ -88,7 +88,7 @@ proptest! {
     #[test]
     fn free_growth_fills_the_region_whatever_the_start(seed in prop::collection::vec(any::<u16>(), 0..60)) {
         let mut boundary = random_boundary(&seed);
-        grow(&mut boundary, |_, expansion| within(expansion.point), Progress::NONE).unwrap();
+        grow(&mut boundary, Watch::Point, |_, expansion| within(expansion.point), Progress::NONE).unwrap();
         prop_assert_eq!(boundary.check(), Ok(()));
         prop_assert_eq!(boundary.length() as i32, 6 * RADIUS);
         prop_assert_eq!(boundary.triangles() as i32, 6 * RADIUS * RADIUS);
@@ -102,7 +102,7 @@ fn the_step_of_figure_13_is_filled() {
         p.distance(Axial::default()) <= 5 || (p.q > 0 && p.q + p.r <= 5 && p.r <= 0 && p.q <= 8 && p.r >= -4)
     };
     let mut boundary = Boundary::hexagon(disk(), Axial::default()).unwrap();
-    grow(&mut boundary, |_, e| within_step(e.point), Progress::NONE).unwrap();
+    grow(&mut boundary, Watch::Point, |_, e| within_step(e.point), Progress::NONE).unwrap();
     clear_chords(&mut boundary, within).unwrap();
     let bend = boundary.bend();
     straighten(&mut boundary, within, Progress::NONE).unwrap();
@@ -117,7 +117,7 @@ fn a_fill_that_is_refused_midway_is_taken_back() {
     let blocked = Axial::new(6, -2);
     let step = |p: Axial| p.distance(Axial::default()) <= 4 || (p.r < 0 && p.r >= -4 && p.q >= 0 && p.q <= 8);
     let mut boundary = Boundary::hexagon(disk(), Axial::default()).unwrap();
-    grow(&mut boundary, |_, e| step(e.point) && within(e.point), Progress::NONE).unwrap();
+    grow(&mut boundary, Watch::Point, |_, e| step(e.point) && within(e.point), Progress::NONE).unwrap();
     clear_chords(&mut boundary, within).unwrap();
     let was_outside = boundary.is_outside(blocked);
     straighten(&mut boundary, |p| within(p) && p != blocked, Progress::NONE).unwrap();

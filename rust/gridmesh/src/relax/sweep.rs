@@ -137,7 +137,8 @@ impl Motion<'_> {
             }
             let moved = s + step;
             let x = slide.point(v, moved);
-            let then = value(energy, x, ring, &band.positions) + self.stiffness * (moved - home) * (moved - home);
+            let then =
+                value(energy, x, ring, &band.positions) + self.stiffness * (moved - home) * (moved - home);
             if then < now {
                 band.positions[v] = x;
                 slide.s[v] = moved;
