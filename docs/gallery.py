@@ -31,10 +31,24 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
-DRAWINGS = ["whale", "guitar", "camel", "puzzle", "letter", "octopus", "frog", "brazil", "snowflake", "ampersand"]
+DRAWINGS = [
+    "whale",
+    "guitar",
+    "camel",
+    "puzzle",
+    "letter",
+    "octopus",
+    "frog",
+    "brazil",
+    "snowflake",
+    "ampersand",
+]
 
-COLUMN, ROW, SIZE = 1.22, 2.36, 1.0
+COLUMN, ROW, SIZE = 1.24, 2.62, 1.0
 """Width and height of a cell, and the size of a drawing in it."""
+
+TILT = math.radians(20)
+"""How far the camera leans back from looking straight down."""
 
 PAPER, INK, WIRE = "#F3EFE6", "#20242C", "#1B2030"
 COLOURS = [
@@ -224,8 +238,8 @@ def label(text: str, at: tuple[float, float], size: float, material) -> None:
     line.location = (*at, 0.001)
 
 
-def set_stage(width: float, height: float, pixels: tuple[int, int], samples: int) -> None:
-    """Paper, light, camera and render settings for a page of this size around the origin."""
+def set_stage(width: float, height: float, pixels: int, samples: int) -> None:
+    """Paper, light, camera and render settings for a page of this size around the origin, so many pixels wide."""
     scene = bpy.context.scene
     paper = bpy.data.meshes.new("Paper")
     far = 20 * max(width, height)
@@ -247,26 +261,27 @@ def set_stage(width: float, height: float, pixels: tuple[int, int], samples: int
     sky.inputs["Strength"].default_value = 0.62
     scene.world = world
 
-    tilt = math.radians(20)
     lens = bpy.data.cameras.new("Camera")
-    lens.type = "PERSP"
-    lens.lens = 85
+    lens.type = "ORTHO"
+    seen_height = height * math.cos(TILT)
+    # Blender fits the longer side of the picture.
+    lens.ortho_scale = max(width, seen_height)
     camera = bpy.data.objects.new("Camera", lens)
-    fit = max(width, height * math.cos(tilt) * pixels[0] / pixels[1])
-    distance = fit * lens.lens / lens.sensor_width
+    distance = 3 * lens.ortho_scale
     lens.clip_end = 100 * distance
-    camera.location = (0, -distance * math.sin(tilt), distance * math.cos(tilt))
-    camera.rotation_euler = (tilt, 0, 0)
+    camera.location = (0, -distance * math.sin(TILT), distance * math.cos(TILT))
+    camera.rotation_euler = (TILT, 0, 0)
     scene.collection.objects.link(camera)
     scene.camera = camera
 
     render = scene.render
     render.engine = "CYCLES"
-    render.resolution_x, render.resolution_y = pixels
+    render.resolution_x, render.resolution_y = pixels, round(pixels * seen_height / width)
     render.image_settings.file_format = "PNG"
     scene.cycles.samples = samples
-    scene.cycles.use_denoising = False
-    scene.cycles.max_bounces = 3
+    scene.cycles.use_denoising = True
+    scene.cycles.denoising_prefilter = "FAST"
+    scene.cycles.max_bounces = 1
     scene.cycles.pixel_filter_type = "BLACKMAN_HARRIS"
     scene.view_settings.view_transform = "Standard"
 
@@ -274,29 +289,30 @@ def set_stage(width: float, height: float, pixels: tuple[int, int], samples: int
 # ------------------------------------------------------------------------------------------------ the job
 
 
-def build(paths: list[Path], triangles: int, pixels: tuple[int, int], samples: int) -> list[dict]:
+def build(paths: list[Path], triangles: int, pixels: int, samples: int) -> list[dict]:
     """Fill the scene; returns one row of numbers for each drawing."""
     columns = min(5, len(paths))
     rows = math.ceil(len(paths) / columns)
-    width, height = COLUMN * columns + 0.25, ROW * rows + 0.35
+    width, height = COLUMN * columns + 0.25, ROW * rows + 0.2
     ink, grey = plain_material("Ink", INK), plain_material("Label", "#6B6A66")
     table = []
     for k, path in enumerate(paths):
         name, points = read_sketch(path)
         x = (k % columns - (columns - 1) / 2) * COLUMN
         y = ((rows - 1) / 2 - k // columns) * ROW
-        stroke = draw_stroke(name, points, (x, y + 0.27 * ROW))
+        stroke = draw_stroke(name, points, (x, y + 0.72))
         body, seconds = inflate_stroke(stroke, triangles)
         numbers = measure(body, points, stroke)
         body.name = f"{name} body"
-        low = min(corner[2] for corner in body.bound_box)
-        body.location.y -= 0.47 * ROW
-        body.location.z -= low
+        # It lies on the paper; the lean of the camera shows it higher up than it is.
+        rise = -min(corner[2] for corner in body.bound_box)
+        body.location.z += rise
+        body.location.y -= 1.16 + rise * math.tan(TILT)
         body.data.materials.clear()
-        body.data.materials.append(body_material(name, COLOURS[k % len(COLOURS)], 0.55 * pixels[0] / 2000))
+        body.data.materials.append(body_material(name, COLOURS[k % len(COLOURS)], 0.55 * pixels / 2000))
         ink_line(stroke, points, ink)
         text = f"{numbers['triangles']} triangles, {numbers['irregular']} irregular vertices"
-        label(text, (x, y - 0.46 * ROW), 0.058, grey)
+        label(text, (x, y - 1.16), 0.06, grey)
         table.append({"name": name, **numbers, "ms": 1000 * seconds})
     set_stage(width, height, pixels, samples)
     return table
@@ -304,7 +320,9 @@ def build(paths: list[Path], triangles: int, pixels: tuple[int, int], samples: i
 
 def show(table: list[dict]) -> None:
     """Print the numbers as a table."""
-    print(f"\n{'drawing':<12}{'triangles':>10}{'irregular':>11}{'%':>7}{'min angle':>11}{'deviation':>11}{'ms':>8}")
+    print(
+        f"\n{'drawing':<12}{'triangles':>10}{'irregular':>11}{'%':>7}{'min angle':>11}{'deviation':>11}{'ms':>8}"
+    )
     for row in table:
         print(
             f"{row['name']:<12}{row['triangles']:>10}{row['irregular']:>11}{row['percent']:>7.2f}"
@@ -318,19 +336,19 @@ def show(table: list[dict]) -> None:
 
 def main() -> None:
     """Run the job that the module's text describes."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("sketch", nargs="*", type=Path, help="sketch files; ten drawings if none is given")
     parser.add_argument("--out", type=Path, default=ROOT / "out", help="folder for the results")
-    parser.add_argument("--triangles", type=int, default=1500, help="triangles of each flat patch")
+    parser.add_argument("--triangles", type=int, default=2000, help="triangles of each flat patch")
     parser.add_argument("--width", type=int, default=2000, help="width of the picture in pixels")
-    parser.add_argument("--samples", type=int, default=32, help="render samples for each pixel")
+    parser.add_argument("--samples", type=int, default=6, help="render samples for each pixel")
     choice = parser.parse_args()
     paths = choice.sketch or [ROOT / "tests/sketches/drawings" / f"{name}.json" for name in DRAWINGS]
-    pixels = (choice.width, round(choice.width * 0.8))
-
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     addon.register()
-    table = build(paths, choice.triangles, pixels, choice.samples)
+    table = build(paths, choice.triangles, choice.width, choice.samples)
     show(table)
 
     choice.out.mkdir(parents=True, exist_ok=True)
@@ -349,8 +367,9 @@ if __name__ == "__main__":
     system_libraries.ensure()
     # Before Blender is imported: the user's own settings and add-ons stay out of it.
     os.environ["BLENDER_USER_RESOURCES"] = tempfile.mkdtemp(prefix="gridmesh-")
-    import addon
     import bpy
+
+    import addon
 
     status = 1
     try:

@@ -41,7 +41,9 @@ def ensure() -> None:
     if shutil.which("apt-get") is None:
         sys.exit(f"Blender needs libraries that this system lacks; on Debian they are: {' '.join(packages)}")
     if os.geteuid() != 0:
-        sys.exit(f"Blender needs libraries that this system lacks. Please run\n\n    sudo {' '.join(install)}\n")
+        sys.exit(
+            f"Blender needs libraries that this system lacks. Please run\n\n    sudo {' '.join(install)}\n"
+        )
     print(f"Installing system libraries that Blender needs: {' '.join(packages)}", flush=True)
     environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
     subprocess.run(["apt-get", "update", "--quiet"], check=True, env=environment)
