@@ -19,6 +19,7 @@ Each sketch is drawn as a grease-pencil stroke, and `object.gridmesh_from_stroke
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import math
 import os
@@ -334,6 +335,25 @@ def show(table: list[dict]) -> None:
     )
 
 
+@contextlib.contextmanager
+def quiet():
+    """Keep Blender's own messages, written by C code line by line, off the screen."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    kept = os.dup(1), os.dup(2)
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), 1)
+        os.dup2(nowhere.fileno(), 2)
+    try:
+        yield
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        for number, kept_one in enumerate(kept, 1):
+            os.dup2(kept_one, number)
+            os.close(kept_one)
+
+
 def main() -> None:
     """Run the job that the module's text describes."""
     parser = argparse.ArgumentParser(
@@ -349,14 +369,16 @@ def main() -> None:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     addon.register()
     table = build(paths, choice.triangles, choice.width, choice.samples)
-    show(table)
 
     choice.out.mkdir(parents=True, exist_ok=True)
     blend, picture = choice.out / "gridmesh.blend", choice.out / "gridmesh.png"
     bpy.context.scene.render.filepath = str(picture.resolve())
-    bpy.ops.wm.save_as_mainfile(filepath=str(blend.resolve()), check_existing=False)
-    bpy.ops.render.render(write_still=True)
+    print("Rendering ...", flush=True)
+    with quiet():
+        bpy.ops.wm.save_as_mainfile(filepath=str(blend.resolve()), check_existing=False)
+        bpy.ops.render.render(write_still=True)
     addon.unregister()
+    show(table)
     print(f"{blend}\n{picture}")
 
 
