@@ -92,9 +92,10 @@ def main() -> int:
         group: Environment(group, pythons[version]) for group, version in groups.items() if pythons[version]
     }
     results = [run_rust(part) for part in RUST_PARTS if part in wanted]
-    wheel, failure = build_wheel() if PYTHON_PARTS.keys() & set(wanted) else (None, "")
-    if failure:
-        results.append(Result("wheel", "failed", note=failure))
+    wheel = None
+    if PYTHON_PARTS.keys() & set(wanted):
+        built, wheel = build_wheel()
+        results.append(built)
     for part in wanted:
         if part == "ruff":
             results.append(run_ruff(environments.get("core")))
@@ -159,13 +160,15 @@ def run_pytest(part: str, environments: dict[str, Environment], wheel: Path | No
     return result
 
 
-def build_wheel() -> tuple[Path | None, str]:
+def build_wheel() -> tuple[Result, Path | None]:
     """The wheel, built as it is shipped: one for every Python from 3.11 on."""
     folder = OUT / "wheel"
     shutil.rmtree(folder, ignore_errors=True)
     result, _ = run("wheel", [UV, "build", "--wheel", "--quiet", "--out-dir", str(folder)])
     wheels = list(folder.glob("gridmesh-*-abi3-*.whl"))
-    return (wheels[0], "") if result.status == "passed" and len(wheels) == 1 else (None, "the build failed")
+    if result.status == "passed" and len(wheels) != 1:
+        result.status, result.note = "failed", f"one abi3 wheel was expected, found {len(wheels)}"
+    return result, wheels[0] if result.status == "passed" else None
 
 
 # ------------------------------------------------------------------------------------------- environments
