@@ -48,6 +48,8 @@ class Stroke:
     """None where modifiers made the stroke, so that nobody can tell."""
     material: Any = None
     """Whatever the reader wants to hand through to the mesh."""
+    filled: bool = False
+    """Whether it is drawn with a fill of its own, apart from what its material says."""
 
     @property
     def label(self) -> str:
@@ -305,8 +307,12 @@ def nest(sketches: list[Sketch]) -> list[Sketch]:
         layers.setdefault(sketch.stroke.key[:2], []).append(sketch)
     outer: list[Sketch] = []
     for members in layers.values():
-        around = [[other for other in members if other is not one and _inside(one, other)] for one in members]
-        for one, parents in zip(members, around, strict=True):
+        centres = np.array([sketch.plane.origin for sketch in members])
+        sizes = np.array([sketch.size for sketch in members])
+        for one in members:
+            near = np.linalg.norm(centres - one.plane.origin, axis=1) < sizes / 2
+            larger = np.flatnonzero(near & (sizes > one.size))
+            parents = [members[at] for at in larger if _inside(one, members[at])]
             if len(parents) % 2 == 0:
                 outer.append(one)
             else:
@@ -317,7 +323,7 @@ def nest(sketches: list[Sketch]) -> list[Sketch]:
 
 def _inside(one: Sketch, other: Sketch) -> bool:
     """Whether `one` lies in the plane of `other` and its first point inside; crossings are not looked for."""
-    if one.size >= other.size or abs(one.plane.axes[2] @ other.plane.axes[2]) < 0.99:
+    if abs(one.plane.axes[2] @ other.plane.axes[2]) < 0.99:
         return False
     points = project(one, other.plane)
     if np.abs(points[:, 2]).max() > 0.05 * other.size:

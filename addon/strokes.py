@@ -179,6 +179,7 @@ def _read_geometry(
     cyclic = table.read("cyclic", "CURVE", np.bool_(False))
     selected = table.selected(offsets)
     materials = table.read("material_index", "CURVE", np.int32(0))
+    filled = table.read("fill_id", "CURVE", np.int32(0)) != 0  # from Blender 5.2 on
     sample = _sampler(table, positions, cyclic, offsets)
     slots = [slot.material for slot in ob.material_slots]
     for index in range(n_curves):
@@ -191,6 +192,7 @@ def _read_geometry(
             "count": n_curves,
             "selected": bool(selected[index]),
             "material": slots[material] if 0 <= material < len(slots) else None,
+            "filled": bool(filled[index]),
         }
         try:
             points = sample(index)
@@ -228,7 +230,7 @@ def _sampler(table: _Attributes, positions: np.ndarray, cyclic: np.ndarray, offs
 
 
 def read_annotations(context: bpy.types.Context) -> Reading:
-    """Read the annotation strokes of the scene at the current frame. They have no material, none is cyclic."""
+    """Read the annotation strokes of the scene at the current frame. They have no materials."""
     data = annotation(context.scene)
     if data is None:
         return Reading(notes=["the scene has no annotations; draw some with the Annotate tool"])
