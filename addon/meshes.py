@@ -11,6 +11,7 @@ from mathutils import Matrix
 
 from .api import Body, Failure
 from .outlines import Sketch
+from .strokes import selected
 
 LINK = "gridmesh_stroke"
 """Custom property of an object that says which stroke it was made from, and where its plane was."""
@@ -42,7 +43,7 @@ class Transaction:
 def made_before(context: bpy.types.Context) -> dict[tuple[str, str, int], bpy.types.Object]:
     """Objects of this view layer that were made from strokes, by stroke; the first one of duplicates."""
     found: dict[tuple[str, str, int], bpy.types.Object] = {}
-    for ob in context.view_layer.objects:
+    for ob in filter(None, context.view_layer.objects):
         key = stroke_key(ob)
         if key is not None:
             found.setdefault(key, ob)
@@ -60,7 +61,7 @@ def stroke_key(ob: bpy.types.Object) -> tuple[str, str, int] | None:
 
 def selected_bodies(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Objects in the selection that were made from strokes."""
-    return [ob for ob in context.view_layer.objects.selected if stroke_key(ob) is not None]
+    return [ob for ob in selected(context) if stroke_key(ob) is not None]
 
 
 def obstacle(ob: bpy.types.Object) -> str:
@@ -265,7 +266,7 @@ def _show(context: bpy.types.Context, objects: list[bpy.types.Object]) -> None:
     active = view_layer.objects.active
     if active is not None and active.mode != "OBJECT":
         return
-    for ob in list(view_layer.objects.selected):
+    for ob in selected(context):
         ob.select_set(False)
     for ob in objects:
         ob.select_set(True)

@@ -238,10 +238,10 @@ def close(points: np.ndarray, tolerance: float) -> tuple[np.ndarray, float]:
         first, last, apart = nearest
         return points[first : last + 1], apart
     if gap > limit:
-        share = gap / size
+        enough = np.ceil(100 * gap / size) / 100
         raise OpenError(
-            f"it is open: its ends are {gap:.3g} apart, {share:.0%} of its size; make the stroke cyclic "
-            f"or raise Close Gaps (now {tolerance:.0%})"
+            f"it is open: its ends are {gap:.3g} apart; make the stroke cyclic "
+            f"or raise Close Gaps from {tolerance:.2f} to {enough:.2f}"
         )
     return points, gap
 
@@ -261,12 +261,14 @@ def _last_crossing(
         a, u = points[block], points[block + 1] - points[block]
         between = b[None] - a[:, None]
         area = u[:, None, 0] * v[None, :, 1] - u[:, None, 1] * v[None, :, 0]
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             s = (between[..., 0] * v[None, :, 1] - between[..., 1] * v[None, :, 0]) / area
             t = (between[..., 0] * u[:, None, 1] - between[..., 1] * u[:, None, 0]) / area
+        meets = (area != 0) & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
+        s, t = np.where(meets, s, 0.0), np.where(meets, t, 0.0)
         before = arc[block][:, None] + s * (arc[block + 1] - arc[block])[:, None]
         after = arc[-1] - arc[tail][None] - t * (arc[tail + 1] - arc[tail])[None]
-        meets = (area != 0) & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1) & (before <= reach) & (after <= reach)
+        meets &= (before <= reach) & (after <= reach)
         cut = np.where(meets, before + after, -1.0)
         i, j = np.unravel_index(int(cut.argmax()), cut.shape)
         if cut[i, j] > best:

@@ -38,15 +38,20 @@ class Reading:
         self.notes += other.notes
 
 
+def selected(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Objects in the selection. Blender lists removed ones as None until the view layer is updated."""
+    return [ob for ob in context.view_layer.objects.selected if ob is not None]
+
+
 def source_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Objects whose strokes are meant: the selected ones, or those in the mode of the active one."""
     active = context.view_layer.objects.active
     if active is not None and active.mode != "OBJECT":
         together = context.objects_in_mode_unique_data if active.mode == "EDIT" else [active]
         return [ob for ob in together if ob.type in SOURCE_TYPES]
-    selected = [ob for ob in context.view_layer.objects.selected if ob.type in SOURCE_TYPES]
-    if selected:
-        return selected
+    chosen = [ob for ob in selected(context) if ob.type in SOURCE_TYPES]
+    if chosen:
+        return chosen
     return [active] if active is not None and active.type in SOURCE_TYPES else []
 
 

@@ -45,7 +45,7 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
     )
     close_gaps: FloatProperty(
         name="Close Gaps",
-        description="Largest gap that is closed, and longest overshoot cut off, relative to the stroke's size",
+        description="Largest gap that is closed, and longest overshoot cut off, relative to the stroke",
         subtype="FACTOR",
         default=0.2,
         min=0.0,
