@@ -53,22 +53,12 @@ pub(crate) fn deviation(
     if !far.is_empty() {
         measure_all_round(&mut far, vertices, arcs, limit);
     }
-    let mut strays: Vec<Stray> = Vec::new();
-    for stray in far {
-        worst = worst.max(stray.distance);
-        if stray.distance <= limit {
-            continue;
-        }
-        match strays.last_mut() {
-            Some(last) if (last.contour, last.edge) == (stray.contour, stray.edge) => {
-                if stray.distance > last.distance {
-                    *last = stray;
-                }
-            }
-            _ => strays.push(stray),
-        }
-    }
-    (worst, strays)
+    worst = far.iter().map(|stray| stray.distance).fold(worst, f64::max);
+    far.retain(|stray| stray.distance > limit);
+    // The farthest of each edge; the first and the last points may share one.
+    far.sort_by(|a, b| (a.contour, a.edge).cmp(&(b.contour, b.edge)).then(b.distance.total_cmp(&a.distance)));
+    far.dedup_by_key(|stray| (stray.contour, stray.edge));
+    (worst, far)
 }
 
 /// Replaces the distances by those to the nearest of all boundary edges.
@@ -116,6 +106,21 @@ mod tests {
         assert_eq!((strays[0].edge, strays[0].point), (3, drawn[4]));
         let (worst, strays) = deviation(&contours, &vertices, &arcs, 6.0);
         assert_eq!((worst, strays.len()), (5.0, 0));
+        Ok(())
+    }
+
+    #[test]
+    fn an_edge_across_the_first_point_strays_once() -> Result<()> {
+        // The first point, the one farthest left, lies in the middle of the tip that is cut off.
+        let drawn = [[-5.0, 2.0], [-4.0, 1.5], [0.0, 0.0], [10.0, 0.0], [10.0, 4.0], [0.0, 4.0], [-4.0, 2.5]];
+        let drawn = drawn.map(DVec2::from_array);
+        let contour = ClosedCurve::new(&drawn, Winding::CounterClockwise, "outline")?;
+        let vertices: Vec<DVec2> = (2..6).map(|i| drawn[i]).collect();
+        let arcs = vec![contour.arc()[2..6].to_vec()];
+        let (worst, strays) = deviation(&[contour], &vertices, &arcs, 2.0);
+        assert_eq!(worst, 5.0);
+        assert_eq!(strays.len(), 1);
+        assert_eq!((strays[0].edge, strays[0].point), (3, drawn[0]));
         Ok(())
     }
 }

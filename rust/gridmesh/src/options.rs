@@ -134,10 +134,12 @@ impl SketchOptions {
         if !(0.0..=std::f64::consts::PI).contains(&self.corner_angle) {
             return refuse("corner_angle", self.corner_angle, "0 to pi radians");
         }
-        if let Some(Mirror::Axis { point, direction }) = self.mirror
-            && !(point.is_finite() && direction.is_finite() && direction.length() > 0.0)
-        {
-            return refuse("mirror", direction.length(), "a finite point and a direction other than zero");
+        if self.mirror.is_some() {
+            return Err(Error::InvalidOption {
+                name: "mirror",
+                value: "given".to_owned(),
+                allowed: "none: mirror-symmetric meshes are not made yet",
+            });
         }
         Ok(())
     }
