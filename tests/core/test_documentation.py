@@ -2,13 +2,29 @@
 
 import doctest
 import inspect
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import gridmesh
 import pytest
 
 FUNCTIONS = [gridmesh.mesh_sketch, gridmesh.stitch, gridmesh.flat, gridmesh.inflate, gridmesh.map_sketches]
+
+README = Path(__file__).parents[2] / "README.md"
+
+
+def readme_examples() -> list[str]:
+    """The Python examples of the README that need no Blender."""
+    text = README.read_text(encoding="utf-8") if README.exists() else ""
+    return [code for code in re.findall(r"^```python\n(.*?)^```", text, re.M | re.S) if "bpy" not in code]
+
+
+@pytest.mark.parametrize("code", readme_examples())
+def test_readme_examples_run(code, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {"__name__": "__main__"})
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.__name__)
