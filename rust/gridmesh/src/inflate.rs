@@ -18,7 +18,7 @@ use crate::progress::Progress;
 use crate::stitch::projects_well;
 use crate::surface::Surface;
 use field::Field;
-use height::{Flat, limbness, squared_height};
+use height::{Flat, bends, squared_height};
 use laplace::Pattern;
 pub use side::Side;
 use spread::Front;
@@ -110,7 +110,7 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         // Far above what rounding to f32 can turn over.
         let extent = (high - low).max_element();
         let least_area = 4.0 * f64::from(f32::EPSILON) * extent * patch.lattice.edge_length;
-        let limb = limbness(&flat, &field.gradient, depth);
+        let limb = bends(&flat, &field.value, &field.gradient, depth).iter().map(|bend| bend.limb).collect::<Vec<_>>();
         let goal = spread::unrolled_heights(&field, &limb);
         let crease = spread::creases(&field, &patch.loops, first);
         let legs: usize = spread::tune().legs;
@@ -121,6 +121,9 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         }
         for _ in 0..spread::tune().sweeps {
             spread::sweep(&mut front, &field, &crease, least_area);
+        }
+        for round in 0..spread::tune().rounds {
+            spread::sharpen(&mut front, &field, &crease, least_area, round);
         }
     }
     clock.stage("spread");

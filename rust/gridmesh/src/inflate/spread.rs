@@ -57,7 +57,7 @@ pub(crate) fn unrolled_heights(field: &Field<'_>, limb: &[f64]) -> Vec<f64> {
         let half = 0.25 * field.gradient[v].length_squared();
         let t = half / (field.value[v] + half);
         let k = 3.0 - 1.7 * limb[v];
-        (field.value[v] * (1.0 - t) / (1.0 + (k - 1.0) * t + (4.0 - k) * t * t)).sqrt()
+        (field.value[v] * (1.0 - t) / (1.0 + (k - 1.0) * t + (1.0 - tune().rimlimb * limb[v]) * t * t)).sqrt()
     };
     (0..field.value.len()).map(|v| if field.value[v] > 0.0 { height(v) } else { 0.0 }).collect()
 }
@@ -307,6 +307,57 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, creases: &[Option<Crea
     }
 }
 
+/// Moves the vertices of the sharpest triangles to where the least angle around them is largest.
+pub(crate) fn sharpen(front: &mut Front, field: &Field<'_>, creases: &[Option<Crease>], least_area: f64, round: u32) {
+    let reach_of = [0.3, 0.12, 0.05][round as usize % 3];
+    for v in front.first..front.flat.len() {
+        let slot = v - front.first;
+        let fan = field.topology.fan(v);
+        let here = front.position(v);
+        let mut best = sharpest(front, fan, here);
+        if best <= tune().sharp {
+            continue;
+        }
+        let (_, gradient) = field.at(front.flat[v], front.place[slot]);
+        let normal = (-gradient).extend(2.0 * front.height[v]).normalize_or(DVec3::Z);
+        let (e, f) = normal.any_orthonormal_pair();
+        let reach = fan.iter().map(|&[a, _]| here.distance(front.position(a as usize))).sum::<f64>() / fan.len() as f64;
+        for k in 0..8 {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4 + 0.3 * f64::from(round)).sin_cos();
+            let target = here + reach_of * reach * (cos * e + sin * f);
+            let Some(point) = project(field, target, front.place[slot].triangle) else { continue };
+            if creases[v].as_ref().is_some_and(|crease| !crease.holds(point) && crease.holds(front.flat[v])) {
+                continue;
+            }
+            let fits = fan.iter().all(|&[a, b]| {
+                (front.flat[a as usize] - point).perp_dot(front.flat[b as usize] - point) >= least_area
+            });
+            if !fits {
+                continue;
+            }
+            let Some(place) = field.locate(point, front.place[slot].triangle) else { continue };
+            let height = field.at(point, place).0.sqrt();
+            let now = sharpest(front, fan, point.extend(height));
+            if now < best {
+                best = now;
+                front.flat[v] = point;
+                front.place[slot] = place;
+                front.height[v] = height;
+            }
+        }
+    }
+}
+
+/// Largest cotangent of the triangles around a vertex at `point`.
+fn sharpest(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
+    let largest = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
+        let c = b - a;
+        a.dot(b).max(b.dot(c)).max(-a.dot(c)) / a.cross(b).length()
+    };
+    fan.iter().map(largest).fold(f64::NEG_INFINITY, f64::max)
+}
+
 /// Least ratio of twice the area to the sum of the squared sides of the triangles around a vertex at
 /// `point`; 0.29 if they are equilateral.
 fn worst(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
@@ -317,9 +368,9 @@ fn worst(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
     fan.iter().map(ratio).fold(f64::INFINITY, f64::min)
 }
 
-pub(crate) struct Tune { pub steep: f64, pub floor: f64, pub flatter: f64, pub crease: f64, pub legs: usize, pub between: usize, pub sweeps: usize, pub good: f64, pub power: f64 }
+pub(crate) struct Tune { pub steep: f64, pub floor: f64, pub flatter: f64, pub crease: f64, pub legs: usize, pub between: usize, pub sweeps: usize, pub good: f64, pub power: f64, pub relief: f64, pub reliefturn: f64, pub reliefpow: f64, pub rimlimb: f64, pub sharp: f64, pub rounds: u32 }
 pub(crate) fn tune() -> &'static Tune {
     static T: std::sync::OnceLock<Tune> = std::sync::OnceLock::new();
     fn g<T: std::str::FromStr>(n: &str, d: T) -> T { std::env::var(n).ok().and_then(|s| s.parse().ok()).unwrap_or(d) }
-    T.get_or_init(|| Tune { steep: g("STEEP", 0.2), floor: g("FLOOR", 0.02), flatter: g("FLATTER", 1.25), crease: g("CREASE", 0.5), legs: g("LEGS", 3), between: g("BETWEEN", 1), sweeps: g("SWEEPS", 3), good: g("GOOD", 0.2), power: g("POWER", 1.0) })
+    T.get_or_init(|| Tune { steep: g("STEEP", 0.2), floor: g("FLOOR", 0.02), flatter: g("FLATTER", 1.25), crease: g("CREASE", 0.5), legs: g("LEGS", 3), between: g("BETWEEN", 1), sweeps: g("SWEEPS", 3), good: g("GOOD", 0.2), power: g("POWER", 1.0), relief: g("RELIEF", 0.0), reliefturn: g("RTURN", 0.35), reliefpow: g("RPOW", 1.0), rimlimb: g("RIML", -1.7), sharp: 1.0 / g("SHARP", 28.0f64).to_radians().tan(), rounds: g("ROUNDS", 6) })
 }
