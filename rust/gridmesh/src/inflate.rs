@@ -113,18 +113,17 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         let limb = bends(&flat, &field.value, &field.gradient, depth).iter().map(|bend| bend.limb).collect::<Vec<_>>();
         let goal = spread::unrolled_heights(&field, &limb);
         let crease = spread::creases(&field, &patch.loops, first);
+        let rim = spread::rim_flatness(&field, &patch.loops, first);
         let legs: usize = spread::tune().legs;
         let between: usize = spread::tune().between;
         for leg in 0..legs {
             spread::slide(&mut front, &field, &goal, &crease, 1.0 / (legs - leg) as f64, depth, least_area);
-            for _ in 0..between { spread::sweep(&mut front, &field, &crease, least_area); }
+            for _ in 0..between { spread::sweep(&mut front, &field, &crease, &rim, least_area); }
         }
         for _ in 0..spread::tune().sweeps {
-            spread::sweep(&mut front, &field, &crease, least_area);
+            spread::sweep(&mut front, &field, &crease, &rim, least_area);
         }
-        for round in 0..spread::tune().rounds {
-            spread::sharpen(&mut front, &field, &crease, least_area, round);
-        }
+        spread::sharpen(&mut front, &field, &crease, least_area, spread::tune().rounds);
     }
     clock.stage("spread");
 

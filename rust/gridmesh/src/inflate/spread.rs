@@ -5,6 +5,9 @@ use glam::{DVec2, DVec3};
 use super::field::{Field, Place};
 use crate::patch::Loop;
 
+/// Sum of the squared sides over twice the area of an equilateral triangle.
+const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
+
 /// Turning angle in radians from which on a corner of the outline is re-entrant enough for a crease.
 const RE_ENTRANT: f64 = 0.5;
 
@@ -37,6 +40,24 @@ impl Front {
         }
         let height = field.value.iter().map(|f| f.sqrt()).collect();
         Front { flat: field.vertices.to_vec(), height, place, first, shortened: 0 }
+    }
+
+    /// Whether `v`, which was at `start`, may go to `point`: all its triangles stay positive in
+    /// projection, and it does not leave its crease.
+    fn may_move(
+        &self,
+        field: &Field<'_>,
+        crease: &Option<Crease>,
+        least_area: f64,
+        v: usize,
+        start: DVec2,
+        point: DVec2,
+    ) -> bool {
+        let stays = crease.as_ref().is_none_or(|crease| crease.holds(point) || !crease.holds(start));
+        stays
+            && field.topology.fan(v).iter().all(|&[a, b]| {
+                (self.flat[a as usize] - point).perp_dot(self.flat[b as usize] - point) >= least_area
+            })
     }
 
     fn position(&self, v: usize) -> DVec3 {
@@ -224,13 +245,34 @@ fn settle(front: &mut Front, field: &Field<'_>, target: &[DVec2], least_area: f6
     front.place = place;
 }
 
+/// How much flatter than equilateral the triangles at each boundary vertex are to be.
+///
+/// The face angle across the silhouette is that of the curvature across it over the height of these
+/// triangles; beside it edges lie in all directions and see the curvature along it as well. Flatter
+/// triangles even this out, the more so where the body bends much more across than along.
+pub(crate) fn rim_flatness(field: &Field<'_>, loops: &[Loop], first: usize) -> Vec<f64> {
+    let mut flatness = vec![0.0; first];
+    for contour in loops {
+        let (start, n) = (contour.start as usize, contour.len());
+        for k in 0..n {
+            let v = start + k;
+            let (a, p, b) =
+                (field.vertices[start + (k + n - 1) % n], field.vertices[v], field.vertices[start + (k + 1) % n]);
+            let along = 2.0 * (p - a).angle_to(b - p).abs() / (p.distance(a) + p.distance(b));
+            let across_radius = 0.5 * field.gradient[v].length();
+            flatness[v] = tune().flatter + tune().flatlimb * (1.0 - along * across_radius).max(0.0);
+        }
+    }
+    flatness
+}
+
 /// One sweep over the vertices, each moved along the surface to where its triangles are best.
 ///
 /// A triangle's badness is the sum of its squared sides over its area, both seen in the tangent
 /// plane of the vertex: convex in the vertex's position there. One Newton step, weighted by the
 /// badness itself so that the worst triangles count most, is taken and shortened until no triangle
 /// falls below `least_area` in projection.
-pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, creases: &[Option<Crease>], least_area: f64) {
+pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, creases: &[Option<Crease>], rim: &[f64], least_area: f64) {
     for v in front.first..front.flat.len() {
         let slot = v - front.first;
         let (_, gradient) = field.at(front.flat[v], front.place[slot]);
@@ -258,16 +300,17 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, creases: &[Option<Crea
             let mut ds = -2.0 * (a + b);
             let mut extra = DVec2::ZERO;
             if (i as usize) < front.first && (j as usize) < front.first {
-                // Triangles on the silhouette are to be flatter, see above.
+                let flatter = 0.5 * (rim[i as usize] + rim[j as usize]);
                 let m = widen.normalize_or_zero();
                 let height = a.dot(m);
-                sides += tune().flatter * height * height;
-                ds -= 2.0 * tune().flatter * height * m;
-                extra = (2.0 * tune().flatter).sqrt() * DVec2::new(m.dot(e), m.dot(f));
+                sides += flatter * height * height;
+                ds -= 2.0 * flatter * height * m;
+                extra = (2.0 * flatter).sqrt() * DVec2::new(m.dot(e), m.dot(f));
             }
             let ds = DVec2::new(ds.dot(e), ds.dot(f));
             let da = DVec2::new(widen.dot(e), widen.dot(f));
-            let weight = (sides / area / 3.46).powf(tune().power);
+            let badness = sides / area / EQUILATERAL;
+            let weight = badness * badness * badness;
             slope += weight * (ds - da * (sides / area)) / area;
             let k = weight / area;
             let (m, n) = (1.0 / area, 2.0 * sides / (area * area));
@@ -286,10 +329,7 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, creases: &[Option<Crea
         let mut share = 1.0;
         for _ in 0..4 {
             let point = front.flat[v].lerp(target, share);
-            let fits = creases[v].as_ref().is_none_or(|crease| crease.holds(point) || !crease.holds(front.flat[v])) && fan.iter().all(|&[a, b]| {
-                (front.flat[a as usize] - point).perp_dot(front.flat[b as usize] - point) >= least_area
-            });
-            if fits {
+            if front.may_move(field, &creases[v], least_area, v, front.flat[v], point) {
                 let Some(place) = field.locate(point, front.place[slot].triangle) else { break };
                 let height = field.at(point, place).0.sqrt();
                 let after = worst(front, fan, point.extend(height));
@@ -307,45 +347,71 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, creases: &[Option<Crea
     }
 }
 
-/// Moves the vertices of the sharpest triangles to where the least angle around them is largest.
-pub(crate) fn sharpen(front: &mut Front, field: &Field<'_>, creases: &[Option<Crease>], least_area: f64, round: u32) {
-    let reach_of = [0.3, 0.12, 0.05][round as usize % 3];
-    for v in front.first..front.flat.len() {
-        let slot = v - front.first;
-        let fan = field.topology.fan(v);
-        let here = front.position(v);
-        let mut best = sharpest(front, fan, here);
-        if best <= tune().sharp {
+/// Moves the vertices of the sharpest triangles to where the least angle around them is largest, by
+/// trial in eight directions, until nothing improves or `rounds` are done.
+pub(crate) fn sharpen(front: &mut Front, field: &Field<'_>, creases: &[Option<Crease>], least_area: f64, rounds: u32) {
+    let mut active: Vec<u32> = (front.first as u32..front.flat.len() as u32).collect();
+    for round in 0..rounds {
+        let reach = [0.3, 0.12, 0.05][round as usize % 3];
+        let mut next = vec![];
+        for &v in &active {
+            let v = v as usize;
+            let fan = field.topology.fan(v);
+            if sharpest(front, fan, front.position(v)) <= tune().sharp {
+                continue;
+            }
+            next.push(v as u32);
+            if try_around(front, field, &creases[v], least_area, v, reach, 0.3 * f64::from(round)) {
+                next.extend(fan.iter().flatten().filter(|&&u| u as usize >= front.first));
+            }
+        }
+        next.sort_unstable();
+        next.dedup();
+        if next.is_empty() {
+            break;
+        }
+        active = next;
+    }
+}
+
+/// Moves `v` to the best of eight places around it; false if none is better.
+fn try_around(
+    front: &mut Front,
+    field: &Field<'_>,
+    crease: &Option<Crease>,
+    least_area: f64,
+    v: usize,
+    reach: f64,
+    turn: f64,
+) -> bool {
+    let slot = v - front.first;
+    let fan = field.topology.fan(v);
+    let (here, start) = (front.position(v), front.flat[v]);
+    let (_, gradient) = field.at(start, front.place[slot]);
+    let normal = (-gradient).extend(2.0 * front.height[v]).normalize_or(DVec3::Z);
+    let (e, f) = normal.any_orthonormal_pair();
+    let mean = fan.iter().map(|&[a, _]| here.distance(front.position(a as usize))).sum::<f64>() / fan.len() as f64;
+    let mut best = sharpest(front, fan, here);
+    let mut moved = false;
+    for k in 0..8 {
+        let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4 + turn).sin_cos();
+        let target = here + reach * mean * (cos * e + sin * f);
+        let Some(point) = project(field, target, front.place[slot].triangle) else { continue };
+        if !front.may_move(field, crease, least_area, v, start, point) {
             continue;
         }
-        let (_, gradient) = field.at(front.flat[v], front.place[slot]);
-        let normal = (-gradient).extend(2.0 * front.height[v]).normalize_or(DVec3::Z);
-        let (e, f) = normal.any_orthonormal_pair();
-        let reach = fan.iter().map(|&[a, _]| here.distance(front.position(a as usize))).sum::<f64>() / fan.len() as f64;
-        for k in 0..8 {
-            let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4 + 0.3 * f64::from(round)).sin_cos();
-            let target = here + reach_of * reach * (cos * e + sin * f);
-            let Some(point) = project(field, target, front.place[slot].triangle) else { continue };
-            if creases[v].as_ref().is_some_and(|crease| !crease.holds(point) && crease.holds(front.flat[v])) {
-                continue;
-            }
-            let fits = fan.iter().all(|&[a, b]| {
-                (front.flat[a as usize] - point).perp_dot(front.flat[b as usize] - point) >= least_area
-            });
-            if !fits {
-                continue;
-            }
-            let Some(place) = field.locate(point, front.place[slot].triangle) else { continue };
-            let height = field.at(point, place).0.sqrt();
-            let now = sharpest(front, fan, point.extend(height));
-            if now < best {
-                best = now;
-                front.flat[v] = point;
-                front.place[slot] = place;
-                front.height[v] = height;
-            }
+        let Some(place) = field.locate(point, front.place[slot].triangle) else { continue };
+        let height = field.at(point, place).0.sqrt();
+        let now = sharpest(front, fan, point.extend(height));
+        if now < best {
+            best = now;
+            moved = true;
+            front.flat[v] = point;
+            front.place[slot] = place;
+            front.height[v] = height;
         }
     }
+    moved
 }
 
 /// Largest cotangent of the triangles around a vertex at `point`.
@@ -368,9 +434,9 @@ fn worst(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
     fan.iter().map(ratio).fold(f64::INFINITY, f64::min)
 }
 
-pub(crate) struct Tune { pub steep: f64, pub floor: f64, pub flatter: f64, pub crease: f64, pub legs: usize, pub between: usize, pub sweeps: usize, pub good: f64, pub power: f64, pub relief: f64, pub reliefturn: f64, pub reliefpow: f64, pub rimlimb: f64, pub sharp: f64, pub rounds: u32 }
+pub(crate) struct Tune { pub steep: f64, pub floor: f64, pub flatter: f64, pub crease: f64, pub legs: usize, pub between: usize, pub sweeps: usize, pub good: f64, pub power: f64, pub relief: f64, pub reliefturn: f64, pub reliefpow: f64, pub rimlimb: f64, pub sharp: f64, pub rounds: u32, pub flatlimb: f64 }
 pub(crate) fn tune() -> &'static Tune {
     static T: std::sync::OnceLock<Tune> = std::sync::OnceLock::new();
     fn g<T: std::str::FromStr>(n: &str, d: T) -> T { std::env::var(n).ok().and_then(|s| s.parse().ok()).unwrap_or(d) }
-    T.get_or_init(|| Tune { steep: g("STEEP", 0.2), floor: g("FLOOR", 0.02), flatter: g("FLATTER", 1.25), crease: g("CREASE", 0.5), legs: g("LEGS", 3), between: g("BETWEEN", 1), sweeps: g("SWEEPS", 3), good: g("GOOD", 0.2), power: g("POWER", 1.0), relief: g("RELIEF", 0.0), reliefturn: g("RTURN", 0.35), reliefpow: g("RPOW", 1.0), rimlimb: g("RIML", -1.7), sharp: 1.0 / g("SHARP", 28.0f64).to_radians().tan(), rounds: g("ROUNDS", 6) })
+    T.get_or_init(|| Tune { steep: g("STEEP", 0.0), floor: g("FLOOR", 0.02), flatter: g("FLATTER", 1.25), crease: g("CREASE", 0.3), legs: g("LEGS", 3), between: g("BETWEEN", 1), sweeps: g("SWEEPS", 2), good: g("GOOD", 0.2), power: g("POWER", 1.0), relief: g("RELIEF", 2.5), reliefturn: g("RTURN", 0.35), reliefpow: g("RPOW", 1.0), rimlimb: g("RIML", -1.7), sharp: 1.0 / g("SHARP", 30.0f64).to_radians().tan(), rounds: g("ROUNDS", 24), flatlimb: g("FLATLIMB", 1.5) })
 }
