@@ -2,12 +2,15 @@
 
 use glam::DVec2;
 
+use super::Profile;
 use super::field::{triangle_gradient, vertex_gradients};
 use super::laplace::{Factor, Pattern, cotangent_weights, lumped_areas};
 use super::topology::Topology;
-use super::Profile;
 use crate::error::Result;
 use crate::patch::Patch;
+
+/// The `k` of [`bends`].
+const DRAG: f64 = 2.5;
 
 /// Weights are limited to this from below where all must be positive; that of an equilateral mesh is
 /// 0.58.
@@ -180,7 +183,7 @@ pub(crate) fn bends(flat: &Flat<'_>, value: &[f64], gradient: &[DVec2], depth: f
         // Not at ridges and passes, where level lines mean nothing.
         let half = 0.25 * gradient[v].length_squared();
         let steep = half / (half + value[v]);
-        let drag = if hollow > 0.0 && value[v] > 0.0 { crate::inflate::spread::tune().relief * steep * hollow / value[v] } else { 0.0 };
+        let drag = if hollow > 0.0 && value[v] > 0.0 { DRAG * steep * hollow / value[v] } else { 0.0 };
         Bend { limb, drag }
     };
     (0..value.len()).map(bend).collect()
@@ -245,7 +248,9 @@ fn rim_edge(flat: &Flat<'_>) -> f64 {
     let mut sum = 0.0;
     for contour in &flat.patch.loops {
         let (start, n) = (contour.start as usize, contour.len());
-        sum += (0..n).map(|k| flat.vertices[start + k].distance(flat.vertices[start + (k + 1) % n])).sum::<f64>();
+        sum += (0..n)
+            .map(|k| flat.vertices[start + k].distance(flat.vertices[start + (k + 1) % n]))
+            .sum::<f64>();
     }
     sum / flat.first as f64
 }
