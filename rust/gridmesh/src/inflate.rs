@@ -1,8 +1,10 @@
 //! From the flat patch to a round body.
 
+mod crease;
 mod field;
 mod height;
 mod laplace;
+mod polish;
 mod side;
 mod spread;
 mod topology;
@@ -18,10 +20,10 @@ use crate::progress::Progress;
 use crate::stitch::projects_well;
 use crate::surface::Surface;
 use field::Field;
-use height::{Flat, limbness, squared_height};
+use height::{Flat, bends, squared_height};
 use laplace::Pattern;
 pub use side::Side;
-use spread::Front;
+use spread::{Front, Guide, spread};
 use topology::Topology;
 
 /// Shape of the body's cross-section.
@@ -68,9 +70,37 @@ impl Default for InflateOptions {
     }
 }
 
-/// Rounds of sliding at most.
-const STEPS: usize = 6;
-
+/// Inflates a patch to a closed body: two copies of it glued along its contours, the front at
+/// z > 0, the back at z < 0.
+///
+/// The height of the front is the square root of a smooth field over the drawing, zero on the
+/// silhouette ([`Profile`] names it; for `Round` the solution of a Poisson equation, softened where
+/// the outline is hollow). The surface `z^2 = f(x, y)` runs smoothly across the silhouette. Then the
+/// vertices slide along it until its triangles are even and nearly isotropic.
+///
+/// Guaranteed:
+/// * the silhouette's x and y are the patch's bit for bit, its z is zero;
+/// * front and back have the same x and y, and if their depths agree are exact mirror images;
+/// * all vertices lie inside the drawing; every triangle is positive in projection, so that the
+///   body is embedded. Exact predicates check this in the end, also after rounding to `f32`; should
+///   it fail (a patch that breaks its own promises), intersections are counted and reported;
+/// * at depth 1 the vertices of a circle's `Round` body lie on a sphere, whatever the resolution.
+///
+/// Not guaranteed: the least angle, which narrow and re-entrant corners limit.
+///
+/// Depths scale heights only. Near-linear time: about 13 ms for a body of 5000 vertices, two sparse
+/// factorisations included.
+///
+/// # Errors
+/// [`Error::InvalidOption`] for a depth that is not positive, a side's depth that is negative, not
+/// finite or zero on both sides, or too few values per point; [`Error::Solver`] if the patch has no
+/// interior vertex or a triangle that is not positive; [`Error::Cancelled`].
+///
+/// Source: the job is that of Nealen et al., FiberMesh, SIGGRAPH 2007, which diffuses curvature and
+/// refits positions in rounds. We differ: its rounds start from an even mesh and lose height on an
+/// uneven one, and they prove nothing. Here the surface itself is fair (it solves an elliptic
+/// equation), and only its sampling is optimised, under an invariant that excludes
+/// self-intersections.
 pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) -> Result<Surface> {
     let mut clock = Stages::new();
     options.check()?;
@@ -110,20 +140,9 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         // Far above what rounding to f32 can turn over.
         let extent = (high - low).max_element();
         let least_area = 4.0 * f64::from(f32::EPSILON) * extent * patch.lattice.edge_length;
-        let limb = limbness(&flat, &field.gradient, depth);
-        let goal = spread::unrolled_heights(&field, &limb);
-        let crease = spread::creases(&field, &patch.loops, first);
-        let legs: usize = spread::tune().legs;
-        let between: usize = spread::tune().between;
-        for leg in 0..legs {
-            spread::slide(&mut front, &field, &goal, &crease, 1.0 / (legs - leg) as f64, depth, least_area);
-            for _ in 0..between {
-                spread::sweep(&mut front, &field, &crease, least_area);
-            }
-        }
-        for _ in 0..spread::tune().sweeps {
-            spread::sweep(&mut front, &field, &crease, least_area);
-        }
+        let bends = bends(&flat, &field.value, &field.gradient, depth);
+        let guide = Guide::new(&field, |v| bends[v].limb, &patch.loops, depth, least_area);
+        spread(&mut front, &guide, progress.part(0.4, 0.8))?;
     }
     clock.stage("spread");
 

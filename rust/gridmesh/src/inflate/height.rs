@@ -9,6 +9,9 @@ use super::topology::Topology;
 use crate::error::Result;
 use crate::patch::Patch;
 
+/// The `k` of [`bends`].
+const DRAG: f64 = 2.5;
+
 /// Weights are limited to this from below where all must be positive; that of an equilateral mesh is
 /// 0.58.
 const LEAST_WEIGHT: f64 = 1e-3;
@@ -92,84 +95,104 @@ pub(crate) struct Height {
 
 /// Solves for the squared height of `profile`.
 ///
-/// `Round`: `-Lap f = 4`, zero on the silhouette. `Even` solves twice: where the first solution
-/// bends in one direction only (a limb) it is twice the square of the half width, so the load is
-/// halved there. `Flat`: `v` of `v - r^2 Lap v = 1` falls off from the plateau like `exp(-d / r)`
-/// with the distance `d` from the outline, and `f = r^2 v (2 - v)` ends in a rim of radius `r`.
-/// `Peak`: the distance from the outline by the heat method (Crane, Weischedel, Wardetzky 2013):
-/// the unit gradient field of such a `v` is integrated by a Poisson solve; the square is returned.
+/// `Round`: `-Lap f = 4`, zero on the silhouette; a second solve softens hollows, see [`bends`].
+/// `Even`: the second solve also halves the load in limbs, where the first solution bends in one
+/// direction only and is twice the square of the half width.
+/// `Flat`: `v` of `v - r^2 Lap v = 1` falls off from the plateau like `exp(-d / r)` with the distance
+/// `d` from the outline, and `f = r^2 v (2 - v)` ends in a rim of radius `r`.
+/// `Peak`: the distance from the outline by the heat method (Crane, Weischedel, Wardetzky 2013): the
+/// unit gradient field of such a `v` is integrated by a Poisson solve; the square is returned.
 pub(crate) fn squared_height(flat: &Flat<'_>, profile: Profile, corner_angle: f64) -> Result<Height> {
-    let factor = flat.pattern.factor(flat.topology, &flat.cotangent, |_| 0.0)?;
-    let mut value = flat.solve(&factor, |v| flat.load(v))?;
-    let mut limited = None;
-    if !flat.is_positive(&value) {
-        // A matrix of positive weights has a positive inverse.
-        let areas = lumped_areas(flat.vertices, &flat.patch.triangles);
-        let weights = flat.cotangent.iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-        let factor = flat.pattern.factor(flat.topology, &weights, |_| 0.0)?;
-        value = flat.solve(&factor, |v| 4.0 * areas[v])?;
-        limited = Some((weights, areas));
-    }
-    let mut load: Box<dyn Fn(usize) -> f64> = Box::new(|v| flat.load(v));
-    match profile {
-        Profile::Round => {}
-        Profile::Even => {
-            let gradient = vertex_gradients(flat.vertices, &flat.patch.triangles, &value);
-            let share = limbness(flat, &gradient, 1.0).iter().map(|a| 1.0 / (1.0 + a)).collect::<Vec<_>>();
-            let even = match &limited {
-                None => flat.solve(&factor, |v| flat.load(v) * share[v])?,
-                Some((weights, areas)) => {
-                    let factor = flat.pattern.factor(flat.topology, weights, |_| 0.0)?;
-                    flat.solve(&factor, |v| 4.0 * areas[v] * share[v])?
-                }
-            };
-            if flat.is_positive(&even) {
-                value = even;
-                load = Box::new(move |v| flat.load(v) * share[v]);
-            } else {
-                limited.get_or_insert_default();
-            }
-        }
-        Profile::Flat => {}
-        Profile::Peak => {}
-    }
-    let (value, gradient, lifted) = match profile {
+    let triangles = &flat.patch.triangles;
+    let (mut value, mut limited) = torsion(flat, None)?;
+    let mut lifted = 0;
+    let gradient = match profile {
         Profile::Round | Profile::Even => {
-            let gradient = gradients(flat, &value, load.as_ref(), corner_angle);
-            (value, gradient, 0)
+            let slope = gradients(flat, &value, &|_| 1.0, corner_angle);
+            let bends = bends(flat, &value, &slope, 1.0);
+            let share = |v: usize| if profile == Profile::Even { 1.0 / (1.0 + bends[v].limb) } else { 1.0 };
+            if profile == Profile::Even || bends.iter().any(|bend| bend.drag > 0.0) {
+                (value, limited) = torsion(flat, Some((&share, &|v| bends[v].drag)))?;
+                gradients(flat, &value, &share, corner_angle)
+            } else {
+                slope
+            }
         }
         Profile::Flat => {
             let radius = (0.35 * inradius(flat, &value)).max(1.5 * rim_edge(flat));
             let v = screened(flat, radius)?;
-            let value = v.iter().map(|v| radius * radius * v * (2.0 - v)).collect::<Vec<_>>();
-            let gradient = vertex_gradients(flat.vertices, &flat.patch.triangles, &value);
-            (value, gradient, 0)
+            value = v.iter().map(|v| radius * radius * v * (2.0 - v)).collect();
+            vertex_gradients(flat.vertices, triangles, &value)
         }
         Profile::Peak => {
-            let (value, lifted) = distance(flat, &factor, &value)?;
-            let gradient = vertex_gradients(flat.vertices, &flat.patch.triangles, &value);
-            (value, gradient, lifted)
+            (value, lifted) = distance(flat, &value)?;
+            vertex_gradients(flat.vertices, triangles, &value)
         }
     };
-    Ok(Height { value, gradient, limited: limited.is_some(), lifted })
+    Ok(Height { value, gradient, limited, lifted })
 }
 
-/// 0 where a squared height bends alike in all directions (the middle of a disk), 1 where it bends
-/// in one only (a limb) or has a saddle.
-pub(crate) fn limbness(flat: &Flat<'_>, gradient: &[DVec2], depth: f64) -> Vec<f64> {
+/// Load relative to 4, and drag.
+type Terms<'a> = (&'a dyn Fn(usize) -> f64, &'a dyn Fn(usize) -> f64);
+
+/// Solves `-Lap f + drag f = 4 share`, zero on the boundary; positive inside. True if that took
+/// weights limited to positive values, since obtuse triangles spoiled the cotangent solution.
+fn torsion(flat: &Flat<'_>, terms: Option<Terms<'_>>) -> Result<(Vec<f64>, bool)> {
+    let (share, drag) = terms.unwrap_or((&|_| 1.0, &|_| 0.0));
+    let areas = lumped_areas(flat.vertices, &flat.patch.triangles);
+    let factor = flat.pattern.factor(flat.topology, &flat.cotangent, |v| drag(v) * areas[v])?;
+    let value = flat.solve(&factor, |v| flat.load(v) * share(v))?;
+    if flat.is_positive(&value) {
+        return Ok((value, false));
+    }
+    // A matrix of positive weights has a positive inverse.
+    let weights = flat.cotangent.iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
+    let factor = flat.pattern.factor(flat.topology, &weights, |v| drag(v) * areas[v])?;
+    Ok((flat.solve(&factor, |v| 4.0 * areas[v] * share(v))?, true))
+}
+
+/// How a squared height bends at a vertex.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bend {
+    /// 0 where it bends alike in all directions (the middle of a disk), 1 where it bends in one
+    /// only (a limb) or has a saddle.
+    pub limb: f64,
+    /// The drag that softens hollows.
+    pub drag: f64,
+}
+
+/// The bends of a squared height `value` of the given depth.
+///
+/// At a re-entrant corner of interior angle `w` the Poisson solution rises like `r^a`, `a = pi / w`:
+/// an ever steeper wall, for which a mesh has no vertices. A drag of `(1 - a^2) / r^2` turns that
+/// into `r`, as at a smooth outline. Such a drag is `k` times the bend of `f` along its level line,
+/// divided by `f`, with `k` from 2 to 3; so it is computed, wherever level lines are hollow.
+pub(crate) fn bends(flat: &Flat<'_>, value: &[f64], gradient: &[DVec2], depth: f64) -> Vec<Bend> {
     let triangles = &flat.patch.triangles;
     let (x, y): (Vec<f64>, Vec<f64>) = gradient.iter().map(|g| (g.x, g.y)).unzip();
     let xx = vertex_gradients(flat.vertices, triangles, &x);
     let yy = vertex_gradients(flat.vertices, triangles, &y);
-    // Half the difference of the principal second derivatives; their sum is -4 at depth 1.
-    let difference = |dx: &DVec2, dy: &DVec2| (0.5 * (dx.x - dy.y)).hypot(0.5 * (dx.y + dy.x));
-    xx.iter().zip(&yy).map(|(dx, dy)| (0.5 * difference(dx, dy) / (depth * depth)).min(1.0)).collect()
+    let bend = |v: usize| {
+        let (dx, dy) = (xx[v], yy[v]);
+        let mixed = 0.5 * (dx.y + dy.x);
+        // The sum of the second derivatives is -4 at depth 1.
+        let difference = (0.5 * (dx.x - dy.y)).hypot(mixed);
+        let limb = (0.5 * difference / (depth * depth)).min(1.0);
+        let level = gradient[v].perp().normalize_or_zero();
+        let hollow = level.x * level.x * dx.x + 2.0 * level.x * level.y * mixed + level.y * level.y * dy.y;
+        // Not at ridges and passes, where level lines mean nothing.
+        let half = 0.25 * gradient[v].length_squared();
+        let steep = half / (half + value[v]);
+        let drag = if hollow > 0.0 && value[v] > 0.0 { DRAG * steep * hollow / value[v] } else { 0.0 };
+        Bend { limb, drag }
+    };
+    (0..value.len()).map(bend).collect()
 }
 
 /// Gradients at the vertices: inside the mean over the triangles, of the value plus the square of
 /// the distance, which varies less; on the boundary along the normal of the drawn curve, by the
 /// flux that the finite elements leave there.
-fn gradients(flat: &Flat<'_>, value: &[f64], load: &dyn Fn(usize) -> f64, corner_angle: f64) -> Vec<DVec2> {
+fn gradients(flat: &Flat<'_>, value: &[f64], share: &dyn Fn(usize) -> f64, corner_angle: f64) -> Vec<DVec2> {
     let vertices = flat.vertices;
     let rest = value.iter().zip(vertices).map(|(f, p)| f + p.length_squared()).collect::<Vec<_>>();
     let mut gradient = vertex_gradients(vertices, &flat.patch.triangles, &rest);
@@ -185,7 +208,7 @@ fn gradients(flat: &Flat<'_>, value: &[f64], load: &dyn Fn(usize) -> f64, corner
                 continue;
             }
             let Some(outward) = circle_normal(a, vertices[v], b) else { continue };
-            let flux = flat.around(&flat.cotangent, v, |u| value[v] - value[u]) - load(v);
+            let flux = flat.around(&flat.cotangent, v, |u| value[v] - value[u]) - flat.load(v) * share(v);
             let width = outward.dot(-0.5 * (b - a).perp());
             if width > 0.0 && flux < 0.0 {
                 gradient[v] = outward * (flux / width);
@@ -246,7 +269,7 @@ fn screened(flat: &Flat<'_>, length: f64) -> Result<Vec<f64>> {
 }
 
 /// Squared distance from the outline, smoothed at the ridges, and how often it was not positive.
-fn distance(flat: &Flat<'_>, factor: &Factor<'_>, value: &[f64]) -> Result<(Vec<f64>, usize)> {
+fn distance(flat: &Flat<'_>, value: &[f64]) -> Result<(Vec<f64>, usize)> {
     let edge = rim_edge(flat);
     let v = screened(flat, edge.max(0.08 * inradius(flat, value)))?;
     let mut divergence = vec![0.0; v.len()];
@@ -257,7 +280,8 @@ fn distance(flat: &Flat<'_>, factor: &Factor<'_>, value: &[f64]) -> Result<(Vec<
             divergence[vertex as usize] += 0.5 * side.perp().dot(direction);
         }
     }
-    let mut distance = flat.solve(factor, |v| divergence[v])?;
+    let factor = flat.pattern.factor(flat.topology, &flat.cotangent, |_| 0.0)?;
+    let mut distance = flat.solve(&factor, |v| divergence[v])?;
     let mut lifted = 0;
     for d in &mut distance[flat.first..] {
         if *d < 0.05 * edge {

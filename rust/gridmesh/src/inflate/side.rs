@@ -36,7 +36,7 @@ impl InflateOptions {
         if !(self.depth > 0.0 && self.depth.is_finite()) {
             return refuse("depth", self.depth, "a finite number above 0");
         }
-        if !(self.corner_angle >= 0.0) {
+        if self.corner_angle.is_nan() || self.corner_angle < 0.0 {
             return refuse("corner_angle", self.corner_angle, "an angle in radians, 0 or more");
         }
         for (name, side) in [("front", &self.front), ("back", &self.back)] {

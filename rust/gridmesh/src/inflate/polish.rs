@@ -1,0 +1,205 @@
+//! Improves the triangles of a front, vertex by vertex.
+
+use glam::{DVec2, DVec3};
+
+use super::field::Field;
+use super::spread::{Front, Guide, project};
+use crate::patch::Loop;
+
+/// Sum of the squared sides over twice the area of an equilateral triangle.
+const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
+
+/// Cotangent of the angle, 30 degrees, below which [`sharpen`] acts.
+const SHARP: f64 = 1.732_050_807_568_877_2;
+
+/// Rounds of [`sharpen`] at most.
+const ROUNDS: u32 = 24;
+
+/// How much flatter than equilateral the triangles at each boundary vertex are to be.
+///
+/// The face angle across the silhouette is that of the curvature across it over the height of these
+/// triangles; beside it edges lie in all directions and see the curvature along it as well. Flatter
+/// triangles even this out, the more so where the body bends much more across than along.
+pub(crate) fn rim_flatness(field: &Field<'_>, loops: &[Loop], first: usize) -> Vec<f64> {
+    let mut flatness = vec![0.0; first];
+    for contour in loops {
+        let (start, n) = (contour.start as usize, contour.len());
+        for k in 0..n {
+            let v = start + k;
+            let (a, p, b) = (
+                field.vertices[start + (k + n - 1) % n],
+                field.vertices[v],
+                field.vertices[start + (k + 1) % n],
+            );
+            let along = 2.0 * (p - a).angle_to(b - p).abs() / (p.distance(a) + p.distance(b));
+            let across_radius = 0.5 * field.gradient[v].length();
+            flatness[v] = 1.25 + 1.5 * (1.0 - along * across_radius).max(0.0);
+        }
+    }
+    flatness
+}
+
+/// One sweep over the vertices, each moved along the surface to where its triangles are best.
+///
+/// A triangle's badness is the sum of its squared sides over its area, both seen in the tangent
+/// plane of the vertex: convex in the vertex's position there. One Newton step, weighted by the
+/// badness itself so that the worst triangles count most, is taken and shortened until no triangle
+/// falls below `least_area` in projection.
+pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>) {
+    let field = guide.field;
+    for v in front.first..front.flat.len() {
+        let slot = v - front.first;
+        let (_, gradient) = field.at(front.flat[v], front.place[slot]);
+        let normal = (-gradient).extend(2.0 * front.height[v]).normalize_or(DVec3::Z);
+        let (e, f) = normal.any_orthonormal_pair();
+        let here = front.position(v);
+        let fan = field.topology.fan(v);
+        let mut slope = DVec2::ZERO;
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        let mut reach = 0.0;
+        for &[i, j] in fan {
+            let (a, b) = (front.position(i as usize) - here, front.position(j as usize) - here);
+            reach += a.length();
+            let mut sides = a.length_squared() + b.length_squared() + (b - a).length_squared();
+            let cross = a.cross(b);
+            let mut area = cross.length();
+            let mut facing = cross / area;
+            if cross.dot(normal) <= 0.0 {
+                // Folded: seen in the tangent plane, where it has to unfold.
+                facing = normal;
+                area = cross.dot(normal);
+            }
+            area = area.max(0.02 * sides);
+            let widen = (a - b).cross(facing);
+            let mut ds = -2.0 * (a + b);
+            let mut extra = DVec2::ZERO;
+            if (i as usize) < front.first && (j as usize) < front.first {
+                let flatter = 0.5 * (guide.flatness[i as usize] + guide.flatness[j as usize]);
+                let m = widen.normalize_or_zero();
+                let height = a.dot(m);
+                sides += flatter * height * height;
+                ds -= 2.0 * flatter * height * m;
+                extra = (2.0 * flatter).sqrt() * DVec2::new(m.dot(e), m.dot(f));
+            }
+            let ds = DVec2::new(ds.dot(e), ds.dot(f));
+            let da = DVec2::new(widen.dot(e), widen.dot(f));
+            let badness = sides / area / EQUILATERAL;
+            let weight = badness * badness * badness;
+            slope += weight * (ds - da * (sides / area)) / area;
+            let k = weight / area;
+            let (m, n) = (1.0 / area, 2.0 * sides / (area * area));
+            xx += k * (4.0 + extra.x * extra.x - 2.0 * m * ds.x * da.x + n * da.x * da.x);
+            yy += k * (4.0 + extra.y * extra.y - 2.0 * m * ds.y * da.y + n * da.y * da.y);
+            xy += k * (extra.x * extra.y - m * (ds.x * da.y + ds.y * da.x) + n * da.x * da.y);
+        }
+        let determinant = xx * yy - xy * xy;
+        if determinant.is_nan() || determinant <= 0.0 {
+            continue;
+        }
+        let u = -DVec2::new(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
+        let u = u.clamp_length_max(0.5 * reach / fan.len() as f64);
+        let Some(target) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else {
+            continue;
+        };
+        let before = worst(front, fan, here);
+        let mut share = 1.0;
+        for _ in 0..4 {
+            let point = front.flat[v].lerp(target, share);
+            if front.may_move(guide, v, front.flat[v], point) {
+                let Some(place) = field.locate(point, front.place[slot].triangle) else { break };
+                let height = field.at(point, place).0.sqrt();
+                let after = worst(front, fan, point.extend(height));
+                if after >= before || after > 0.2 {
+                    front.flat[v] = point;
+                    front.place[slot] = place;
+                    front.height[v] = height;
+                    break;
+                }
+            } else {
+                front.shortened += 1;
+            }
+            share *= 0.5;
+        }
+    }
+}
+
+/// Moves the vertices of the sharpest triangles to where the least angle around them is largest, by
+/// trial in eight directions, until nothing improves or [`ROUNDS`] are done.
+pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>) {
+    let mut active: Vec<u32> = (front.first as u32..front.flat.len() as u32).collect();
+    for round in 0..ROUNDS {
+        let reach = [0.3, 0.12, 0.05][round as usize % 3];
+        let mut next = vec![];
+        for &v in &active {
+            let v = v as usize;
+            let fan = guide.field.topology.fan(v);
+            if sharpest(front, fan, front.position(v)) <= SHARP {
+                continue;
+            }
+            next.push(v as u32);
+            if try_around(front, guide, v, reach, 0.3 * f64::from(round)) {
+                next.extend(fan.iter().flatten().filter(|&&u| u as usize >= front.first));
+            }
+        }
+        next.sort_unstable();
+        next.dedup();
+        if next.is_empty() {
+            break;
+        }
+        active = next;
+    }
+}
+
+/// Moves `v` to the best of eight places around it; false if none is better.
+fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, reach: f64, turn: f64) -> bool {
+    let field = guide.field;
+    let slot = v - front.first;
+    let fan = field.topology.fan(v);
+    let (here, start) = (front.position(v), front.flat[v]);
+    let (_, gradient) = field.at(start, front.place[slot]);
+    let normal = (-gradient).extend(2.0 * front.height[v]).normalize_or(DVec3::Z);
+    let (e, f) = normal.any_orthonormal_pair();
+    let mean =
+        fan.iter().map(|&[a, _]| here.distance(front.position(a as usize))).sum::<f64>() / fan.len() as f64;
+    let mut best = sharpest(front, fan, here);
+    let mut moved = false;
+    for k in 0..8 {
+        let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4 + turn).sin_cos();
+        let target = here + reach * mean * (cos * e + sin * f);
+        let Some(point) = project(field, target, front.place[slot].triangle) else { continue };
+        if !front.may_move(guide, v, start, point) {
+            continue;
+        }
+        let Some(place) = field.locate(point, front.place[slot].triangle) else { continue };
+        let height = field.at(point, place).0.sqrt();
+        let now = sharpest(front, fan, point.extend(height));
+        if now < best {
+            best = now;
+            moved = true;
+            front.flat[v] = point;
+            front.place[slot] = place;
+            front.height[v] = height;
+        }
+    }
+    moved
+}
+
+/// Largest cotangent of the triangles around a vertex at `point`.
+fn sharpest(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
+    let largest = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
+        let c = b - a;
+        a.dot(b).max(b.dot(c)).max(-a.dot(c)) / a.cross(b).length()
+    };
+    fan.iter().map(largest).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Least ratio of twice the area to the sum of the squared sides of the triangles around a vertex at
+/// `point`; 0.29 if they are equilateral.
+fn worst(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
+    let ratio = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
+        a.cross(b).length() / (a.length_squared() + b.length_squared() + (b - a).length_squared())
+    };
+    fan.iter().map(ratio).fold(f64::INFINITY, f64::min)
+}
