@@ -28,5 +28,7 @@ mod segments;
 pub mod sketch;
 pub mod stitch;
 pub mod surface;
+#[cfg(feature = "svg")]
+pub mod svg;
 pub mod target;
 pub mod trace;
