@@ -30,6 +30,8 @@ mod segments;
 pub mod sketch;
 pub mod stitch;
 pub mod surface;
+#[cfg(feature = "svg")]
+pub mod svg;
 pub mod target;
 pub mod trace;
 mod union;
