@@ -50,6 +50,8 @@ class Mesh:
 class Mesher(ABC):
     power = -2.0
     """The number of triangles goes with this power of the size."""
+    has_holes = True
+    """Whether drawings with holes can be meshed."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -78,6 +80,7 @@ class Ours(Mesher):
     def __init__(self, name: str, **options: object) -> None:
         super().__init__(name)
         self.options = options
+        self.has_holes = options.get("boundary") != "grown"
 
     def guess(self, problem: Problem, edge: float) -> float:
         return problem.target
@@ -170,7 +173,8 @@ class Netgen(Mesher):
 
         def work() -> tuple[np.ndarray, np.ndarray]:
             mesh = geometry.GenerateMesh(maxh=size)
-            return mesh.Coordinates(), mesh.Elements2D().NumPy()["nodes"][:, :3]
+            # Copies: the arrays lie in the mesh, which goes.
+            return mesh.Coordinates().copy(), mesh.Elements2D().NumPy()["nodes"][:, :3].copy()
 
         try:
             seconds, (vertices, triangles) = timed(work)
