@@ -1,6 +1,8 @@
 # /// script
 # requires-python = ">=3.11"
-# dependencies = ["gmsh==4.15.2", "gridmesh", "netgen-mesher==6.2.2608", "numpy==1.26.4", "triangle==20250106"]
+# dependencies = [
+#   "gmsh==4.15.2", "gridmesh", "netgen-mesher==6.2.2608", "numpy==1.26.4", "triangle==20250106"
+# ]
 #
 # [tool.uv]
 # python-downloads = "never"
