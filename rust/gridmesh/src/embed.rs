@@ -35,12 +35,11 @@ fn triangles_meet(vertices: &[DVec3], t: [u32; 3], u: [u32; 3]) -> bool {
     let own = |a: [u32; 3], b: [u32; 3]| a.iter().position(|v| !b.contains(v)).unwrap_or(0);
     let common = |a: [u32; 3], b: [u32; 3]| a.iter().position(|v| b.contains(v)).unwrap_or(0);
     match shared {
-        0 => (0..3).any(|k| {
-            segment_meets(p[k], p[(k + 1) % 3], q) || segment_meets(q[k], q[(k + 1) % 3], p)
-        }),
+        0 => (0..3).any(|k| segment_meets(p[k], p[(k + 1) % 3], q) || segment_meets(q[k], q[(k + 1) % 3], p)),
         1 => {
             let (i, j) = (common(t, u), common(u, t));
-            segment_meets(p[(i + 1) % 3], p[(i + 2) % 3], q) || segment_meets(q[(j + 1) % 3], q[(j + 2) % 3], p)
+            segment_meets(p[(i + 1) % 3], p[(i + 2) % 3], q)
+                || segment_meets(q[(j + 1) % 3], q[(j + 2) % 3], p)
         }
         2 => {
             let (i, j) = (own(t, u), own(u, t));
@@ -78,7 +77,8 @@ fn sign(x: f64) -> f64 {
 /// Drops the coordinate along which a triangle extends least.
 fn flattened([a, b, c]: [DVec3; 3]) -> impl Fn(DVec3) -> DVec2 {
     let normal = (b - a).cross(c - a).abs();
-    let axis = if normal.z >= normal.x && normal.z >= normal.y { 2 } else { usize::from(normal.y > normal.x) };
+    let axis =
+        if normal.z >= normal.x && normal.z >= normal.y { 2 } else { usize::from(normal.y > normal.x) };
     move |p| match axis {
         0 => DVec2::new(p.y, p.z),
         1 => DVec2::new(p.z, p.x),
@@ -146,16 +146,18 @@ pub(crate) fn is_planar_embedding(
     edges.iter().enumerate().all(|(index, &[i, j])| {
         let (a, b) = (at(i), at(j));
         let envelope = AABB::from_corners(a.min(b).into(), a.max(b).into());
-        tree.locate_in_envelope_intersecting(&envelope).filter(|other| other.data > index as u32).all(|other| {
-            let [k, l] = edges[other.data as usize];
-            let (c, d) = (at(k), at(l));
-            if j == k || i == l {
-                // Neighbours along a loop: they must not fold onto each other.
-                let (tip, p, q) = if j == k { (b, a, d) } else { (a, b, c) };
-                return side2(p, tip, q) != 0.0 || (p - tip).dot(q - tip) < 0.0;
-            }
-            !segments_meet(a, b, c, d)
-        })
+        tree.locate_in_envelope_intersecting(&envelope).filter(|other| other.data > index as u32).all(
+            |other| {
+                let [k, l] = edges[other.data as usize];
+                let (c, d) = (at(k), at(l));
+                if j == k || i == l {
+                    // Neighbours along a loop: they must not fold onto each other.
+                    let (tip, p, q) = if j == k { (b, a, d) } else { (a, b, c) };
+                    return side2(p, tip, q) != 0.0 || (p - tip).dot(q - tip) < 0.0;
+                }
+                !segments_meet(a, b, c, d)
+            },
+        )
     })
 }
 
@@ -185,8 +187,14 @@ mod tests {
 
     #[test]
     fn neighbours_meet_only_when_folded() {
-        let points =
-            [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [4.0, 4.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 3.0]];
+        let points = [
+            [0.0, 0.0, 0.0],
+            [4.0, 0.0, 0.0],
+            [0.0, 4.0, 0.0],
+            [4.0, 4.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [1.0, 1.0, 3.0],
+        ];
         assert_eq!(count(&points, &[[0, 1, 2], [2, 1, 3]]), 0, "edge shared, flat");
         assert_eq!(count(&points, &[[0, 1, 2], [2, 1, 4]]), 1, "edge shared, folded onto it");
         assert_eq!(count(&points, &[[0, 1, 2], [2, 1, 5]]), 0, "edge shared, raised");

@@ -117,7 +117,9 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         let between: usize = spread::tune().between;
         for leg in 0..legs {
             spread::slide(&mut front, &field, &goal, &crease, 1.0 / (legs - leg) as f64, depth, least_area);
-            for _ in 0..between { spread::sweep(&mut front, &field, &crease, least_area); }
+            for _ in 0..between {
+                spread::sweep(&mut front, &field, &crease, least_area);
+            }
         }
         for _ in 0..spread::tune().sweeps {
             spread::sweep(&mut front, &field, &crease, least_area);

@@ -68,7 +68,8 @@ pub fn check_mesh(n_vertices: usize, triangles: &[[u32; 3]]) -> MeshCheck {
         let arriving = |u: u32| fan.iter().filter(|w| w.1 == u).count();
         let (mut valence, mut open) = (0, false);
         // Every neighbour once: those that leave, then those that only arrive.
-        let firsts = fan.iter().enumerate().filter(|(i, w)| fan[..*i].iter().all(|x| x.0 != w.0)).map(|(_, w)| w.0);
+        let firsts =
+            fan.iter().enumerate().filter(|(i, w)| fan[..*i].iter().all(|x| x.0 != w.0)).map(|(_, w)| w.0);
         let lasts = fan
             .iter()
             .enumerate()

@@ -167,6 +167,9 @@ pub struct SketchReport {
     /// Greatest distance from the drawn curve to the mesh boundary, in edges; at most 2, or the
     /// drawing is refused.
     pub max_deviation: f64,
+    /// Boundary edges that bridge an inlet of the drawing with mesh vertices in it: the inlet is too
+    /// narrow for the lattice.
+    pub bridged_inlets: usize,
     /// Smallest angle of the flat patch, in radians.
     pub min_angle: f64,
     /// Drawn corners sharper than `corner_angle`.

@@ -11,6 +11,7 @@ use crate::mapping::{Corner, corners, snap};
 use crate::options::SketchOptions;
 use crate::outline::{Obstacle, Outline};
 use crate::patch::{Loop, Patch};
+use crate::pockets::pockets;
 use crate::progress::Progress;
 use crate::relax::{Contour, RelaxOptions, Rim, first_inverted, relax, settle_corners};
 
@@ -19,6 +20,9 @@ const CORNER_WINDOW: f64 = 0.5;
 
 /// The drawing may lie this far outside the mesh, in edges.
 const STRAY: f64 = 2.0;
+
+/// A vertex may lie this far outside the drawing, in an inlet that the boundary bridges.
+const INLET: f64 = 0.05;
 
 /// Rounds of relaxing, each holding vertices where the drawing strayed in the one before.
 const ROUNDS: usize = 4;
@@ -31,6 +35,8 @@ pub(crate) struct Placed {
     pub(crate) released_corners: usize,
     /// Greatest distance of the drawing from the boundary, in edges.
     pub(crate) max_deviation: f64,
+    /// Boundary edges that bridge an inlet with a mesh vertex in it.
+    pub(crate) bridged_inlets: usize,
 }
 
 /// Puts the boundary on the contours, snaps corners, relaxes the interior and proves that no
@@ -62,6 +68,9 @@ pub(crate) fn place(
         settle_corners(&region.triangles, &lines, &mut rims, &mut angles);
     }
     let lengths: Vec<f64> = contours.iter().map(|contour| contour.length() / h).collect();
+    // A valid patch that bridges an inlet serves if following the inlet leads to none.
+    let mut valid: Option<Placed> = None;
+    let mut obstacle = Obstacle { reason: "a part of the drawing is lost", at: contours[0].points()[0] };
     for round in 0..ROUNDS {
         let part = |i: usize| i as f64 / ROUNDS as f64;
         let mut positions = lattice_positions.clone();
@@ -74,22 +83,35 @@ pub(crate) fn place(
         let inverted = first_inverted(&vertices, &region.triangles, lattice.origin);
         if let Some(triangle) = inverted.filter(|_| options.relax) {
             let at = vertices[region.triangles[triangle][0] as usize];
-            return Ok(Err(Obstacle { reason: "a triangle stays inverted", at }));
+            obstacle = Obstacle { reason: "a triangle stays inverted", at };
+            break;
         }
         let (farthest, strays) = deviation(contours, &vertices, &arcs, STRAY * h);
         if let Some(&Stray { point, .. }) = strays.first() {
-            if round + 1 == ROUNDS || !hold(&strays, &mut rims, &lengths, h) {
-                return Ok(Err(Obstacle { reason: "a part of the drawing is lost", at: point }));
+            obstacle.at = point;
+            if !hold(&strays, &mut rims, &lengths, h) {
+                break;
             }
             continue;
         }
+        let inlets = pockets(contours, &vertices, &region.triangles, &arcs, INLET * h);
         let kept = rims.iter().zip(&angles).flat_map(|(rim, angle)| rim.pinned.iter().zip(angle));
         let kept = kept.filter(|(pinned, angle)| **pinned && **angle != 0.0).count();
-        let patch = Patch { vertices, triangles: region.triangles, loops, lattice: *lattice };
-        let released_corners = n_corners - kept;
-        return Ok(Ok(Placed { patch, corners: n_corners, released_corners, max_deviation: farthest / h }));
+        let placed = Placed {
+            patch: Patch { vertices, triangles: region.triangles.clone(), loops, lattice: *lattice },
+            corners: n_corners,
+            released_corners: n_corners - kept,
+            max_deviation: farthest / h,
+            bridged_inlets: inlets.len(),
+        };
+        if valid.as_ref().is_none_or(|best| placed.bridged_inlets < best.bridged_inlets) {
+            valid = Some(placed);
+        }
+        if inlets.is_empty() || !options.relax || !hold(&inlets, &mut rims, &lengths, h) {
+            break;
+        }
     }
-    Ok(Err(Obstacle { reason: "a part of the drawing is lost", at: contours[0].points()[0] }))
+    Ok(valid.ok_or(obstacle))
 }
 
 /// Boundary vertices with their arc lengths in edges, some of them pinned to corners; the corners'

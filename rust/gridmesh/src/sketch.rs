@@ -8,11 +8,14 @@ use crate::contours::read_contours;
 use crate::curve::ClosedCurve;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
-use crate::options::{BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SketchOptions, SketchReport};
+use crate::options::{
+    BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SelfCrossing, SketchOptions, SketchReport,
+};
 use crate::outline::{Obstacle, Outline, grown, traced};
 use crate::patch::Patch;
 use crate::place::{Placed, min_angle, place};
 use crate::progress::Progress;
+use crate::union::{nearest_source, outer_outline};
 
 /// Lattice placements tried before the drawing is called too coarse for its edge length: shifts of
 /// the origin in edges.
@@ -51,7 +54,18 @@ pub fn mesh_sketch(
 ) -> Result<Sketch> {
     options.check()?;
     let started = Instant::now();
-    let contours = read_contours(outline, holes)?;
+    let union = match options.self_crossing {
+        SelfCrossing::Error => None,
+        SelfCrossing::Union => Some(outer_outline(outline, "outline")?),
+    };
+    if options.boundary == BoundaryMethod::Grown && !holes.is_empty() {
+        return Err(Error::InvalidOption {
+            name: "boundary",
+            value: "grown, with holes".to_owned(),
+            allowed: "optimal, if there are holes",
+        });
+    }
+    let contours = read_contours(union.as_ref().map_or(outline, |(points, _)| points), holes)?;
     let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
     let edge_length = match options.edge_length {
         Some(h) => h,
@@ -67,10 +81,19 @@ pub fn mesh_sketch(
         Some(h) => Asked::EdgeLength(h),
         None => Asked::Triangles(options.triangles.unwrap_or(DEFAULT_TRIANGLES)),
     };
-    match job.attempt(asked, progress.part(0.0, 0.9))? {
-        Ok(sketch) => Ok(sketch),
-        Err(obstacle) => Err(job.least_that_works(expected, obstacle, progress)?),
+    let mut sketch = match job.attempt(asked, progress.part(0.0, 0.9))? {
+        Ok(sketch) => sketch,
+        Err(obstacle) => return Err(job.least_that_works(expected, obstacle, progress)?),
+    };
+    if let Some((_, slivers)) = union {
+        // The sources so far lead to the outer outline.
+        let Patch { vertices, loops, .. } = &mut sketch.patch;
+        for (source, &vertex) in loops[0].source.iter_mut().zip(&*vertices) {
+            *source = nearest_source(outline, vertex);
+        }
+        sketch.report.repaired += slivers;
     }
+    Ok(sketch)
 }
 
 #[derive(Clone, Copy)]
@@ -242,6 +265,7 @@ impl Job<'_> {
             optimal: outline.optimal,
             max_distance_used: outline.max_distance_used,
             max_deviation: placed.max_deviation,
+            bridged_inlets: placed.bridged_inlets,
             min_angle: min_angle(&patch),
             corners: placed.corners,
             released_corners: placed.released_corners,

@@ -31,8 +31,10 @@ fn build(patch: &Patch, back: Option<Vec<DVec3>>) -> Surface {
     let mut surface = Surface::assemble(patch, front, back);
     surface.report.embedded = projects_well(patch, &patch.vertices);
     if !surface.report.embedded {
-        surface.report.self_intersections =
-            crate::embed::count_self_intersections(&surface.vertices[..patch.vertices.len()], &patch.triangles);
+        surface.report.self_intersections = crate::embed::count_self_intersections(
+            &surface.vertices[..patch.vertices.len()],
+            &patch.triangles,
+        );
     }
     surface.report.seconds.push(("stitch", clock.elapsed().as_secs_f64()));
     surface

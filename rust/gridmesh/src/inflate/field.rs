@@ -113,8 +113,7 @@ mod tests {
         let triangles = [[0, 1, 2], [1, 3, 2]];
         let topology = Topology::new(4, &triangles);
         let f = |p: DVec2| 20.0 + p.x - 2.0 * p.y + 0.7 * p.x * p.x - 0.2 * p.x * p.y + 0.4 * p.y * p.y;
-        let slope =
-            |p: DVec2| DVec2::new(1.0 + 1.4 * p.x - 0.2 * p.y, -2.0 - 0.2 * p.x + 0.8 * p.y);
+        let slope = |p: DVec2| DVec2::new(1.0 + 1.4 * p.x - 0.2 * p.y, -2.0 - 0.2 * p.x + 0.8 * p.y);
         let field = Field {
             vertices: &vertices,
             triangles: &triangles,

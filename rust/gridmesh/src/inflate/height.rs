@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
+use super::Profile;
 use super::field::{triangle_gradient, vertex_gradients};
 use super::laplace::{Factor, Pattern, cotangent_weights, lumped_areas};
 use super::topology::Topology;
-use super::Profile;
 use crate::error::Result;
 use crate::patch::Patch;
 
@@ -225,7 +225,9 @@ fn rim_edge(flat: &Flat<'_>) -> f64 {
     let mut sum = 0.0;
     for contour in &flat.patch.loops {
         let (start, n) = (contour.start as usize, contour.len());
-        sum += (0..n).map(|k| flat.vertices[start + k].distance(flat.vertices[start + (k + 1) % n])).sum::<f64>();
+        sum += (0..n)
+            .map(|k| flat.vertices[start + k].distance(flat.vertices[start + (k + 1) % n]))
+            .sum::<f64>();
     }
     sum / flat.first as f64
 }

@@ -29,7 +29,9 @@ pub(crate) fn cotangent_weights(
         let doubled = (b - a).perp_dot(c - a);
         // Also refuses NaN.
         if !(doubled > 0.0 && doubled.is_finite()) {
-            return Err(failed(format_args!("the triangle of the vertices {corners:?} of the patch is not positive")));
+            return Err(failed(format_args!(
+                "the triangle of the vertices {corners:?} of the patch is not positive"
+            )));
         }
         let dots = [(b - a).dot(c - a), (c - b).dot(a - b), (a - c).dot(b - c)];
         for k in 0..3 {

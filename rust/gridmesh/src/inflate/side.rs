@@ -1,7 +1,7 @@
 //! How deep each side is, and where.
 
-use super::height::Flat;
 use super::InflateOptions;
+use super::height::Flat;
 use crate::error::{Error, Result};
 
 /// Depth of one side of a body.
@@ -31,9 +31,8 @@ impl Scales {
 impl InflateOptions {
     /// Refuses values that are not allowed.
     pub(crate) fn check(&self) -> Result<()> {
-        let refuse = |name, value: f64, allowed| {
-            Err(Error::InvalidOption { name, value: value.to_string(), allowed })
-        };
+        let refuse =
+            |name, value: f64, allowed| Err(Error::InvalidOption { name, value: value.to_string(), allowed });
         if !(self.depth > 0.0 && self.depth.is_finite()) {
             return refuse("depth", self.depth, "a finite number above 0");
         }
@@ -65,8 +64,11 @@ impl InflateOptions {
 /// The depth of both sides at every vertex.
 pub(crate) fn scales(flat: &Flat<'_>, options: &InflateOptions) -> Result<Scales> {
     let front = side(flat, "front", options.front.as_ref(), options.depth)?;
-    let back =
-        if options.back == options.front { front.clone() } else { side(flat, "back", options.back.as_ref(), options.depth)? };
+    let back = if options.back == options.front {
+        front.clone()
+    } else {
+        side(flat, "back", options.back.as_ref(), options.depth)?
+    };
     Ok(Scales { front, back })
 }
 

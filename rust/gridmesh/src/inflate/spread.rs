@@ -202,7 +202,9 @@ fn settle(front: &mut Front, field: &Field<'_>, target: &[DVec2], least_area: f6
             if (b - a).perp_dot(c - a) >= least_area {
                 continue;
             }
-            bad.extend(corners.iter().filter_map(|&v| (v as usize).checked_sub(first)).map(|slot| slot as u32));
+            bad.extend(
+                corners.iter().filter_map(|&v| (v as usize).checked_sub(first)).map(|slot| slot as u32),
+            );
         }
         bad.sort_unstable();
         bad.dedup();
@@ -281,14 +283,19 @@ pub(crate) fn sweep(front: &mut Front, field: &Field<'_>, creases: &[Option<Crea
         }
         let u = -DVec2::new(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
         let u = u.clamp_length_max(0.5 * reach / fan.len() as f64);
-        let Some(target) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else { continue };
+        let Some(target) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else {
+            continue;
+        };
         let before = worst(front, fan, here);
         let mut share = 1.0;
         for _ in 0..4 {
             let point = front.flat[v].lerp(target, share);
-            let fits = creases[v].as_ref().is_none_or(|crease| crease.holds(point) || !crease.holds(front.flat[v])) && fan.iter().all(|&[a, b]| {
-                (front.flat[a as usize] - point).perp_dot(front.flat[b as usize] - point) >= least_area
-            });
+            let fits = creases[v]
+                .as_ref()
+                .is_none_or(|crease| crease.holds(point) || !crease.holds(front.flat[v]))
+                && fan.iter().all(|&[a, b]| {
+                    (front.flat[a as usize] - point).perp_dot(front.flat[b as usize] - point) >= least_area
+                });
             if fits {
                 let Some(place) = field.locate(point, front.place[slot].triangle) else { break };
                 let height = field.at(point, place).0.sqrt();
@@ -317,9 +324,31 @@ fn worst(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
     fan.iter().map(ratio).fold(f64::INFINITY, f64::min)
 }
 
-pub(crate) struct Tune { pub steep: f64, pub floor: f64, pub flatter: f64, pub crease: f64, pub legs: usize, pub between: usize, pub sweeps: usize, pub good: f64, pub power: f64 }
+pub(crate) struct Tune {
+    pub steep: f64,
+    pub floor: f64,
+    pub flatter: f64,
+    pub crease: f64,
+    pub legs: usize,
+    pub between: usize,
+    pub sweeps: usize,
+    pub good: f64,
+    pub power: f64,
+}
 pub(crate) fn tune() -> &'static Tune {
     static T: std::sync::OnceLock<Tune> = std::sync::OnceLock::new();
-    fn g<T: std::str::FromStr>(n: &str, d: T) -> T { std::env::var(n).ok().and_then(|s| s.parse().ok()).unwrap_or(d) }
-    T.get_or_init(|| Tune { steep: g("STEEP", 0.2), floor: g("FLOOR", 0.02), flatter: g("FLATTER", 1.25), crease: g("CREASE", 0.5), legs: g("LEGS", 3), between: g("BETWEEN", 1), sweeps: g("SWEEPS", 3), good: g("GOOD", 0.2), power: g("POWER", 1.0) })
+    fn g<T: std::str::FromStr>(n: &str, d: T) -> T {
+        std::env::var(n).ok().and_then(|s| s.parse().ok()).unwrap_or(d)
+    }
+    T.get_or_init(|| Tune {
+        steep: g("STEEP", 0.2),
+        floor: g("FLOOR", 0.02),
+        flatter: g("FLATTER", 1.25),
+        crease: g("CREASE", 0.5),
+        legs: g("LEGS", 3),
+        between: g("BETWEEN", 1),
+        sweeps: g("SWEEPS", 3),
+        good: g("GOOD", 0.2),
+        power: g("POWER", 1.0),
+    })
 }
