@@ -1,7 +1,8 @@
 //! Constrained Delaunay triangulation and Delaunay refinement by spade.
 
 use spade::{
-    AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, RefinementResult, Triangulation,
+    AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, RefinementResult,
+    Triangulation,
 };
 
 use crate::{Mesh, Outcome};
@@ -50,8 +51,7 @@ pub(crate) fn refined(input: &Input, size: f64, target: usize) -> Outcome<Mesh> 
 
 /// The constrained Delaunay triangulation of the contours and further points inside them.
 pub(crate) fn triangulated(input: Input) -> Outcome<Mesh> {
-    let mut cdt =
-        ConstrainedDelaunayTriangulation::<Point2<f64>>::bulk_load_cdt(input.points, input.edges)?;
+    let mut cdt = ConstrainedDelaunayTriangulation::<Point2<f64>>::bulk_load_cdt(input.points, input.edges)?;
     // Adds nothing: it only tells the inside from the outside.
     let result = cdt.refine(
         RefinementParameters::new()

@@ -27,9 +27,9 @@ pub(crate) fn mesh(contours: &[Vec<[f64; 2]>], size: f64) -> Outcome<Mesh> {
 type Segment = [[f64; 2]; 2];
 
 fn segments(contours: &[Vec<[f64; 2]>]) -> impl Iterator<Item = Segment> {
-    contours.iter().flat_map(|contour| {
-        (0..contour.len()).map(move |i| [contour[i], contour[(i + 1) % contour.len()]])
-    })
+    contours
+        .iter()
+        .flat_map(|contour| (0..contour.len()).map(move |i| [contour[i], contour[(i + 1) % contour.len()]]))
 }
 
 /// Lattice points by row and column, every other row shifted by half an edge.
