@@ -11,6 +11,7 @@ from mathutils import Matrix
 
 from .api import Body, Failure
 from .outlines import Sketch
+from .strokes import selected
 
 LINK = "gridmesh_stroke"
 """Custom property of an object that says which stroke it was made from, and where its plane was."""
@@ -42,7 +43,7 @@ class Transaction:
 def made_before(context: bpy.types.Context) -> dict[tuple[str, str, int], bpy.types.Object]:
     """Objects of this view layer that were made from strokes, by stroke; the first one of duplicates."""
     found: dict[tuple[str, str, int], bpy.types.Object] = {}
-    for ob in context.view_layer.objects:
+    for ob in filter(None, context.view_layer.objects):
         key = stroke_key(ob)
         if key is not None:
             found.setdefault(key, ob)
@@ -60,7 +61,7 @@ def stroke_key(ob: bpy.types.Object) -> tuple[str, str, int] | None:
 
 def selected_bodies(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Objects in the selection that were made from strokes."""
-    return [ob for ob in context.view_layer.objects.selected if stroke_key(ob) is not None]
+    return [ob for ob in selected(context) if stroke_key(ob) is not None]
 
 
 def obstacle(ob: bpy.types.Object) -> str:
@@ -119,7 +120,7 @@ def _new_object(body: Body, into: _Collections, transaction: Transaction) -> bpy
         bpy.data.meshes, f"{stroke.source}.{stroke.layer}" if stroke.layer else stroke.source
     )
     fill(mesh, body)
-    material = surface_material(stroke.material, transaction)
+    material = surface_material(stroke.material, stroke.filled, transaction)
     if material is not None:
         mesh.materials.append(material)
     ob = transaction.new(bpy.data.objects, f"{stroke.source}.mesh", mesh)
@@ -183,7 +184,7 @@ def _flat_shaded(mesh: bpy.types.Mesh) -> bool:
 
 
 def surface_material(
-    material: bpy.types.Material | None, transaction: Transaction
+    material: bpy.types.Material | None, filled: bool, transaction: Transaction
 ) -> bpy.types.Material | None:
     """Return the material for a body drawn with `material`: itself, or for grease pencil its surface twin.
 
@@ -197,7 +198,7 @@ def surface_material(
     if twin is not None and not twin.is_grease_pencil:
         return twin
     twin = transaction.new(bpy.data.materials, name)
-    color = _color(material.grease_pencil)
+    color = _color(material.grease_pencil, filled)
     twin.diffuse_color = color
     if twin.node_tree is None:
         twin.use_nodes = True  # before Blender 5.0
@@ -212,10 +213,11 @@ def _shortened(name: str, suffix: str) -> str:
     return name.encode()[: 63 - len(suffix)].decode(errors="ignore") + suffix
 
 
-def _color(style: bpy.types.MaterialGPencilStyle) -> tuple[float, float, float, float]:
-    """Opaque colour of the fill if the material has one, else of the stroke."""
-    fill_is_optional = bpy.app.version < (5, 2, 0)  # from then on each stroke says whether it is filled
-    filled = fill_is_optional and style.show_fill
+def _color(style: bpy.types.MaterialGPencilStyle, filled: bool) -> tuple[float, float, float, float]:
+    """Opaque colour of the fill if there is one, else of the stroke."""
+    option = style.bl_rna.properties.get("show_fill")  # deprecated in 5.2, where strokes have fills
+    if option is not None and not getattr(option, "is_deprecated", False):
+        filled = filled or style.show_fill
     return (*(style.fill_color if filled else style.color)[:3], 1.0)
 
 
@@ -264,7 +266,7 @@ def _show(context: bpy.types.Context, objects: list[bpy.types.Object]) -> None:
     active = view_layer.objects.active
     if active is not None and active.mode != "OBJECT":
         return
-    for ob in list(view_layer.objects.selected):
+    for ob in selected(context):
         ob.select_set(False)
     for ob in objects:
         ob.select_set(True)

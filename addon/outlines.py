@@ -48,6 +48,8 @@ class Stroke:
     """None where modifiers made the stroke, so that nobody can tell."""
     material: Any = None
     """Whatever the reader wants to hand through to the mesh."""
+    filled: bool = False
+    """Whether it is drawn with a fill of its own, apart from what its material says."""
 
     @property
     def label(self) -> str:
@@ -236,10 +238,10 @@ def close(points: np.ndarray, tolerance: float) -> tuple[np.ndarray, float]:
         first, last, apart = nearest
         return points[first : last + 1], apart
     if gap > limit:
-        share = gap / size
+        enough = np.ceil(100 * gap / size) / 100
         raise OpenError(
-            f"it is open: its ends are {gap:.3g} apart, {share:.0%} of its size; make the stroke cyclic "
-            f"or raise Close Gaps (now {tolerance:.0%})"
+            f"it is open: its ends are {gap:.3g} apart; make the stroke cyclic "
+            f"or raise Close Gaps from {tolerance:.2f} to {enough:.2f}"
         )
     return points, gap
 
@@ -259,12 +261,14 @@ def _last_crossing(
         a, u = points[block], points[block + 1] - points[block]
         between = b[None] - a[:, None]
         area = u[:, None, 0] * v[None, :, 1] - u[:, None, 1] * v[None, :, 0]
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             s = (between[..., 0] * v[None, :, 1] - between[..., 1] * v[None, :, 0]) / area
             t = (between[..., 0] * u[:, None, 1] - between[..., 1] * u[:, None, 0]) / area
+        meets = (area != 0) & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
+        s, t = np.where(meets, s, 0.0), np.where(meets, t, 0.0)
         before = arc[block][:, None] + s * (arc[block + 1] - arc[block])[:, None]
         after = arc[-1] - arc[tail][None] - t * (arc[tail + 1] - arc[tail])[None]
-        meets = (area != 0) & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1) & (before <= reach) & (after <= reach)
+        meets &= (before <= reach) & (after <= reach)
         cut = np.where(meets, before + after, -1.0)
         i, j = np.unravel_index(int(cut.argmax()), cut.shape)
         if cut[i, j] > best:
@@ -305,8 +309,12 @@ def nest(sketches: list[Sketch]) -> list[Sketch]:
         layers.setdefault(sketch.stroke.key[:2], []).append(sketch)
     outer: list[Sketch] = []
     for members in layers.values():
-        around = [[other for other in members if other is not one and _inside(one, other)] for one in members]
-        for one, parents in zip(members, around, strict=True):
+        centres = np.array([sketch.plane.origin for sketch in members])
+        sizes = np.array([sketch.size for sketch in members])
+        for one in members:
+            near = np.linalg.norm(centres - one.plane.origin, axis=1) < sizes / 2
+            larger = np.flatnonzero(near & (sizes > one.size))
+            parents = [members[at] for at in larger if _inside(one, members[at])]
             if len(parents) % 2 == 0:
                 outer.append(one)
             else:
@@ -317,7 +325,7 @@ def nest(sketches: list[Sketch]) -> list[Sketch]:
 
 def _inside(one: Sketch, other: Sketch) -> bool:
     """Whether `one` lies in the plane of `other` and its first point inside; crossings are not looked for."""
-    if one.size >= other.size or abs(one.plane.axes[2] @ other.plane.axes[2]) < 0.99:
+    if abs(one.plane.axes[2] @ other.plane.axes[2]) < 0.99:
         return False
     points = project(one, other.plane)
     if np.abs(points[:, 2]).max() > 0.05 * other.size:

@@ -55,7 +55,7 @@ class SketchOptions:
     )
     max_distance: FloatProperty(
         name="Max Distance",
-        description="Distance in edge lengths up to which the grid may stray from the stroke before its rim is moved onto it",
+        description="How far the grid's rim may stray before it is moved onto the stroke, in edge lengths",
         default=1.5,
         soft_min=0.5,
         soft_max=3.0,

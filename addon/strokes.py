@@ -38,15 +38,20 @@ class Reading:
         self.notes += other.notes
 
 
+def selected(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Objects in the selection. Blender lists removed ones as None until the view layer is updated."""
+    return [ob for ob in context.view_layer.objects.selected if ob is not None]
+
+
 def source_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Objects whose strokes are meant: the selected ones, or those in the mode of the active one."""
     active = context.view_layer.objects.active
     if active is not None and active.mode != "OBJECT":
         together = context.objects_in_mode_unique_data if active.mode == "EDIT" else [active]
         return [ob for ob in together if ob.type in SOURCE_TYPES]
-    selected = [ob for ob in context.view_layer.objects.selected if ob.type in SOURCE_TYPES]
-    if selected:
-        return selected
+    chosen = [ob for ob in selected(context) if ob.type in SOURCE_TYPES]
+    if chosen:
+        return chosen
     return [active] if active is not None and active.type in SOURCE_TYPES else []
 
 
@@ -179,6 +184,7 @@ def _read_geometry(
     cyclic = table.read("cyclic", "CURVE", np.bool_(False))
     selected = table.selected(offsets)
     materials = table.read("material_index", "CURVE", np.int32(0))
+    filled = table.read("fill_id", "CURVE", np.int32(0)) != 0  # from Blender 5.2 on
     sample = _sampler(table, positions, cyclic, offsets)
     slots = [slot.material for slot in ob.material_slots]
     for index in range(n_curves):
@@ -191,6 +197,7 @@ def _read_geometry(
             "count": n_curves,
             "selected": bool(selected[index]),
             "material": slots[material] if 0 <= material < len(slots) else None,
+            "filled": bool(filled[index]),
         }
         try:
             points = sample(index)
@@ -228,7 +235,7 @@ def _sampler(table: _Attributes, positions: np.ndarray, cyclic: np.ndarray, offs
 
 
 def read_annotations(context: bpy.types.Context) -> Reading:
-    """Read the annotation strokes of the scene at the current frame. They have no material, none is cyclic."""
+    """Read the annotation strokes of the scene at the current frame. They have no materials."""
     data = annotation(context.scene)
     if data is None:
         return Reading(notes=["the scene has no annotations; draw some with the Annotate tool"])

@@ -44,7 +44,7 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
         again.source, again.update_existing = "OBJECTS", True
         if strokes.annotation(context.scene) is not None:
             column.operator(idname, text="Annotations to Mesh").source = "ANNOTATIONS"
-        if not drawings:
+        if not drawings and not bodies:
             self.layout.label(text="Select a drawing or a curve", icon="INFO")
 
 

@@ -45,7 +45,7 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
     )
     close_gaps: FloatProperty(
         name="Close Gaps",
-        description="Largest gap that is closed and longest overshoot that is cut off, in parts of the stroke's size",
+        description="Largest gap that is closed, and longest overshoot cut off, relative to the stroke",
         subtype="FACTOR",
         default=0.2,
         min=0.0,
@@ -133,7 +133,9 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
         layout.use_property_split = True
         layout.use_property_decorate = False
         if self.result:
-            layout.label(text=self.result, icon="INFO")
+            numbers = layout.column(align=True)
+            for part in self.result.split(", ", 1):  # on one line they would be cut off
+                numbers.label(text=part)
         self.draw_shape_options(layout)
         self.draw_sketch_options(layout)
         header, body = layout.panel(f"{self.bl_idname}_strokes", default_closed=True)

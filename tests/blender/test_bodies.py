@@ -119,7 +119,7 @@ def test_drawing_plane(name):
     assert distance.max() > 0.2
     assert np.isclose(distance.max(), -distance.min(), rtol=1e-3)
     assert np.allclose(bounds_middle(vertices(body.data)), 0, atol=0.01)
-    assert np.allclose(body.location, (1, 2, 3) + bounds_middle(bean() @ [x, y, (0, 0, 0)]), atol=1e-5)
+    assert np.allclose(body.location, np.add((1, 2, 3), bounds_middle(bean() @ [x, y, (0, 0, 0)])), atol=1e-5)
 
 
 def test_vertical_plane_keeps_x_level_and_y_up():
@@ -366,7 +366,7 @@ def test_fixed_angle():
 
 
 def test_good_strokes_are_used_and_bad_ones_named(capfd):
-    eight = np.array([[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0.0]]) + [9, 0, 0]
+    eight = np.array([[9, 0, 0], [10, 1, 0], [10, 0, 0], [9, 1, 0]], float)
     grease_pencil([circle(), eight, circle(2), at(bean(), 4, 0, 0)])
     assert len(run()) == 2
     out = capfd.readouterr().out
@@ -376,7 +376,7 @@ def test_good_strokes_are_used_and_bad_ones_named(capfd):
 
 
 class TestMaterials:
-    def material(self, ob, name="Ink", color=(0.9, 0.1, 0.2, 1), filled=False):
+    def material(self, ob, name="Ink", color=(0.9, 0.1, 0.2, 1)):
         material = bpy.data.materials.new(name)
         bpy.data.materials.create_gpencil_data(material)
         material.grease_pencil.color = color
@@ -393,6 +393,25 @@ class TestMaterials:
         assert np.allclose(surface.diffuse_color, ink.grease_pencil.color)
         shader = next(node for node in surface.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
         assert np.allclose(shader.inputs["Base Color"].default_value, ink.grease_pencil.color)
+
+    def test_fill_goes_before_stroke(self):
+        ob = grease_pencil([circle()])
+        ink = self.material(ob)
+        ink.grease_pencil.fill_color = (0.1, 0.6, 0.3, 0.5)
+        stroke = ob.data.layers[0].current_frame().drawing.strokes[0]
+        if bpy.app.version >= (5, 2, 0):
+            stroke.fill_id = 1
+        else:
+            ink.grease_pencil.show_fill = True
+        assert np.allclose(run_one().data.materials[0].diffuse_color, (0.1, 0.6, 0.3, 1.0))
+
+    def test_own_material_of_that_name_is_not_touched(self):
+        ob = grease_pencil([circle()])
+        self.material(ob)
+        mine = bpy.data.materials.new("Ink Surface")
+        mine.diffuse_color = (0, 0, 1, 1)
+        assert run_one().data.materials[0] == mine
+        assert mine.diffuse_color[:] == (0, 0, 1, 1)
 
     def test_twin_is_reused(self):
         ob = grease_pencil([circle(), at(circle(), 4, 0, 0)])

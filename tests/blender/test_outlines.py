@@ -91,7 +91,7 @@ def test_close_of_a_dense_stroke_stays_small_and_exact():
 def test_nest_by_even_odd_rule():
     radii = [1, 5, 3, 2]
     sketches = [outlines.prepare(stroke(circle(radius=r), index=i), 0.2) for i, r in enumerate(radii)]
-    apart = outlines.prepare(stroke(circle() + [20, 0, 0], index=4), 0.2)
+    apart = outlines.prepare(stroke(at(circle(), 20, 0, 0), index=4), 0.2)
     other_layer = outlines.prepare(stroke(circle(radius=0.5), index=0, layer="Other"), 0.2)
     above = outlines.prepare(stroke(at(circle(radius=0.7), 0, 0, 3), index=5), 0.2)
     outer = outlines.nest([*sketches, apart, other_layer, above])

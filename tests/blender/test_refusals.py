@@ -117,7 +117,7 @@ CASES = {
     "open with far ends": (
         stroke(circle(turn=3.5, closed=False), cyclic=False),
         {},
-        "it is open: its ends are .* apart, .*% of its size; make the stroke cyclic or raise Close Gaps",
+        "it is open: its ends are .* apart; make the stroke cyclic or raise Close Gaps from 0.20 to 0.8",
     ),
     "open and gaps not closed": (
         stroke(circle(turn=6.0, closed=False), cyclic=False),

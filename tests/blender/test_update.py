@@ -113,6 +113,15 @@ def test_update_makes_what_is_missing(drawn):
     del ob
 
 
+def test_objects_removed_by_a_script_are_no_trouble(drawn):
+    ob, body = drawn
+    other = grease_pencil([circle()], name="Other")
+    activate(ob, other, body)
+    bpy.data.objects.remove(other)
+    bpy.data.objects.remove(body)
+    check_body(run_one(update_existing=True))
+
+
 def test_update_ignores_bodies_that_left_the_scene(drawn):
     _, body = drawn
     body.use_fake_user = True

@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from sketches import DRAWINGS, SHAPES, blob, circle
 
-METHODS = ["grown"]
+METHODS = ["optimal", "grown"]
 SLOW = settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 
 

@@ -104,7 +104,7 @@ use crate::watch::Watch;
 #[pyfunction]
 #[pyo3(
     signature = (outline, holes = None, *, progress = None, **options),
-    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='grown', max_distance=1.5, closeness=0.3, angle=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, progress=None)"
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, progress=None)"
 )]
 fn mesh_sketch(
     py: Python<'_>,

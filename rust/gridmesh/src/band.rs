@@ -3,12 +3,12 @@
 use std::iter;
 use std::sync::OnceLock;
 
+use glam::DVec2;
 use rustc_hash::FxHashMap;
 
 use crate::axial::Axial;
 use crate::dir::Dir;
-use crate::lattice::{Lattice, ROW_HEIGHT};
-use crate::segments::nearest_on_segment;
+use crate::lattice::ROW_HEIGHT;
 use crate::target::Target;
 
 /// How much farther than the path's greatest distance a stretch of curve may be from its point.
@@ -152,12 +152,7 @@ impl Scan {
             let (a, b) = target.segment(segment);
             let at = segment as u32;
             let fresh = nodes.len();
-            for point in points_near(a.min(b) - reach, a.max(b) + reach) {
-                let (t, squared) = nearest_on_segment(Lattice::units(point), a, b);
-                if squared > reach * reach {
-                    continue;
-                }
-                let parameter = segment as f64 + t;
+            points_near(a, b, reach, |point, t, squared| {
                 let slot = window.slot(point);
                 let known = window.slots[slot];
                 if let Some(node) = nodes.get_mut(known as usize)
@@ -167,13 +162,19 @@ impl Scan {
                     node.last = at;
                     if squared < node.distance {
                         node.distance = squared;
-                        node.parameter = parameter;
+                        node.parameter = f64::from(at) + t;
                     }
-                    continue;
+                    return;
                 }
                 window.slots[slot] = nodes.len() as u32;
-                nodes.push(Node { point, first: at, last: at, parameter, distance: squared });
-            }
+                nodes.push(Node {
+                    point,
+                    first: at,
+                    last: at,
+                    parameter: f64::from(at) + t,
+                    distance: squared,
+                });
+            });
             for i in fresh..nodes.len() {
                 for dir in Dir::ALL {
                     let beside = nodes[i].point + dir;
@@ -233,7 +234,7 @@ impl Scan {
                 ends.insert(node.point, i);
             }
         }
-        for start in 0..self.heads {
+        for (start, rep) in rep.iter_mut().enumerate().take(self.heads) {
             let head = self.nodes[start];
             let Some(&end) = ends.get(&head.point) else {
                 continue;
@@ -247,7 +248,7 @@ impl Scan {
                 tail.distance = head.distance;
                 tail.parameter = head.parameter + f64::from(n);
             }
-            rep[start] = (end as u32, 1);
+            *rep = (end as u32, 1);
         }
     }
 }
@@ -282,20 +283,49 @@ fn sorted_rows(n_rows: usize, entries: &[(u32, Link)]) -> (Vec<u32>, Vec<Link>) 
     (starts, links)
 }
 
-/// The lattice points in a box, row by row.
-fn points_near(low: glam::DVec2, high: glam::DVec2) -> impl Iterator<Item = Axial> {
-    let rows = (low.y / ROW_HEIGHT).ceil() as i32..=(high.y / ROW_HEIGHT).floor() as i32;
-    rows.flat_map(move |r| {
+/// Calls `visit` with each lattice point within reach of a segment, the parameter of the nearest
+/// point of the segment, 0 to 1, and the squared distance to it; row by row.
+#[inline]
+fn points_near(a: DVec2, b: DVec2, reach: f64, mut visit: impl FnMut(Axial, f64, f64)) {
+    let ab = b - a;
+    let squared = ab.length_squared();
+    let inverse = if squared > 0.0 { 1.0 / squared } else { 0.0 };
+    let squared_reach = reach * reach;
+    let (low, high) = (a.min(b), a.max(b));
+    for r in ceil((low.y - reach) / ROW_HEIGHT)..=-ceil(-(high.y + reach) / ROW_HEIGHT) {
+        let y = ROW_HEIGHT * f64::from(r);
+        // How far the row passes the segment by: the points within reach are in this span.
+        let beside = (y - high.y).max(low.y - y).max(0.0);
+        let half = (squared_reach - beside * beside).max(0.0).sqrt() + 1e-9;
         let shift = 0.5 * f64::from(r);
-        let columns = (low.x - shift).ceil() as i32..=(high.x - shift).floor() as i32;
-        columns.map(move |q| Axial::new(q, r))
-    })
+        let first = ceil(low.x - half - shift);
+        let last = -ceil(-(high.x + half - shift));
+        let dy = y - a.y;
+        let mut dx = f64::from(first) + shift - a.x;
+        for q in first..=last {
+            let t = ((dx * ab.x + dy * ab.y) * inverse).clamp(0.0, 1.0);
+            let (x, y) = (dx - t * ab.x, dy - t * ab.y);
+            let squared = x * x + y * y;
+            if squared <= squared_reach {
+                visit(Axial::new(q, r), t, squared);
+            }
+            dx += 1.0;
+        }
+    }
+}
+
+/// The least integer that is not below `x` (a library call without newer processor instructions).
+#[inline]
+fn ceil(x: f64) -> i32 {
+    let whole = x as i32;
+    whole + i32::from(f64::from(whole) < x)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec2;
+    use crate::lattice::Lattice;
+    use crate::segments::nearest_on_segment;
 
     /// Every node of a brute-force band over a box, as (point, first, last).
     fn brute_force(target: &Target, max_distance: f64) -> Vec<(Axial, u32, u32)> {
@@ -312,7 +342,7 @@ mod tests {
                     .collect();
                 let within = |i: usize| d[i % n] <= max_distance + SLACK;
                 for first in (0..n).filter(|&i| within(i) && !within(i + n - 1)) {
-                    let last = (first..).find(|&i| !within(i + 1)).unwrap();
+                    let last = (first..2 * n).find(|&i| !within(i + 1)).unwrap_or(2 * n);
                     if (first..=last).any(|i| d[i % n] <= max_distance) {
                         found.push((p, first as u32, last as u32));
                     }

@@ -18,6 +18,7 @@ pub mod lattice;
 pub mod mapping;
 pub mod metrics;
 pub mod options;
+pub mod orient;
 mod outline;
 pub mod patch;
 mod place;

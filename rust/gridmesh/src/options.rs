@@ -56,7 +56,7 @@ pub struct SketchOptions {
     pub boundary: BoundaryMethod,
     /// Greatest distance of the lattice path from the curve, in edges: 0.5 to 4.
     pub max_distance: f64,
-    /// Weight of the squared distance against a turn: at least 0.
+    /// Weight of the squared distance against a turn: 0 to 100.
     pub closeness: f64,
     /// Angle of the lattice in radians; `None` lets the drawing's tangents decide.
     pub angle: Option<f64>,
@@ -123,8 +123,8 @@ impl SketchOptions {
         if !(0.5..=4.0).contains(&self.max_distance) {
             return refuse("max_distance", self.max_distance, "0.5 to 4 edge lengths");
         }
-        if !(0.0..=1e6).contains(&self.closeness) {
-            return refuse("closeness", self.closeness, "0 to 1e6");
+        if !(0.0..=100.0).contains(&self.closeness) {
+            return refuse("closeness", self.closeness, "0 to 100");
         }
         if let Some(angle) = self.angle
             && !angle.is_finite()

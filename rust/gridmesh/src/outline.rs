@@ -38,7 +38,7 @@ pub(crate) struct Outline {
 /// Why a lattice placement gives no outline, and where (units of the drawing).
 #[derive(Clone, Debug)]
 pub(crate) struct Obstacle {
-    pub(crate) reason: &'static str,
+    pub(crate) reason: String,
     pub(crate) at: DVec2,
 }
 
@@ -99,7 +99,8 @@ pub(crate) fn grown(
     let band = Band::new(&faired, reach);
     let raster = Raster::new(&widened, reach.ceil() as i32 + 2);
     progress.report(0.3)?;
-    let obstacle = |reason, at: DVec2| Ok(Err(Obstacle { reason, at: lattice.from_units(at) }));
+    let obstacle =
+        |reason: &str, at: DVec2| Ok(Err(Obstacle { reason: reason.to_owned(), at: lattice.from_units(at) }));
     let Some(mut boundary) = grow_inside(&raster, progress.part(0.3, 0.6))? else {
         return obstacle("no lattice hexagon fits inside the drawing", faired.points[0]);
     };
@@ -140,19 +141,12 @@ pub(crate) fn traced(
         closeness: options.closeness,
         proof_nodes: options.proof_nodes,
     };
-    let obstacle =
-        |reason, at: Axial| Ok(Err(Obstacle { reason, at: lattice.from_units(Lattice::units(at)) }));
     let traced = match trace(&targets, &wanted, progress) {
         Ok(traced) => traced,
         Err(TraceFailure::Cancelled) => return Err(Error::Cancelled),
-        Err(TraceFailure::NoPath { at, .. }) => {
-            return obstacle("no closed lattice path follows the drawing", at);
-        }
-        Err(TraceFailure::Conflict { at, .. }) => {
-            return obstacle("the lattice has no room for two parts of the boundary", at);
-        }
-        Err(TraceFailure::WrongRegion { at, .. }) => {
-            return obstacle("the lattice path does not go round once", at);
+        Err(failure) => {
+            let at = failure.at().map_or(targets[0].points[0], Lattice::units);
+            return Ok(Err(Obstacle { reason: failure.to_string(), at: lattice.from_units(at) }));
         }
     };
     let arcs = traced

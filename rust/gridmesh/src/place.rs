@@ -70,7 +70,8 @@ pub(crate) fn place(
     let lengths: Vec<f64> = contours.iter().map(|contour| contour.length() / h).collect();
     // A valid patch that bridges an inlet serves if following the inlet leads to none.
     let mut valid: Option<Placed> = None;
-    let mut obstacle = Obstacle { reason: "a part of the drawing is lost", at: contours[0].points()[0] };
+    let mut obstacle =
+        Obstacle { reason: "a part of the drawing is lost".to_owned(), at: contours[0].points()[0] };
     for round in 0..ROUNDS {
         let part = |i: usize| i as f64 / ROUNDS as f64;
         let mut positions = lattice_positions.clone();
@@ -83,7 +84,7 @@ pub(crate) fn place(
         let inverted = first_inverted(&vertices, &region.triangles, lattice.origin);
         if let Some(triangle) = inverted.filter(|_| options.relax) {
             let at = vertices[region.triangles[triangle][0] as usize];
-            obstacle = Obstacle { reason: "a triangle stays inverted", at };
+            obstacle = Obstacle { reason: "a triangle stays inverted".to_owned(), at };
             break;
         }
         let (farthest, strays) = deviation(contours, &vertices, &arcs, STRAY * h);

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::contours::read_contours;
 use crate::curve::ClosedCurve;
@@ -11,10 +12,12 @@ use crate::lattice::Lattice;
 use crate::options::{
     BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SelfCrossing, SketchOptions, SketchReport,
 };
+use crate::orient::predicted_angles;
 use crate::outline::{Obstacle, Outline, grown, traced};
 use crate::patch::Patch;
 use crate::place::{Placed, min_angle, place};
 use crate::progress::Progress;
+use crate::target::Target;
 use crate::union::{nearest_source, outer_outline};
 
 /// Lattice placements tried before the drawing is called too coarse for its edge length: shifts of
@@ -75,13 +78,20 @@ pub fn mesh_sketch(
     if expected.is_nan() || expected > MAX_TRIANGLES {
         return Err(Error::TooLarge { triangles: expected, limit: MAX_TRIANGLES });
     }
-    let mut job = Job { contours, options, area, seconds: Vec::new(), placements: 0 };
+    let centre = centroid(contours[0].points());
+    let mut job = Job { contours, options, area, centre, seconds: Vec::new(), placements: 0 };
     job.lap("curve", started);
     let asked = match options.edge_length {
         Some(h) => Asked::EdgeLength(h),
         None => Asked::Triangles(options.triangles.unwrap_or(DEFAULT_TRIANGLES)),
     };
-    let mut sketch = match job.attempt(asked, progress.part(0.0, 0.9))? {
+    let attempt = if job.is_hopeless(expected.round() as usize) {
+        let at = job.contours[0].points()[0];
+        Err(Obstacle { reason: "the drawing is too thin for two rows of triangles".to_owned(), at })
+    } else {
+        job.attempt(asked, Effort::Full, progress)?
+    };
+    let mut sketch = match attempt {
         Ok(sketch) => sketch,
         Err(obstacle) => return Err(job.least_that_works(expected, obstacle, progress)?),
     };
@@ -102,10 +112,20 @@ enum Asked {
     Triangles(usize),
 }
 
+/// How hard to try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Effort {
+    /// All placements.
+    Full,
+    /// One.
+    Quick,
+}
+
 struct Job<'a> {
     contours: Vec<ClosedCurve>,
     options: &'a SketchOptions,
     area: f64,
+    centre: DVec2,
     seconds: Vec<(&'static str, f64)>,
     placements: usize,
 }
@@ -119,37 +139,88 @@ impl Job<'_> {
         }
     }
 
-    /// Tries lattice placements until one gives a valid patch of the size asked for.
-    fn attempt(&mut self, asked: Asked, progress: Progress<'_>) -> Result<Result<Sketch, Obstacle>> {
+    /// Tries lattice placements until one gives a valid patch of the size asked for: the angles
+    /// first, cheapest boundary first, then shifts of the lattice.
+    fn attempt(
+        &mut self,
+        asked: Asked,
+        effort: Effort,
+        progress: Progress<'_>,
+    ) -> Result<Result<Sketch, Obstacle>> {
+        let started = Instant::now();
+        let angles = self.angles(asked, effort);
+        let found: Vec<Result<Result<(Lattice, Outline), Obstacle>>> = angles
+            .par_iter()
+            .map(|&angle| self.outline(asked, angle, DVec2::ZERO, progress.part(0.0, 0.3)))
+            .collect();
         let mut obstacle = None;
-        for (k, shift) in SHIFTS.iter().enumerate() {
-            let part = |i: usize| (k as f64 + 0.5 * i as f64) / SHIFTS.len() as f64;
-            self.placements += 1;
-            let found = self.outline(asked, DVec2::from_array(*shift), progress.part(part(0), part(1)))?;
-            let (lattice, outline) = match found {
-                Ok(found) => found,
-                Err(found) => {
-                    obstacle.get_or_insert(found);
-                    continue;
+        let mut outlines = Vec::new();
+        for found in found {
+            match found? {
+                Ok(found) => outlines.push(found),
+                Err(found) => obstacle = obstacle.or(Some(found)),
+            }
+        }
+        outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        self.lap("boundary", started);
+        let shifts = if effort == Effort::Full { SHIFTS.len() } else { 1 };
+        let mut shifts = SHIFTS[..shifts].iter().enumerate().skip(1);
+        let mut outlines = outlines.into_iter();
+        loop {
+            let (lattice, outline) = match outlines.next() {
+                Some(next) => next,
+                None => {
+                    let Some((k, shift)) = shifts.next() else { break };
+                    let started = Instant::now();
+                    let part = progress.part(0.3 + 0.1 * k as f64, 0.4 + 0.1 * k as f64);
+                    let found = self.outline(asked, angles[0], DVec2::from_array(*shift), part)?;
+                    self.lap("boundary", started);
+                    match found {
+                        Ok(found) => found,
+                        Err(found) => {
+                            obstacle = obstacle.or(Some(found));
+                            continue;
+                        }
+                    }
                 }
             };
+            self.placements += 1;
             let started = Instant::now();
-            let placed =
-                place(&self.contours, &lattice, &outline, self.options, progress.part(part(1), part(2)))?;
+            let placed = place(&self.contours, &lattice, &outline, self.options, progress.part(0.3, 0.9))?;
             self.lap("placement", started);
             match placed {
                 Ok(placed) => return Ok(Ok(self.report(&outline, placed))),
                 Err(found) => obstacle = Some(found),
             }
         }
-        Ok(Err(obstacle.unwrap_or(Obstacle { reason: "no lattice was tried", at: DVec2::ZERO })))
+        let none = || Obstacle { reason: "no lattice was tried".to_owned(), at: DVec2::ZERO };
+        Ok(Err(obstacle.unwrap_or_else(none)))
+    }
+
+    /// The lattice angles to try: the one asked for, or those with the fewest turns predicted.
+    fn angles(&self, asked: Asked, effort: Effort) -> Vec<f64> {
+        const CANDIDATES: usize = 4;
+        if let Some(angle) = self.options.angle {
+            return vec![angle.rem_euclid(std::f64::consts::FRAC_PI_3)];
+        }
+        let count = match (self.options.boundary, effort) {
+            (BoundaryMethod::Optimal, Effort::Full) => CANDIDATES,
+            _ => 1,
+        };
+        let edge_length = match asked {
+            Asked::EdgeLength(h) => h,
+            Asked::Triangles(n) => self.first_guess(n),
+        };
+        let angles = predicted_angles(&self.contours, edge_length, count);
+        if angles.is_empty() { vec![0.0] } else { angles }
     }
 
     /// The outline for one placement; with a number of triangles asked for, the edge length is
     /// corrected until the number is reached within 5 % (10 % are accepted in the end).
     fn outline(
-        &mut self,
+        &self,
         asked: Asked,
+        angle: f64,
         shift: DVec2,
         progress: Progress<'_>,
     ) -> Result<Result<(Lattice, Outline), Obstacle>> {
@@ -158,11 +229,14 @@ impl Job<'_> {
             Asked::EdgeLength(h) => h,
             Asked::Triangles(n) => self.first_guess(n),
         };
-        let started = Instant::now();
         let mut best: Option<(f64, Lattice, Outline)> = None;
-        let mut obstacle = Obstacle { reason: "the number of triangles is not reached", at: DVec2::ZERO };
+        let mut obstacle = Obstacle {
+            reason: "the number of triangles is not reached".to_owned(),
+            at: self.contours[0].points()[0],
+        };
         for _ in 0..CORRECTIONS {
-            let lattice = self.lattice(edge_length, shift);
+            progress.report(0.0)?;
+            let lattice = self.lattice(edge_length, angle, shift);
             let outline = match self.path(&lattice, progress)? {
                 Ok(outline) => outline,
                 Err(found) => {
@@ -184,7 +258,6 @@ impl Job<'_> {
             }
             edge_length *= ratio.sqrt().clamp(0.7, 1.4);
         }
-        self.lap("boundary", started);
         let allowed = match asked {
             Asked::EdgeLength(_) => 0.0,
             // A handful of triangles comes in few sizes: 6, 10, 13, 14, 16...
@@ -213,41 +286,68 @@ impl Job<'_> {
         2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
     }
 
-    fn lattice(&self, edge_length: f64, shift: DVec2) -> Lattice {
-        let angle = self.options.angle.unwrap_or(0.0).rem_euclid(std::f64::consts::FRAC_PI_3);
-        let centre = centroid(self.contours[0].points());
-        let origin = centre + edge_length * DVec2::from_angle(angle).rotate(shift);
+    fn lattice(&self, edge_length: f64, angle: f64, shift: DVec2) -> Lattice {
+        let origin = self.centre + edge_length * DVec2::from_angle(angle).rotate(shift);
         Lattice { origin, angle, edge_length }
     }
 
     /// The error for a drawing that has no patch of the size asked for: the least number of
-    /// triangles that works, searched in steps of a tenth.
+    /// triangles that works, searched in steps of a tenth, one placement each.
     fn least_that_works(&mut self, asked: f64, obstacle: Obstacle, progress: Progress<'_>) -> Result<Error> {
         const LARGEST: f64 = 1e6;
         let at = |step: i32| (asked.max(6.0) * 1.1f64.powi(step)).ceil() as usize;
         let (mut fails, mut works, mut stride) = (0, None, 1);
         while works.is_none() && (at(fails + stride) as f64) < LARGEST {
-            progress.part(0.9, 1.0).report(0.0)?;
+            progress.report(0.9)?;
             let step = fails + stride;
-            match self.attempt(Asked::Triangles(at(step)), Progress::NONE)? {
-                Ok(_) => works = Some(step),
-                Err(_) => fails = step,
+            if !self.is_hopeless(at(step))
+                && self.attempt(Asked::Triangles(at(step)), Effort::Quick, progress)?.is_ok()
+            {
+                works = Some(step);
+            } else {
+                fails = step;
             }
             // Small steps first, for drawings that nearly fit; larger ones after them.
-            stride = 1 + fails / 4;
+            stride = 1 + fails / 3;
         }
         let Some(mut works) = works else {
-            return Ok(Error::NoPatch { reason: obstacle.reason.to_owned(), at: obstacle.at.to_array() });
+            return Ok(Error::NoPatch { reason: obstacle.reason, at: obstacle.at.to_array() });
         };
         while works - fails > 1 {
-            progress.part(0.9, 1.0).report(0.5)?;
+            progress.report(0.9)?;
             let step = (works + fails) / 2;
-            match self.attempt(Asked::Triangles(at(step)), Progress::NONE)? {
+            match self.attempt(Asked::Triangles(at(step)), Effort::Quick, progress)? {
                 Ok(_) => works = step,
                 Err(_) => fails = step,
             }
         }
         Ok(Error::TooCoarse { triangles: asked.round() as usize, least: at(works) })
+    }
+
+    /// True if `n` triangles cannot follow the drawing: a chord-free lattice patch with `b` boundary
+    /// vertices has at least `2 b - 6`, and a path beside the faired contours is not much shorter
+    /// than they are.
+    fn is_hopeless(&self, n: usize) -> bool {
+        const SHORTER: f64 = 0.7;
+        let lattice = self.lattice(self.first_guess(n), 0.0, DVec2::ZERO);
+        // The number of samples alone shows the worst cases; no need to take them.
+        let edges: f64 = self.contours.iter().map(|c| c.length() / lattice.edge_length).sum();
+        let needed = |edges: f64| 2.0 * SHORTER * edges - 6.0 * self.contours.len() as f64;
+        if needed(edges) <= n as f64 {
+            return false;
+        }
+        if edges > 20.0 * n as f64 {
+            return true;
+        }
+        let faired: f64 = self
+            .contours
+            .iter()
+            .map(|contour| {
+                let points = Target::new(contour, &lattice).points;
+                (0..points.len()).map(|i| points[i].distance(points[(i + 1) % points.len()])).sum::<f64>()
+            })
+            .sum();
+        needed(faired) > n as f64
     }
 
     /// The patch with its numbers.

@@ -91,7 +91,7 @@ def mesh_sketch(
     *,
     edge_length: float | None = None,
     triangles: int | None = None,
-    boundary: Literal["optimal", "grown"] = "grown",
+    boundary: Literal["optimal", "grown"] = "optimal",
     max_distance: float = 1.5,
     closeness: float = 0.3,
     angle: float | None = None,

@@ -1,5 +1,8 @@
 //! Conflict pricing: from the cheapest paths to ones without conflicts.
 
+use rustc_hash::FxHashMap;
+
+use crate::axial::Axial;
 use crate::error::Result;
 use crate::progress::Progress;
 
@@ -13,6 +16,10 @@ use super::sides::wrong_sides;
 const STEP: u32 = TURN / 4;
 /// Greatest number of rounds.
 const ROUNDS: usize = 100;
+/// What it costs to be where another wall is nearer, in a second dive.
+const APART: u32 = 2 * TURN;
+/// Rounds without fewer conflicts than ever before after which it is no use.
+const PATIENCE: usize = 25;
 /// Vertices on each side of a conflict that are free to move when it is priced.
 const REACH: usize = 16;
 
@@ -25,8 +32,10 @@ pub(super) struct Contour {
 /// Where a dive ended.
 pub(super) struct Dive {
     pub rounds: usize,
-    /// What is left; empty if the walks bound a patch.
+    /// The conflicts that are left.
     pub conflicts: Vec<Conflict>,
+    /// The vertices left that have the patch on their wrong side.
+    pub wrong: Vec<Vertex>,
 }
 
 /// Prices conflicts and searches again near them until none is left.
@@ -55,6 +64,7 @@ pub(super) fn dive_from(
 ) -> Result<Dive> {
     let mut finder = Finder::default();
     let mut rounds = 0;
+    let (mut fewest, mut since) = (usize::MAX, 0);
     loop {
         let conflicts = finder.find(contours, walks);
         let repeated = conflicts.iter().any(|conflict| conflict.chord.is_none());
@@ -63,8 +73,12 @@ pub(super) fn dive_from(
         } else {
             Vec::new()
         };
-        if (conflicts.is_empty() && wrong.is_empty()) || rounds == limit {
-            return Ok(Dive { rounds, conflicts });
+        let left = conflicts.len() + wrong.len();
+        if left < fewest {
+            (fewest, since) = (left, rounds);
+        }
+        if left == 0 || rounds == limit || rounds - since == PATIENCE {
+            return Ok(Dive { rounds, conflicts, wrong });
         }
         rounds += 1;
         progress.report(rounds as f64 / limit as f64)?;
@@ -85,6 +99,38 @@ pub(super) fn dive_from(
             let at: Vec<usize> = of_contour.map(|vertex| vertex.index as usize).collect();
             let (contour, prices) = (&contours[c as usize], &prices[c as usize]);
             resolve(contour, walk, prices, search, &at, REACH);
+        }
+    }
+}
+
+/// Charges every node for whose point another stretch of curve, or another contour, is nearer; and
+/// searches all walks again.
+///
+/// From there walls that have changed sides in a narrow part find back: each has its own half.
+pub(super) fn keep_apart(
+    contours: &[Contour],
+    walks: &mut [Walk],
+    prices: &mut [Prices],
+    search: &mut Search,
+) {
+    let mut nearest: FxHashMap<Axial, f64> = FxHashMap::default();
+    for Contour { graph, .. } in contours {
+        for (&point, &squared) in graph.points.iter().zip(&graph.squared) {
+            let least = nearest.entry(point).or_insert(squared);
+            *least = least.min(squared);
+        }
+    }
+    for ((contour, prices), walk) in contours.iter().zip(prices).zip(walks) {
+        let Contour { graph, potential } = contour;
+        prices.clear();
+        for node in 0..graph.n_nodes() as u32 {
+            let (point, squared) = (graph.points[node as usize], graph.squared[node as usize]);
+            if nearest.get(&point).is_some_and(|&least| least < squared) {
+                prices.raise_visit(node, APART);
+            }
+        }
+        if let Some((found, _)) = search.closed(graph, potential, prices, u32::MAX) {
+            *walk = found;
         }
     }
 }

@@ -1,7 +1,5 @@
 //! The band of one contour, cut open: what the shortest-path search walks on.
 
-use std::ops::Range;
-
 use crate::axial::Axial;
 use crate::band::Band;
 use crate::dir::Dir;
@@ -10,7 +8,7 @@ use crate::dir::Dir;
 pub(super) const TURN: u32 = 1024;
 /// Transitions that cost this much or more are forbidden.
 pub(super) const BLOCKED: u32 = 1 << 26;
-/// How far past the cut a path may run before it comes back, in samples.
+/// How far past the cut and the runs across it a path may go before it comes back, in samples.
 const OVERHANG: u32 = 64;
 
 /// A node on one sheet of the band, which is unrolled at the cut: `node + sheet * n_nodes`.
@@ -49,6 +47,12 @@ impl Graph {
         let shift = band.nodes.partition_point(|node| node.first < cut);
         let number = |old: usize| (old + n - shift) % n;
         let old = |new: usize| (new + shift) % n;
+        // Runs across the cut end this far behind it.
+        let behind = band.nodes.iter().map(|node| {
+            let first = (node.first + n_samples - cut) % n_samples;
+            (first + node.last - node.first).saturating_sub(n_samples)
+        });
+        let overhang = OVERHANG + behind.max().unwrap_or(0);
         let turned = |old: usize| i32::from(old < shift);
         let mut graph = Self {
             points: Vec::with_capacity(n),
@@ -60,16 +64,18 @@ impl Graph {
             n_second: 0,
             n_samples: n_samples as usize,
         };
+        // So that no sum overflows.
+        let most = f64::from(BLOCKED / 64).min(1e9 / (n as f64 + 1.0));
         for i in 0..n {
             let o = old(i);
             let node = &band.nodes[o];
             let squared = node.distance * node.distance;
-            let turns = closeness.max(LEAST) * squared;
+            let turns = closeness.clamp(LEAST, 100.0) * squared;
             graph.points.push(node.point);
-            graph.cost.push((turns * f64::from(TURN)).round().min(f64::from(BLOCKED / 64)) as u32);
+            graph.cost.push((turns * f64::from(TURN)).round().min(most) as u32);
             graph.squared.push(squared);
             graph.parameter.push(node.parameter + f64::from(turned(o)) * f64::from(n_samples));
-            if (node.first + n_samples - cut) % n_samples < OVERHANG {
+            if (node.first + n_samples - cut) % n_samples < overhang {
                 graph.n_second = i + 1;
             }
             for dir in Dir::ALL {
@@ -97,17 +103,15 @@ impl Graph {
         6 * (self.n_nodes() + self.n_second)
     }
 
-    pub fn node(&self, place: Place) -> u32 {
-        let n = self.n_nodes() as u32;
-        if place < n { place } else { place - n }
-    }
-
     pub fn links(&self, node: u32, dir: u32) -> &[u32] {
         let entry = (6 * node + dir) as usize;
         &self.links[self.starts[entry] as usize..self.starts[entry + 1] as usize]
     }
 
     /// The place that a link leads to from a sheet, if that sheet exists there.
+    ///
+    /// Links go both ways: listed at its end with the wrap that leads to its start, a step is
+    /// followed back likewise.
     #[inline]
     pub fn follow(&self, link: u32, sheet: u32) -> Option<Place> {
         let node = link >> 2;
@@ -117,13 +121,6 @@ impl Graph {
             2 if (node as usize) < self.n_second => Some(node + self.n_nodes() as u32),
             _ => None,
         }
-    }
-
-    /// Likewise, against the direction of the link.
-    #[inline]
-    pub fn follow_back(&self, link: u32, sheet: u32) -> Option<Place> {
-        // The link is listed at its end, with the wrap that leads to its start.
-        self.follow(link, sheet)
     }
 
     /// The states on the first sheet that a step across the cut arrives in.
@@ -139,11 +136,6 @@ impl Graph {
             }
         }
         found
-    }
-
-    /// The lattice points of some nodes.
-    pub fn nodes(&self) -> Range<u32> {
-        0..self.n_nodes() as u32
     }
 }
 

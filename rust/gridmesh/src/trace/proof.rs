@@ -21,6 +21,8 @@ const ROOT_STEPS: usize = 40;
 const STEPS: usize = 6;
 /// Likewise, when no proof was asked for.
 const QUICK_STEPS: usize = 8;
+/// Rounds of conflict pricing from the prices of a proof on.
+const DIVE: usize = 20;
 
 /// What is known after a proof was tried.
 pub(super) struct Proof {
@@ -185,7 +187,7 @@ impl Tree<'_> {
                 self.offer(&walks);
             } else if step % 8 == 4 {
                 // Prices that nearly suffice are a good place to look for valid walks from.
-                self.dive(bans.as_ref(), &multipliers, &walks, progress)?;
+                self.dive(&walks, progress)?;
             }
             if bound >= self.best {
                 return Ok(());
@@ -337,20 +339,13 @@ impl Tree<'_> {
         }
     }
 
-    /// Looks for valid walks from some prices on.
-    fn dive(
-        &mut self,
-        bans: Option<&Rc<Ban>>,
-        multipliers: &[u32],
-        walks: &[Walk],
-        progress: Progress<'_>,
-    ) -> Result<()> {
-        let _ = (bans, multipliers);
+    /// Looks for valid walks from the prices at hand on.
+    fn dive(&mut self, walks: &[Walk], progress: Progress<'_>) -> Result<()> {
         let mut walks = walks.to_vec();
         let mut prices = self.prices.clone();
-        let limit = 20;
-        let dive = dive_from(self.contours, &mut walks, &mut prices, self.search, limit, progress)?;
-        if dive.conflicts.is_empty() {
+        let (contours, search) = (self.contours, &mut *self.search);
+        let dive = dive_from(contours, &mut walks, &mut prices, search, DIVE, progress)?;
+        if dive.conflicts.is_empty() && dive.wrong.is_empty() {
             self.offer(&walks);
         }
         Ok(())

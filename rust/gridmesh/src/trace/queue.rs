@@ -144,7 +144,7 @@ mod tests {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
                 let random = (state >> 33) as u32;
                 if step < 15_000 && random % 5 < 3 {
-                    let far = if random % 31 == 0 { 40_000 } else { 3_000 };
+                    let far = if random.is_multiple_of(31) { 40_000 } else { 3_000 };
                     queue.push(last + (random >> 8) % far, step);
                     pushed += 1;
                 } else if let Some((key, _)) = queue.pop() {

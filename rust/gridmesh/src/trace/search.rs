@@ -1,5 +1,7 @@
 //! Shortest closed paths over (place, incoming direction).
 
+use crate::axial::Axial;
+
 use super::graph::{BLOCKED, Graph, State, TURN};
 use super::prices::Prices;
 use super::queue::Queue;
@@ -127,7 +129,7 @@ impl Search {
             let (node, sheet) = if place < n { (place, 0) } else { (place - n, 1) };
             let here = key + graph.cost[node as usize];
             for &link in graph.links(node, turned(dir, 3)) {
-                let Some(before) = graph.follow_back(link, sheet) else {
+                let Some(before) = graph.follow(link, sheet) else {
                     continue;
                 };
                 for turn in TURNS {
@@ -169,7 +171,7 @@ impl Search {
             if bound >= best {
                 break;
             }
-            if let Some((found, cost)) = self.from_start(graph, potential, prices, start, best) {
+            if let Some((found, cost)) = self.once_round(graph, potential, prices, start, best) {
                 best = cost;
                 walk = Some(found);
             }
@@ -178,7 +180,7 @@ impl Search {
     }
 
     /// A* from a start on the first sheet to the same state on the second.
-    fn from_start(
+    fn once_round(
         &mut self,
         graph: &Graph,
         potential: &Potential,
@@ -368,6 +370,11 @@ impl Walk {
     /// Node of the vertex `i`.
     pub fn node(&self, i: usize) -> u32 {
         self.step(i).node
+    }
+
+    /// The lattice points in order.
+    pub fn points(&self, graph: &Graph) -> impl Iterator<Item = Axial> {
+        self.steps.iter().map(|step| graph.points[step.node as usize])
     }
 
     /// Direction of the step that leaves vertex `i`.

@@ -23,7 +23,7 @@ pub(super) fn wrong_sides(contours: &[Contour], walks: &[Walk]) -> Vec<Vertex> {
                 let from = graph.points[walk.node(i) as usize];
                 let dir = Dir::ALL[walk.leave(i) as usize];
                 let (from, dir, seen) = if turned {
-                    (Axial::new(-from.r, from.q + from.r), dir.rotate(1), dir.index() % 3 == 0)
+                    (Axial::new(-from.r, from.q + from.r), dir.rotate(1), dir.index().is_multiple_of(3))
                 } else {
                     (from, dir, true)
                 };
