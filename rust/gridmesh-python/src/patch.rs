@@ -133,10 +133,13 @@ impl Patch {
         let py = slf.py();
         let this = slf.get();
         let lengths: Vec<f64> = this.inner.loops.iter().map(|contour| contour.length).collect();
+        let inlet = |inlet: &Vec<DVec2>| inlet.iter().map(DVec2::to_array).collect();
+        let inlets: Vec<Vec<[f64; 2]>> = this.inner.inlets.iter().map(inlet).collect();
         let fields = (
             this.vertices(py)?,
             this.triangles(py)?,
             (this.arc(py)?, this.source(py)?, this.corner(py)?, lengths),
+            inlets,
             (this.inner.lattice.origin.to_array(), this.angle(), this.edge_length()),
             this.report(py),
         );
@@ -158,6 +161,7 @@ pub fn _patch(
     vertices: PyReadonlyArray2<'_, f64>,
     triangles: PyReadonlyArray2<'_, i32>,
     contours: Contours<'_>,
+    inlets: Vec<Vec<[f64; 2]>>,
     lattice: ([f64; 2], f64, f64),
     report: Py<PyDict>,
 ) -> PyResult<Patch> {
@@ -193,5 +197,6 @@ pub fn _patch(
     }
     let ([x, y], angle, edge_length) = lattice;
     let lattice = Lattice { origin: DVec2::new(x, y), angle, edge_length };
-    Ok(Patch::new(CorePatch { vertices, triangles: corners, loops, lattice }, report))
+    let inlets = inlets.into_iter().map(|inlet| inlet.into_iter().map(DVec2::from_array).collect()).collect();
+    Ok(Patch::new(CorePatch { vertices, triangles: corners, loops, inlets, lattice }, report))
 }

@@ -3,6 +3,7 @@
 mod crease;
 mod field;
 mod height;
+mod inlets;
 mod laplace;
 mod polish;
 mod side;
@@ -21,6 +22,7 @@ use crate::stitch::projects_well;
 use crate::surface::Surface;
 use field::Field;
 use height::{Flat, bends, squared_height};
+use inlets::Inlets;
 use laplace::Pattern;
 pub use side::Side;
 use spread::{Front, Guide, spread};
@@ -141,7 +143,14 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         let extent = (high - low).max_element();
         let least_area = 4.0 * f64::from(f32::EPSILON) * extent * patch.lattice.edge_length;
         let bends = bends(&flat, &field.value, &field.gradient, depth);
-        let guide = Guide::new(&field, |v| bends[v].limb, &patch.loops, depth, least_area);
+        let guide = Guide::new(
+            &field,
+            |v| bends[v].limb,
+            &patch.loops,
+            Inlets::new(patch, middle),
+            depth,
+            least_area,
+        );
         spread(&mut front, &guide, progress.part(0.4, 0.8))?;
     }
     clock.stage("spread");

@@ -56,6 +56,10 @@ pub struct Patch {
     pub triangles: Vec<[u32; 3]>,
     /// The contours, outer first.
     pub loops: Vec<Loop>,
+    /// Inlets of the drawing that boundary edges bridge by more than a twentieth of an edge: each
+    /// the edge's first vertex, the drawn points beside it, the edge's last vertex. No interior
+    /// vertex should come to lie in them.
+    pub inlets: Vec<Vec<DVec2>>,
     /// The lattice that the patch was cut from.
     pub lattice: Lattice,
 }

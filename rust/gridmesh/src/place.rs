@@ -95,20 +95,20 @@ pub(crate) fn place(
             }
             continue;
         }
-        let inlets = pockets(contours, &vertices, &region.triangles, &arcs, INLET * h);
+        let (inlets, occupied) = pockets(contours, &vertices, &region.triangles, &arcs, INLET * h);
         let kept = rims.iter().zip(&angles).flat_map(|(rim, angle)| rim.pinned.iter().zip(angle));
         let kept = kept.filter(|(pinned, angle)| **pinned && **angle != 0.0).count();
         let placed = Placed {
-            patch: Patch { vertices, triangles: region.triangles.clone(), loops, lattice: *lattice },
+            patch: Patch { vertices, triangles: region.triangles.clone(), loops, inlets, lattice: *lattice },
             corners: n_corners,
             released_corners: n_corners - kept,
             max_deviation: farthest / h,
-            bridged_inlets: inlets.len(),
+            bridged_inlets: occupied.len(),
         };
         if valid.as_ref().is_none_or(|best| placed.bridged_inlets < best.bridged_inlets) {
             valid = Some(placed);
         }
-        if inlets.is_empty() || !options.relax || !hold(&inlets, &mut rims, &lengths, h) {
+        if occupied.is_empty() || !options.relax || !hold(&occupied, &mut rims, &lengths, h) {
             break;
         }
     }

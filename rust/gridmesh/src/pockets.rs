@@ -10,8 +10,10 @@ use crate::segments::nearest_on_segment;
 /// Rings of vertices behind a boundary edge that are looked at.
 const RINGS: usize = 3;
 
-/// For each boundary edge that bridges an inlet with a mesh vertex in it: the farthest point of the
-/// drawing beside the edge.
+/// The inlets that boundary edges bridge by more than `limit` (see [`Patch::inlets`]), and for each
+/// with a mesh vertex in it the farthest point of the drawing beside the edge.
+///
+/// [`Patch::inlets`]: crate::patch::Patch::inlets
 ///
 /// A vertex counts if it lies between the edge and the stretch of drawing beside it, by more than
 /// `limit` off the drawing. `distance` of a stray is the greatest such distance. `vertices` are
@@ -22,10 +24,10 @@ pub(crate) fn pockets(
     triangles: &[[u32; 3]],
     arcs: &[Vec<f64>],
     limit: f64,
-) -> Vec<Stray> {
+) -> (Vec<Vec<DVec2>>, Vec<Stray>) {
     let fans = Fans::new(vertices.len(), triangles);
     let n_boundary: usize = arcs.iter().map(Vec::len).sum();
-    let mut found = Vec::new();
+    let (mut inlets, mut found) = (Vec::new(), Vec::new());
     let mut start = 0;
     for (k, (contour, arcs)) in contours.iter().zip(arcs).enumerate() {
         let n = arcs.len();
@@ -51,6 +53,10 @@ pub(crate) fn pockets(
             i = end;
             let Some(deepest) = deepest.filter(|&x| off(points[at(x)]) > limit * limit) else { continue };
             let pocket: Vec<DVec2> = [a].into_iter().chain(stretch).chain([b]).collect();
+            // The mesh lies left of the edge; a stretch right of it bulges outwards.
+            if doubled_area(&pocket) >= 0.0 {
+                continue;
+            }
             let depth = fans
                 .around([start + edge, start + (edge + 1) % n], RINGS)
                 .into_iter()
@@ -62,14 +68,20 @@ pub(crate) fn pockets(
                 let arc = edge_of(contour.arc()[at(deepest)]).1;
                 found.push(Stray { contour: k, edge, arc, point, distance: depth });
             }
+            inlets.push(pocket);
         }
         start += n;
     }
-    found
+    (inlets, found)
+}
+
+fn doubled_area(polygon: &[DVec2]) -> f64 {
+    let origin = polygon[0];
+    polygon.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum()
 }
 
 /// Distance to an open polyline.
-fn distance_to(line: &[DVec2], p: DVec2) -> f64 {
+pub(crate) fn distance_to(line: &[DVec2], p: DVec2) -> f64 {
     line.windows(2).map(|w| nearest_on_segment(p, w[0], w[1]).1).fold(f64::INFINITY, f64::min).sqrt()
 }
 
@@ -139,12 +151,13 @@ mod tests {
         vertices.push(DVec2::new(5.0, 5.0));
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
         let contours = [contour];
-        let found = pockets(&contours, &vertices, &triangles, &arcs, 0.1);
+        let (inlets, found) = pockets(&contours, &vertices, &triangles, &arcs, 0.1);
+        assert_eq!(inlets, vec![vec![drawn[3], drawn[4], drawn[5]]]);
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].edge, found[0].point), (3, drawn[4]));
         assert!((found[0].distance - 0.392).abs() < 1e-3, "{}", found[0].distance);
         vertices[6] = DVec2::new(5.0, 2.0);
-        assert!(pockets(&contours, &vertices, &triangles, &arcs, 0.1).is_empty());
+        assert!(pockets(&contours, &vertices, &triangles, &arcs, 0.1).1.is_empty());
         Ok(())
     }
 }

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::crease::{Crease, creases};
 use super::field::{Field, Place};
+use super::inlets::Inlets;
 use super::polish::{rim_flatness, sharpen, sweep};
 use crate::error::Result;
 use crate::patch::Loop;
@@ -41,8 +42,11 @@ impl Front {
     }
 
     /// Whether `v`, which was at `start`, may go to `point`: all its triangles stay positive in
-    /// projection, and it does not leave its crease.
+    /// projection, it does not leave its crease, and it does not enter an inlet of the drawing.
     pub fn may_move(&self, guide: &Guide<'_>, v: usize, start: DVec2, point: DVec2) -> bool {
+        if guide.inlets.hold(point) && !guide.inlets.hold(start) {
+            return false;
+        }
         let stays = guide.crease[v].as_ref().is_none_or(|crease| crease.holds(point) || !crease.holds(start));
         stays
             && guide.field.topology.fan(v).iter().all(|&[a, b]| {
@@ -67,6 +71,8 @@ pub(crate) struct Guide<'a> {
     pub crease: Vec<Option<Crease>>,
     /// See [`rim_flatness`].
     pub flatness: Vec<f64>,
+    /// Where vertices may not go.
+    pub inlets: Inlets,
     /// Twice the area that each triangle keeps in projection at least.
     pub least_area: f64,
 }
@@ -77,6 +83,7 @@ impl<'a> Guide<'a> {
         field: &'a Field<'a>,
         limb: impl Fn(usize) -> f64,
         loops: &[Loop],
+        inlets: Inlets,
         depth: f64,
         least_area: f64,
     ) -> Self {
@@ -88,6 +95,7 @@ impl<'a> Guide<'a> {
             goal: (0..field.value.len()).map(goal).collect(),
             crease: creases(field, loops, first),
             flatness: rim_flatness(field, loops, first),
+            inlets,
             least_area,
         }
     }
@@ -208,7 +216,8 @@ fn settle(front: &mut Front, guide: &Guide<'_>, target: &[DVec2]) {
                 }
             }
         }
-        let mut bad = vec![];
+        let mut bad: Vec<u32> =
+            moved.iter().copied().filter(|&slot| guide.inlets.hold(flat[first + slot as usize])).collect();
         for corners in field.triangles {
             let [a, b, c] = corners.map(|v| flat[v as usize]);
             if (b - a).perp_dot(c - a) >= guide.least_area {
