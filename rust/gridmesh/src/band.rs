@@ -1,12 +1,14 @@
 //! The immersed band: the lattice points near a curve, once for each stretch of it they are near.
 
 use std::iter;
+use std::sync::OnceLock;
 
+use glam::DVec2;
 use rustc_hash::FxHashMap;
 
 use crate::axial::Axial;
-use crate::lattice::{Lattice, ROW_HEIGHT};
-use crate::segments::nearest_on_segment;
+use crate::dir::Dir;
+use crate::lattice::ROW_HEIGHT;
 use crate::target::Target;
 
 /// How much farther than the path's greatest distance a stretch of curve may be from its point.
@@ -31,15 +33,33 @@ pub struct Node {
     pub distance: f64,
 }
 
-/// All nodes within a distance of a target, in time and space proportional to its length.
+/// A node beside another: their points are lattice neighbours and their runs overlap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Link {
+    /// Number of the neighbouring node.
+    pub node: u32,
+    /// The runs overlap when the neighbour's is moved by this many turns round the curve.
+    pub wrap: i8,
+}
+
+/// All nodes within a distance of a target and the links between them, in time and space
+/// proportional to its length.
 #[derive(Clone, Debug)]
 pub struct Band {
     /// Nodes in order of their run's first segment; ties in scan order.
     pub nodes: Vec<Node>,
-    /// The latest node of each point; the earlier ones follow by `earlier`.
+    /// Where the links of node `i` in direction `d` start: entry `6 i + d`; and the end.
+    starts: Vec<u32>,
+    links: Vec<Link>,
+    by_point: OnceLock<ByPoint>,
+    n_samples: usize,
+}
+
+/// The nodes of each point, latest run first.
+#[derive(Clone, Debug)]
+struct ByPoint {
     latest: FxHashMap<Axial, u32>,
     earlier: Vec<u32>,
-    n_samples: usize,
 }
 
 const NONE: u32 = u32::MAX;
@@ -48,94 +68,7 @@ impl Band {
     /// Collects the nodes whose nearest distance is at most `max_distance`; runs reach out to
     /// `max_distance + SLACK`.
     pub fn new(target: &Target, max_distance: f64) -> Self {
-        let reach = max_distance + SLACK;
-        let n = target.len();
-        let mut nodes: Vec<Node> = Vec::with_capacity(4 * n);
-        let mut latest: FxHashMap<Axial, u32> = FxHashMap::default();
-        let mut earlier: Vec<u32> = Vec::with_capacity(4 * n);
-        for segment in 0..n {
-            let (a, b) = target.segment(segment);
-            for point in points_near(a.min(b) - reach, a.max(b) + reach) {
-                let (t, squared) = nearest_on_segment(Lattice::units(point), a, b);
-                if squared > reach * reach {
-                    continue;
-                }
-                let parameter = segment as f64 + t;
-                let known = latest.get(&point).copied().unwrap_or(NONE);
-                if known != NONE && nodes[known as usize].last + 1 >= segment as u32 {
-                    let node = &mut nodes[known as usize];
-                    node.last = segment as u32;
-                    if squared < node.distance {
-                        node.distance = squared;
-                        node.parameter = parameter;
-                    }
-                    continue;
-                }
-                latest.insert(point, nodes.len() as u32);
-                earlier.push(known);
-                let segment = segment as u32;
-                nodes.push(Node { point, first: segment, last: segment, parameter, distance: squared });
-            }
-        }
-        let mut band = Self { nodes, latest, earlier, n_samples: n };
-        band.join_ends();
-        band.keep_near(max_distance);
-        band
-    }
-
-    /// Joins a run that ends with the last segment to one of the same point that starts with the
-    /// first.
-    fn join_ends(&mut self) {
-        let n = self.n_samples as u32;
-        for start in 0..self.nodes.len() {
-            let head = self.nodes[start];
-            if head.first != 0 {
-                break;
-            }
-            let end = self.latest[&head.point] as usize;
-            let tail = self.nodes[end];
-            if tail.last + 1 != n || end == start {
-                continue;
-            }
-            let joined = &mut self.nodes[end];
-            joined.last = n + head.last;
-            if head.distance < tail.distance {
-                joined.distance = head.distance;
-                joined.parameter = head.parameter + f64::from(n);
-            }
-            self.nodes[start].distance = f64::INFINITY;
-        }
-    }
-
-    /// Drops the nodes that are too far, takes square roots, and renumbers.
-    fn keep_near(&mut self, max_distance: f64) {
-        let mut number = vec![NONE; self.nodes.len()];
-        let mut kept = 0;
-        for (i, node) in self.nodes.iter().enumerate() {
-            if node.distance <= max_distance * max_distance {
-                number[i] = kept;
-                kept += 1;
-            }
-        }
-        let next_kept = |earlier: &[u32], mut i: u32| {
-            while i != NONE && number[i as usize] == NONE {
-                i = earlier[i as usize];
-            }
-            if i == NONE { NONE } else { number[i as usize] }
-        };
-        let earlier: Vec<u32> = (0..self.nodes.len())
-            .filter(|&i| number[i] != NONE)
-            .map(|i| next_kept(&self.earlier, self.earlier[i]))
-            .collect();
-        self.latest.retain(|_, i| {
-            *i = next_kept(&self.earlier, *i);
-            *i != NONE
-        });
-        self.earlier = earlier;
-        self.nodes.retain(|node| node.distance <= max_distance * max_distance);
-        for node in &mut self.nodes {
-            node.distance = node.distance.sqrt();
-        }
+        Scan::new(target, max_distance + SLACK).finish(max_distance)
     }
 
     /// Number of samples of the target: parameters are taken modulo this.
@@ -143,10 +76,24 @@ impl Band {
         self.n_samples
     }
 
+    /// The neighbours of a node in one direction.
+    pub fn links(&self, node: usize, dir: Dir) -> &[Link] {
+        let entry = 6 * node + dir.index();
+        &self.links[self.starts[entry] as usize..self.starts[entry + 1] as usize]
+    }
+
     /// Numbers of the nodes of a lattice point, latest run first.
     pub fn nodes_at(&self, point: Axial) -> impl Iterator<Item = usize> {
         let some = |i: u32| (i != NONE).then_some(i as usize);
-        iter::successors(self.latest.get(&point).map(|&i| i as usize), move |&i| some(self.earlier[i]))
+        let index = self.by_point.get_or_init(|| {
+            let mut latest = FxHashMap::default();
+            let earlier = (0..)
+                .zip(&self.nodes)
+                .map(|(i, node)| latest.insert(node.point, i).unwrap_or(NONE))
+                .collect();
+            ByPoint { latest, earlier }
+        });
+        iter::successors(index.latest.get(&point).map(|&i| i as usize), move |&i| some(index.earlier[i]))
     }
 
     /// The node of a lattice point that is nearest to the curve.
@@ -157,20 +104,228 @@ impl Band {
     }
 }
 
-/// The lattice points in a box, row by row.
-fn points_near(low: glam::DVec2, high: glam::DVec2) -> impl Iterator<Item = Axial> {
-    let rows = (low.y / ROW_HEIGHT).ceil() as i32..=(high.y / ROW_HEIGHT).floor() as i32;
-    rows.flat_map(move |r| {
+/// A walk along the target that opens, extends and links runs.
+struct Scan {
+    nodes: Vec<Node>,
+    /// Pairs of nodes active on a common segment, and the direction from the first to the second.
+    pairs: Vec<(u32, u32, u8)>,
+    /// Nodes active on segment 0 are the first so many.
+    heads: usize,
+    n_samples: usize,
+}
+
+/// The latest node of each point near the segment at hand: a square of slots that the axial
+/// coordinates wrap around. It is wider than any segment's reach, so active points never share one.
+struct Window {
+    slots: Vec<u32>,
+    shift: u32,
+}
+
+impl Window {
+    fn new(target: &Target, reach: f64) -> Self {
+        let longest = (0..target.len())
+            .map(|i| {
+                let (a, b) = target.segment(i);
+                a.distance_squared(b)
+            })
+            .fold(0.0, f64::max)
+            .sqrt();
+        let width = (2.0 * reach + longest) / ROW_HEIGHT + 2.0;
+        let shift = (width.ceil() as u32).next_power_of_two().trailing_zeros();
+        Self { slots: vec![NONE; 1 << (2 * shift)], shift }
+    }
+
+    fn slot(&self, point: Axial) -> usize {
+        let mask = (1u32 << self.shift) - 1;
+        (((point.r as u32 & mask) << self.shift) | (point.q as u32 & mask)) as usize
+    }
+}
+
+impl Scan {
+    fn new(target: &Target, reach: f64) -> Self {
+        let n = target.len();
+        let mut window = Window::new(target, reach);
+        let mut nodes: Vec<Node> = Vec::with_capacity(2 * n);
+        let mut pairs = Vec::with_capacity(6 * n);
+        let mut heads = 0;
+        for segment in 0..n {
+            let (a, b) = target.segment(segment);
+            let at = segment as u32;
+            let fresh = nodes.len();
+            points_near(a, b, reach, |point, t, squared| {
+                let slot = window.slot(point);
+                let known = window.slots[slot];
+                if let Some(node) = nodes.get_mut(known as usize)
+                    && node.point == point
+                    && node.last + 1 >= at
+                {
+                    node.last = at;
+                    if squared < node.distance {
+                        node.distance = squared;
+                        node.parameter = f64::from(at) + t;
+                    }
+                    return;
+                }
+                window.slots[slot] = nodes.len() as u32;
+                nodes.push(Node {
+                    point,
+                    first: at,
+                    last: at,
+                    parameter: f64::from(at) + t,
+                    distance: squared,
+                });
+            });
+            for i in fresh..nodes.len() {
+                for dir in Dir::ALL {
+                    let beside = nodes[i].point + dir;
+                    let j = window.slots[window.slot(beside)];
+                    let active =
+                        nodes.get(j as usize).is_some_and(|node| node.point == beside && node.last == at);
+                    // Of two that open together the later one links them.
+                    if active && (j as usize) < i {
+                        pairs.push((i as u32, j, dir.index() as u8));
+                    }
+                }
+            }
+            if segment == 0 {
+                heads = nodes.len();
+            }
+        }
+        Self { nodes, pairs, heads, n_samples: n }
+    }
+
+    /// Joins the runs across the end, drops the nodes that are too far, numbers and links the rest.
+    fn finish(mut self, max_distance: f64) -> Band {
+        // Where a node went: to itself or to the one it was joined to, and how many turns on.
+        let mut rep: Vec<(u32, i8)> = (0..self.nodes.len() as u32).map(|i| (i, 0)).collect();
+        self.join_ends(&mut rep);
+        let near = max_distance * max_distance;
+        let mut number = vec![NONE; self.nodes.len()];
+        let mut nodes = Vec::with_capacity(self.nodes.len());
+        for (i, node) in self.nodes.iter().enumerate() {
+            if rep[i].0 == i as u32 && node.distance <= near {
+                number[i] = nodes.len() as u32;
+                nodes.push(Node { distance: node.distance.sqrt(), ..*node });
+            }
+        }
+        let mut entries: Vec<(u32, Link)> = Vec::with_capacity(2 * self.pairs.len());
+        for &(a, b, dir) in &self.pairs {
+            let ((ra, turn_a), (rb, turn_b)) = (rep[a as usize], rep[b as usize]);
+            let (na, nb) = (number[ra as usize], number[rb as usize]);
+            if na == NONE || nb == NONE {
+                continue;
+            }
+            let wrap = turn_a - turn_b;
+            let back = (u32::from(dir) + 3) % 6;
+            entries.push((6 * na + u32::from(dir), Link { node: nb, wrap }));
+            entries.push((6 * nb + back, Link { node: na, wrap: -wrap }));
+        }
+        let (starts, links) = sorted_rows(6 * nodes.len(), &entries);
+        Band { nodes, starts, links, by_point: OnceLock::new(), n_samples: self.n_samples }
+    }
+
+    /// Joins a run that ends with the last segment to one of the same point that starts with the
+    /// first.
+    fn join_ends(&mut self, rep: &mut [(u32, i8)]) {
+        let n = self.n_samples as u32;
+        let mut ends: FxHashMap<Axial, usize> = FxHashMap::default();
+        for (i, node) in self.nodes.iter().enumerate() {
+            if node.last + 1 == n {
+                ends.insert(node.point, i);
+            }
+        }
+        for (start, rep) in rep.iter_mut().enumerate().take(self.heads) {
+            let head = self.nodes[start];
+            let Some(&end) = ends.get(&head.point) else {
+                continue;
+            };
+            if end == start {
+                continue;
+            }
+            let tail = &mut self.nodes[end];
+            tail.last = n + head.last;
+            if head.distance < tail.distance {
+                tail.distance = head.distance;
+                tail.parameter = head.parameter + f64::from(n);
+            }
+            *rep = (end as u32, 1);
+        }
+    }
+}
+
+/// Sorts entries by row, dropping repetitions; where each row starts, and the entries.
+fn sorted_rows(n_rows: usize, entries: &[(u32, Link)]) -> (Vec<u32>, Vec<Link>) {
+    let mut next = vec![0u32; n_rows + 1];
+    for (row, _) in entries {
+        next[*row as usize + 1] += 1;
+    }
+    for i in 1..next.len() {
+        next[i] += next[i - 1];
+    }
+    let from = next.clone();
+    let mut sorted = vec![Link { node: 0, wrap: 0 }; entries.len()];
+    for (row, link) in entries {
+        sorted[next[*row as usize] as usize] = *link;
+        next[*row as usize] += 1;
+    }
+    let mut links = Vec::with_capacity(sorted.len());
+    let mut starts = Vec::with_capacity(n_rows + 1);
+    for row in from.windows(2) {
+        let start = links.len();
+        starts.push(start as u32);
+        for link in &sorted[row[0] as usize..row[1] as usize] {
+            if !links[start..].contains(link) {
+                links.push(*link);
+            }
+        }
+    }
+    starts.push(links.len() as u32);
+    (starts, links)
+}
+
+/// Calls `visit` with each lattice point within reach of a segment, the parameter of the nearest
+/// point of the segment, 0 to 1, and the squared distance to it; row by row.
+#[inline]
+fn points_near(a: DVec2, b: DVec2, reach: f64, mut visit: impl FnMut(Axial, f64, f64)) {
+    let ab = b - a;
+    let squared = ab.length_squared();
+    let inverse = if squared > 0.0 { 1.0 / squared } else { 0.0 };
+    let squared_reach = reach * reach;
+    let (low, high) = (a.min(b), a.max(b));
+    for r in ceil((low.y - reach) / ROW_HEIGHT)..=-ceil(-(high.y + reach) / ROW_HEIGHT) {
+        let y = ROW_HEIGHT * f64::from(r);
+        // How far the row passes the segment by: the points within reach are in this span.
+        let beside = (y - high.y).max(low.y - y).max(0.0);
+        let half = (squared_reach - beside * beside).max(0.0).sqrt() + 1e-9;
         let shift = 0.5 * f64::from(r);
-        let columns = (low.x - shift).ceil() as i32..=(high.x - shift).floor() as i32;
-        columns.map(move |q| Axial::new(q, r))
-    })
+        let first = ceil(low.x - half - shift);
+        let last = -ceil(-(high.x + half - shift));
+        let dy = y - a.y;
+        let mut dx = f64::from(first) + shift - a.x;
+        for q in first..=last {
+            let t = ((dx * ab.x + dy * ab.y) * inverse).clamp(0.0, 1.0);
+            let (x, y) = (dx - t * ab.x, dy - t * ab.y);
+            let squared = x * x + y * y;
+            if squared <= squared_reach {
+                visit(Axial::new(q, r), t, squared);
+            }
+            dx += 1.0;
+        }
+    }
+}
+
+/// The least integer that is not below `x` (a library call without newer processor instructions).
+#[inline]
+fn ceil(x: f64) -> i32 {
+    let whole = x as i32;
+    whole + i32::from(f64::from(whole) < x)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec2;
+    use crate::lattice::Lattice;
+    use crate::segments::nearest_on_segment;
 
     /// Every node of a brute-force band over a box, as (point, first, last).
     fn brute_force(target: &Target, max_distance: f64) -> Vec<(Axial, u32, u32)> {
@@ -187,7 +342,7 @@ mod tests {
                     .collect();
                 let within = |i: usize| d[i % n] <= max_distance + SLACK;
                 for first in (0..n).filter(|&i| within(i) && !within(i + n - 1)) {
-                    let last = (first..).find(|&i| !within(i + 1)).unwrap();
+                    let last = (first..2 * n).find(|&i| !within(i + 1)).unwrap_or(2 * n);
                     if (first..=last).any(|i| d[i % n] <= max_distance) {
                         found.push((p, first as u32, last as u32));
                     }
@@ -198,18 +353,21 @@ mod tests {
         found
     }
 
-    #[test]
-    fn nodes_are_the_maximal_runs() {
-        let points: Vec<DVec2> = (0..300)
+    fn flower(shift: usize) -> Target {
+        let mut points: Vec<DVec2> = (0..300)
             .map(|i| {
                 let t = f64::from(i) / 300.0 * std::f64::consts::TAU;
                 (7.0 + 5.0 * (5.0 * t).cos()) * DVec2::from_angle(t)
             })
             .collect();
+        points.rotate_left(shift);
+        Target { points, step: 0.4 }
+    }
+
+    #[test]
+    fn nodes_are_the_maximal_runs() {
         for shift in [0, 10, 77, 150, 299] {
-            let mut points = points.clone();
-            points.rotate_left(shift);
-            let target = Target { points, step: 0.4 };
+            let target = flower(shift);
             for max_distance in [0.7, 1.5] {
                 let band = Band::new(&target, max_distance);
                 let mut found: Vec<_> = band.nodes.iter().map(|n| (n.point, n.first, n.last)).collect();
@@ -223,6 +381,37 @@ mod tests {
                 listed.sort_unstable();
                 listed.dedup();
                 assert_eq!(listed.len(), band.nodes.len());
+            }
+        }
+    }
+
+    #[test]
+    fn links_are_the_overlapping_runs_of_neighbours() {
+        for shift in [0, 10, 77, 150, 299] {
+            for max_distance in [0.7, 1.5, 2.0] {
+                let band = Band::new(&flower(shift), max_distance);
+                let n = band.n_samples() as i64;
+                for (i, a) in band.nodes.iter().enumerate() {
+                    for dir in Dir::ALL {
+                        let mut expected = Vec::new();
+                        for j in band.nodes_at(a.point + dir) {
+                            let b = &band.nodes[j];
+                            for wrap in -1..=1i8 {
+                                let move_by = n * i64::from(wrap);
+                                let (first, last) =
+                                    (i64::from(b.first) + move_by, i64::from(b.last) + move_by);
+                                if first <= i64::from(a.last) && i64::from(a.first) <= last {
+                                    expected.push((j as u32, wrap));
+                                }
+                            }
+                        }
+                        let mut found: Vec<_> =
+                            band.links(i, dir).iter().map(|link| (link.node, link.wrap)).collect();
+                        expected.sort_unstable();
+                        found.sort_unstable();
+                        assert_eq!(found, expected, "node {i} {a:?} {dir:?}");
+                    }
+                }
             }
         }
     }

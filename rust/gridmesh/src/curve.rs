@@ -104,9 +104,25 @@ impl ClosedCurve {
             first,
             area,
         };
-        curve.check_area(what)?;
+        curve.check_width(what)?;
         curve.check_simple(what)?;
+        curve.check_area(what)?;
         Ok(curve)
+    }
+
+    /// Points on one line overlap without end; they are told apart from crossings.
+    fn check_width(&self, what: &str) -> Result<()> {
+        let origin = self.points[0];
+        let far = self
+            .points
+            .iter()
+            .map(|&p| p - origin)
+            .fold(DVec2::ZERO, |far, d| if d.length_squared() > far.length_squared() { d } else { far });
+        let width = self.points.iter().map(|&p| far.perp_dot(p - origin).abs()).fold(0.0, f64::max);
+        if width <= 1e-12 * far.length_squared() {
+            return Err(Error::ZeroArea { what: what.to_owned() });
+        }
+        Ok(())
     }
 
     fn check_area(&self, what: &str) -> Result<()> {
@@ -342,7 +358,7 @@ mod tests {
         assert_eq!(kind(&[[0.0, 0.0], [1.0, 0.0], [f64::NAN, 1.0]]), Some("not_finite"));
         assert_eq!(kind(&[[-1e308, 0.0], [1e308, 0.0], [0.0, 1e308]]), Some("not_finite"));
         assert_eq!(kind(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]), Some("zero_area"));
-        assert_eq!(kind(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), Some("zero_area"));
+        assert_eq!(kind(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), Some("self_intersecting"));
         assert_eq!(kind(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 2.0]]), Some("self_intersecting"));
         let spike = [[0.0, 0.0], [2.0, 0.0], [2.0, 3.0], [2.0, 2.0], [0.0, 2.0]];
         assert_eq!(kind(&spike), Some("self_intersecting"));

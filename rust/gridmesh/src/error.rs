@@ -39,6 +39,13 @@ pub enum Error {
         /// Where they meet, in the units of the drawing.
         at: [f64; 2],
     },
+    /// The parts that a self-crossing outline encloses meet in single points only.
+    Disconnected {
+        /// What was given, such as `outline`.
+        what: String,
+        /// Number of parts.
+        parts: usize,
+    },
     /// A hole does not lie inside the outline, or meets the outline or another hole.
     HoleMisplaced {
         /// Index of the hole.
@@ -95,6 +102,7 @@ impl Error {
             Error::TooFewPoints { .. } => "too_few_points",
             Error::ZeroArea { .. } => "zero_area",
             Error::SelfIntersecting { .. } => "self_intersecting",
+            Error::Disconnected { .. } => "disconnected",
             Error::HoleMisplaced { .. } => "hole_misplaced",
             Error::InvalidOption { .. } => "invalid_option",
             Error::TooCoarse { .. } => "too_coarse",
@@ -125,6 +133,11 @@ impl fmt::Display for Error {
                 f,
                 "the {what} meets itself: segments {first} and {second} cross or touch at ({x:.6}, {y:.6}); \
                  draw an outline that does not cross itself"
+            ),
+            Error::Disconnected { what, parts } => write!(
+                f,
+                "the {what} encloses {parts} parts that meet only where it crosses itself; draw each of them \
+                 as an outline of its own"
             ),
             Error::HoleMisplaced { hole, reason } => {
                 write!(

@@ -56,7 +56,7 @@ pub struct SketchOptions {
     pub boundary: BoundaryMethod,
     /// Greatest distance of the lattice path from the curve, in edges: 0.5 to 4.
     pub max_distance: f64,
-    /// Weight of the squared distance against a turn: at least 0.
+    /// Weight of the squared distance against a turn: 0 to 100.
     pub closeness: f64,
     /// Angle of the lattice in radians; `None` lets the drawing's tangents decide.
     pub angle: Option<f64>,
@@ -78,7 +78,7 @@ impl Default for SketchOptions {
         Self {
             edge_length: None,
             triangles: None,
-            boundary: BoundaryMethod::Grown,
+            boundary: BoundaryMethod::Optimal,
             max_distance: 1.5,
             closeness: 0.3,
             angle: None,
@@ -123,8 +123,8 @@ impl SketchOptions {
         if !(0.5..=4.0).contains(&self.max_distance) {
             return refuse("max_distance", self.max_distance, "0.5 to 4 edge lengths");
         }
-        if !(0.0..=1e6).contains(&self.closeness) {
-            return refuse("closeness", self.closeness, "0 to 1e6");
+        if !(0.0..=100.0).contains(&self.closeness) {
+            return refuse("closeness", self.closeness, "0 to 100");
         }
         if let Some(angle) = self.angle
             && !angle.is_finite()
@@ -134,10 +134,12 @@ impl SketchOptions {
         if !(0.0..=std::f64::consts::PI).contains(&self.corner_angle) {
             return refuse("corner_angle", self.corner_angle, "0 to pi radians");
         }
-        if let Some(Mirror::Axis { point, direction }) = self.mirror
-            && !(point.is_finite() && direction.is_finite() && direction.length() > 0.0)
-        {
-            return refuse("mirror", direction.length(), "a finite point and a direction other than zero");
+        if self.mirror.is_some() {
+            return Err(Error::InvalidOption {
+                name: "mirror",
+                value: "given".to_owned(),
+                allowed: "none: mirror-symmetric meshes are not made yet",
+            });
         }
         Ok(())
     }
@@ -167,6 +169,9 @@ pub struct SketchReport {
     /// Greatest distance from the drawn curve to the mesh boundary, in edges; at most 2, or the
     /// drawing is refused.
     pub max_deviation: f64,
+    /// Boundary edges that bridge an inlet of the drawing with mesh vertices in it: the inlet is too
+    /// narrow for the lattice.
+    pub bridged_inlets: usize,
     /// Smallest angle of the flat patch, in radians.
     pub min_angle: f64,
     /// Drawn corners sharper than `corner_angle`.

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use crate::axial::Axial;
 use crate::band::Band;
 use crate::curve::ClosedCurve;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::growth::{clear_chords, grow_inside, straighten};
 use crate::lattice::Lattice;
 use crate::mapping::{complete, project};
@@ -14,6 +14,7 @@ use crate::options::SketchOptions;
 use crate::progress::Progress;
 use crate::raster::Raster;
 use crate::target::Target;
+use crate::trace::{TraceFailure, TraceOptions, trace};
 
 /// Narrow parts are widened to this many edges before growing; wider than two rows of triangles.
 const NECK_WIDTH: f64 = 2.4;
@@ -37,7 +38,7 @@ pub(crate) struct Outline {
 /// Why a lattice placement gives no outline, and where (units of the drawing).
 #[derive(Clone, Debug)]
 pub(crate) struct Obstacle {
-    pub(crate) reason: &'static str,
+    pub(crate) reason: String,
     pub(crate) at: DVec2,
 }
 
@@ -98,7 +99,8 @@ pub(crate) fn grown(
     let band = Band::new(&faired, reach);
     let raster = Raster::new(&widened, reach.ceil() as i32 + 2);
     progress.report(0.3)?;
-    let obstacle = |reason, at: DVec2| Ok(Err(Obstacle { reason, at: lattice.from_units(at) }));
+    let obstacle =
+        |reason: &str, at: DVec2| Ok(Err(Obstacle { reason: reason.to_owned(), at: lattice.from_units(at) }));
     let Some(mut boundary) = grow_inside(&raster, progress.part(0.3, 0.6))? else {
         return obstacle("no lattice hexagon fits inside the drawing", faired.points[0]);
     };
@@ -123,5 +125,42 @@ pub(crate) fn grown(
         arcs: vec![arcs],
         max_distance_used: options.max_distance,
         ..Outline::default()
+    }))
+}
+
+/// The boundary of least cost for this lattice: a shortest path for each contour.
+pub(crate) fn traced(
+    contours: &[ClosedCurve],
+    lattice: &Lattice,
+    options: &SketchOptions,
+    progress: Progress<'_>,
+) -> Result<Result<Outline, Obstacle>> {
+    let targets: Vec<Target> = contours.iter().map(|contour| Target::new(contour, lattice)).collect();
+    let wanted = TraceOptions {
+        max_distance: options.max_distance,
+        closeness: options.closeness,
+        proof_nodes: options.proof_nodes,
+    };
+    let traced = match trace(&targets, &wanted, progress) {
+        Ok(traced) => traced,
+        Err(TraceFailure::Cancelled) => return Err(Error::Cancelled),
+        Err(failure) => {
+            let at = failure.at().map_or(targets[0].points[0], Lattice::units);
+            return Ok(Err(Obstacle { reason: failure.to_string(), at: lattice.from_units(at) }));
+        }
+    };
+    let arcs = traced
+        .paths
+        .iter()
+        .zip(&targets)
+        .map(|(path, target)| path.parameters.iter().map(|parameter| parameter * target.step).collect());
+    Ok(Ok(Outline {
+        arcs: arcs.collect(),
+        turns_bound: Some(traced.turns_bound),
+        cost: traced.cost,
+        cost_bound: Some(traced.cost_bound),
+        optimal: traced.optimal,
+        max_distance_used: traced.max_distance_used,
+        paths: traced.paths.into_iter().map(|path| path.points).collect(),
     }))
 }

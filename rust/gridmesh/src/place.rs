@@ -4,18 +4,28 @@ use glam::DVec2;
 
 use crate::assemble::assemble;
 use crate::curve::ClosedCurve;
+use crate::deviation::{Stray, deviation};
 use crate::error::Result;
 use crate::lattice::Lattice;
 use crate::mapping::{Corner, corners, snap};
 use crate::options::SketchOptions;
 use crate::outline::{Obstacle, Outline};
 use crate::patch::{Loop, Patch};
+use crate::pockets::pockets;
 use crate::progress::Progress;
 use crate::relax::{Contour, RelaxOptions, Rim, first_inverted, relax, settle_corners};
-use crate::segments::{SegmentGrid, nearest_on_segment};
 
 /// Half the length over which a corner's turning angle is measured, in edges.
 const CORNER_WINDOW: f64 = 0.5;
+
+/// The drawing may lie this far outside the mesh, in edges.
+const STRAY: f64 = 2.0;
+
+/// A vertex may lie this far outside the drawing, in an inlet that the boundary bridges.
+const INLET: f64 = 0.05;
+
+/// Rounds of relaxing, each holding vertices where the drawing strayed in the one before.
+const ROUNDS: usize = 4;
 
 /// A patch and what placing it cost.
 #[derive(Clone, Debug)]
@@ -23,27 +33,28 @@ pub(crate) struct Placed {
     pub(crate) patch: Patch,
     pub(crate) corners: usize,
     pub(crate) released_corners: usize,
+    /// Greatest distance of the drawing from the boundary, in edges.
+    pub(crate) max_deviation: f64,
+    /// Boundary edges that bridge an inlet with a mesh vertex in it.
+    pub(crate) bridged_inlets: usize,
 }
 
 /// Puts the boundary on the contours, snaps corners, relaxes the interior and proves that no
-/// triangle is inverted, also after rounding to `f32` at the lattice origin.
+/// triangle is inverted, also after rounding to `f32` at the lattice origin, and that the drawing
+/// lies within two edges of the boundary.
+///
+/// Where it does not, as at a tip that the lattice path cuts off, a boundary vertex is held at the
+/// farthest point and the patch relaxed again.
 pub(crate) fn place(
     contours: &[ClosedCurve],
     lattice: &Lattice,
-    mut outline: Outline,
+    outline: &Outline,
     options: &SketchOptions,
     progress: Progress<'_>,
 ) -> Result<Result<Placed, Obstacle>> {
     let region = assemble(&outline.paths);
-    let mut positions: Vec<DVec2> = region.points.iter().map(|&p| Lattice::units(p)).collect();
+    let lattice_positions: Vec<DVec2> = region.points.iter().map(|&p| Lattice::units(p)).collect();
     let h = lattice.edge_length;
-    let mut n_corners = 0;
-    let mut angles: Vec<Vec<f64>> = Vec::new();
-    for (contour, arcs) in contours.iter().zip(&mut outline.arcs) {
-        let found = corners_of(contour, options.corner_angle, h);
-        n_corners += found.len();
-        angles.push(snap(arcs, &found, contour.length() / h, 1.0));
-    }
     let drawn: Vec<(Vec<DVec2>, Vec<f64>)> = contours
         .iter()
         .map(|contour| {
@@ -52,41 +63,129 @@ pub(crate) fn place(
         })
         .collect();
     let lines: Vec<Contour<'_>> = drawn.iter().map(|(points, arc)| Contour { points, arc }).collect();
-    let mut start = 0;
-    let mut rims: Vec<Rim> = Vec::new();
-    for (arcs, angle) in outline.arcs.into_iter().zip(&angles) {
-        let pinned = angle.iter().map(|&a| a != 0.0).collect();
-        let n = arcs.len();
-        rims.push(Rim { start, s: arcs, pinned });
-        start += n;
-    }
+    let (mut rims, mut angles, n_corners) = rims(contours, outline, options, h);
     if options.relax {
         settle_corners(&region.triangles, &lines, &mut rims, &mut angles);
-        relax(&region.triangles, &mut positions, &lines, &mut rims, &RelaxOptions::default(), progress)?;
     }
-    let mut vertices: Vec<DVec2> = positions.iter().map(|&p| lattice.from_units(p)).collect();
+    let lengths: Vec<f64> = contours.iter().map(|contour| contour.length() / h).collect();
+    // A valid patch that bridges an inlet serves if following the inlet leads to none.
+    let mut valid: Option<Placed> = None;
+    let mut obstacle =
+        Obstacle { reason: "a part of the drawing is lost".to_owned(), at: contours[0].points()[0] };
+    for round in 0..ROUNDS {
+        let part = |i: usize| i as f64 / ROUNDS as f64;
+        let mut positions = lattice_positions.clone();
+        if options.relax {
+            let progress = progress.part(part(round), part(round + 1));
+            relax(&region.triangles, &mut positions, &lines, &mut rims, &RelaxOptions::default(), progress)?;
+        }
+        let mut vertices: Vec<DVec2> = positions.iter().map(|&p| lattice.from_units(p)).collect();
+        let (loops, arcs) = loops(contours, &rims, &angles, h, &mut vertices);
+        let inverted = first_inverted(&vertices, &region.triangles, lattice.origin);
+        if let Some(triangle) = inverted.filter(|_| options.relax) {
+            let at = vertices[region.triangles[triangle][0] as usize];
+            obstacle = Obstacle { reason: "a triangle stays inverted".to_owned(), at };
+            break;
+        }
+        let (farthest, strays) = deviation(contours, &vertices, &arcs, STRAY * h);
+        if let Some(&Stray { point, .. }) = strays.first() {
+            obstacle.at = point;
+            if !hold(&strays, &mut rims, &lengths, h) {
+                break;
+            }
+            continue;
+        }
+        let inlets = pockets(contours, &vertices, &region.triangles, &arcs, INLET * h);
+        let kept = rims.iter().zip(&angles).flat_map(|(rim, angle)| rim.pinned.iter().zip(angle));
+        let kept = kept.filter(|(pinned, angle)| **pinned && **angle != 0.0).count();
+        let placed = Placed {
+            patch: Patch { vertices, triangles: region.triangles.clone(), loops, lattice: *lattice },
+            corners: n_corners,
+            released_corners: n_corners - kept,
+            max_deviation: farthest / h,
+            bridged_inlets: inlets.len(),
+        };
+        if valid.as_ref().is_none_or(|best| placed.bridged_inlets < best.bridged_inlets) {
+            valid = Some(placed);
+        }
+        if inlets.is_empty() || !options.relax || !hold(&inlets, &mut rims, &lengths, h) {
+            break;
+        }
+    }
+    Ok(valid.ok_or(obstacle))
+}
+
+/// Boundary vertices with their arc lengths in edges, some of them pinned to corners; the corners'
+/// angles; the number of corners.
+fn rims(
+    contours: &[ClosedCurve],
+    outline: &Outline,
+    options: &SketchOptions,
+    h: f64,
+) -> (Vec<Rim>, Vec<Vec<f64>>, usize) {
+    let (mut rims, mut angles, mut n_corners, mut start) = (Vec::new(), Vec::new(), 0, 0);
+    for (contour, arcs) in contours.iter().zip(&outline.arcs) {
+        let found = corners_of(contour, options.corner_angle, h);
+        n_corners += found.len();
+        let mut s = arcs.clone();
+        let angle = snap(&mut s, &found, contour.length() / h, 1.0);
+        let n = s.len();
+        rims.push(Rim { start, s, pinned: angle.iter().map(|&a| a != 0.0).collect(), held: vec![false; n] });
+        angles.push(angle);
+        start += n;
+    }
+    (rims, angles, n_corners)
+}
+
+/// Puts the boundary vertices exactly on their contours; the patch's loops, and the arc lengths in
+/// the units of the drawing, unwrapped.
+fn loops(
+    contours: &[ClosedCurve],
+    rims: &[Rim],
+    angles: &[Vec<f64>],
+    h: f64,
+    vertices: &mut [DVec2],
+) -> (Vec<Loop>, Vec<Vec<f64>>) {
     let mut loops = Vec::new();
-    for ((contour, rim), angle) in contours.iter().zip(&rims).zip(&angles) {
+    let mut arcs = Vec::new();
+    for ((contour, rim), angle) in contours.iter().zip(rims).zip(angles) {
         let mut placed = Loop { start: rim.start as u32, length: contour.length(), ..Loop::default() };
         for (i, &s) in rim.s.iter().enumerate() {
-            let on_corner = rim.pinned[i];
-            let s = if on_corner { nearest_drawn(contour, s * h) } else { contour.wrap(s * h) };
+            let s = if rim.pinned[i] { nearest_drawn(contour, s * h) } else { contour.wrap(s * h) };
             vertices[rim.start + i] = contour.point_at(s);
             placed.arc.push(contour.input_arc(s));
             placed.source.push(contour.source(s));
-            placed.corner.push(if on_corner { angle[i] } else { 0.0 });
+            placed.corner.push(if rim.pinned[i] { angle[i] } else { 0.0 });
         }
         loops.push(placed);
+        arcs.push(rim.s.iter().map(|s| s * h).collect());
     }
-    if options.relax
-        && let Some(triangle) = first_inverted(&vertices, &region.triangles, lattice.origin)
-    {
-        let at = vertices[region.triangles[triangle][0] as usize];
-        return Ok(Err(Obstacle { reason: "a triangle stays inverted", at }));
+    (loops, arcs)
+}
+
+/// Pins the nearer end of each strayed edge to the farthest point. False if no end is free.
+fn hold(strays: &[Stray], rims: &mut [Rim], lengths: &[f64], h: f64) -> bool {
+    let mut changed = false;
+    for stray in strays {
+        let rim = &mut rims[stray.contour];
+        let n = rim.s.len();
+        let to = stray.arc / h;
+        let after = (stray.edge + 1) % n;
+        // The last edge ends at the first vertex, a lap on.
+        let lap = if after == 0 { lengths[stray.contour] } else { 0.0 };
+        let mut ends = [(stray.edge, 0.0), (after, lap)];
+        ends.sort_by(|a, b| {
+            let key = |&(i, lap): &(usize, f64)| (rim.pinned[i], (rim.s[i] + lap - to).abs());
+            let (a, b) = (key(a), key(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+        let Some(&(end, lap)) = ends.iter().find(|(i, _)| !rim.held[*i]) else { continue };
+        rim.s[end] = to - lap;
+        rim.pinned[end] = true;
+        rim.held[end] = true;
+        changed = true;
     }
-    let pinned = rims.iter().flat_map(|rim| &rim.pinned).filter(|&&pinned| pinned).count();
-    let patch = Patch { vertices, triangles: region.triangles, loops, lattice: *lattice };
-    Ok(Ok(Placed { patch, corners: n_corners, released_corners: n_corners - pinned }))
+    changed
 }
 
 /// The corners of a contour, with arc lengths in edges.
@@ -113,54 +212,4 @@ pub(crate) fn min_angle(patch: &Patch) -> f64 {
         }
     }
     least
-}
-
-/// The greatest distance from the drawn points to the mesh boundary, and where.
-///
-/// Each point is measured against the boundary edge beside it, which bounds the distance of all
-/// the curve between its points; only where that exceeds `limit`, against all edges nearby.
-pub(crate) fn deviation(contours: &[ClosedCurve], patch: &Patch, limit: f64) -> (f64, DVec2) {
-    let mut worst = (0.0f64, contours[0].points()[0]);
-    let mut far: Vec<DVec2> = Vec::new();
-    for (contour, rim) in contours.iter().zip(&patch.loops) {
-        let n = rim.len();
-        let vertices = &patch.vertices[rim.start as usize..rim.start as usize + n];
-        let first = contour.input_arc(0.0);
-        let start = (0..n).min_by(|&i, &j| rim.arc[i].total_cmp(&rim.arc[j])).unwrap_or(0);
-        let sorted: Vec<f64> = (0..n).map(|i| rim.arc[(start + i) % n]).collect();
-        for (&point, &s) in contour.points().iter().zip(contour.arc()) {
-            let before = sorted.partition_point(|&a| a <= (s + first) % contour.length());
-            let i = (start + before + n - 1) % n;
-            let squared = nearest_on_segment(point, vertices[i], vertices[(i + 1) % n]).1;
-            if squared > limit * limit {
-                far.push(point);
-            } else if squared > worst.0 * worst.0 {
-                worst = (squared.sqrt(), point);
-            }
-        }
-    }
-    if far.is_empty() {
-        return worst;
-    }
-    let edges: Vec<[DVec2; 2]> = patch
-        .loops
-        .iter()
-        .flat_map(|rim| (0..rim.len()).map(move |i| [i, (i + 1) % rim.len()].map(|k| rim.start as usize + k)))
-        .map(|edge| edge.map(|v| patch.vertices[v]))
-        .collect();
-    let grid = SegmentGrid::new(&edges);
-    for point in far {
-        let mut squared = f64::INFINITY;
-        grid.near(point - limit, point + limit, |i| {
-            squared = squared.min(nearest_on_segment(point, edges[i][0], edges[i][1]).1);
-        });
-        if squared > limit * limit {
-            squared =
-                edges.iter().map(|e| nearest_on_segment(point, e[0], e[1]).1).fold(f64::INFINITY, f64::min);
-        }
-        if squared > worst.0 * worst.0 {
-            worst = (squared.sqrt(), point);
-        }
-    }
-    worst
 }

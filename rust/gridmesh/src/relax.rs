@@ -7,8 +7,8 @@
 //!
 //! Stages: even spacing along the curve; harmonic extension of the boundary's displacement;
 //! a regularised energy around inverted triangles until there is none; the barrier energy; its
-//! fourth power, in which the worst triangle counts; corners that starve a triangle let go; exact
-//! check. Where triangles stay inverted, boundary vertices are spaced evenly around them, more
+//! fourth power, in which the worse triangles count; its sixteenth power around the worst; corners
+//! that starve a triangle let go; exact check. Where triangles stay inverted, boundary vertices are spaced evenly around them, more
 //! rings may move, and corners next to them are released. Everything is in lattice units and
 //! visits vertices in the order of their numbers: the same input gives the same bits.
 //!
@@ -111,7 +111,8 @@ pub fn relax(
     let mut report = RelaxReport { rings: options.rings, ..RelaxReport::default() };
     let valid = ladder(triangles, positions, &mut motion, &mut report, progress.part(0.0, 0.4))?;
     if valid {
-        report.sweeps += motion.improve(options.tolerance, progress.part(0.4, 0.9))?;
+        report.sweeps += motion.improve(options.tolerance, progress.part(0.4, 0.8))?;
+        report.sweeps += motion.sharpen(options.tolerance, progress.part(0.8, 0.9))?;
         report.released.extend(motion.release_starved(options.tolerance, progress.part(0.9, 1.0))?);
         report.released.sort_unstable();
     }
@@ -185,7 +186,7 @@ fn check_rims(n_vertices: usize, contours: &[Contour<'_>], rims: &[Rim]) -> Resu
     let mut fit = contours.len() == rims.len();
     for (rim, contour) in rims.iter().zip(contours) {
         let n = rim.s.len();
-        fit &= rim.start == start && rim.pinned.len() == n && n >= 3;
+        fit &= rim.start == start && rim.pinned.len() == n && rim.held.len() == n && n >= 3;
         fit &= contour.points.len() >= 3 && contour.arc.len() == contour.points.len() + 1;
         fit &= rim.s.windows(2).all(|s| s[0] < s[1]);
         fit &= n > 0 && rim.s[n - 1] < rim.s[0] + contour.length();

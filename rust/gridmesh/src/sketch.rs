@@ -3,19 +3,22 @@
 use std::time::Instant;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::contours::read_contours;
 use crate::curve::ClosedCurve;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
-use crate::options::{DEFAULT_TRIANGLES, MAX_TRIANGLES, SketchOptions, SketchReport};
-use crate::outline::{Obstacle, Outline, grown};
+use crate::options::{
+    BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SelfCrossing, SketchOptions, SketchReport,
+};
+use crate::orient::predicted_angles;
+use crate::outline::{Obstacle, Outline, grown, traced};
 use crate::patch::Patch;
-use crate::place::{Placed, deviation, min_angle, place};
+use crate::place::{Placed, min_angle, place};
 use crate::progress::Progress;
-
-/// A drawing strays from the mesh where it lies farther outside than this, in edges.
-const STRAY: f64 = 2.0;
+use crate::target::Target;
+use crate::union::{nearest_source, outer_outline};
 
 /// Lattice placements tried before the drawing is called too coarse for its edge length: shifts of
 /// the origin in edges.
@@ -54,7 +57,18 @@ pub fn mesh_sketch(
 ) -> Result<Sketch> {
     options.check()?;
     let started = Instant::now();
-    let contours = read_contours(outline, holes)?;
+    let union = match options.self_crossing {
+        SelfCrossing::Error => None,
+        SelfCrossing::Union => Some(outer_outline(outline, "outline")?),
+    };
+    if options.boundary == BoundaryMethod::Grown && !holes.is_empty() {
+        return Err(Error::InvalidOption {
+            name: "boundary",
+            value: "grown, with holes".to_owned(),
+            allowed: "optimal, if there are holes",
+        });
+    }
+    let contours = read_contours(union.as_ref().map_or(outline, |(points, _)| points), holes)?;
     let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
     let edge_length = match options.edge_length {
         Some(h) => h,
@@ -64,16 +78,32 @@ pub fn mesh_sketch(
     if expected.is_nan() || expected > MAX_TRIANGLES {
         return Err(Error::TooLarge { triangles: expected, limit: MAX_TRIANGLES });
     }
-    let mut job = Job { contours, options, area, seconds: Vec::new(), placements: 0 };
+    let centre = centroid(contours[0].points());
+    let mut job = Job { contours, options, area, centre, seconds: Vec::new(), placements: 0 };
     job.lap("curve", started);
     let asked = match options.edge_length {
         Some(h) => Asked::EdgeLength(h),
         None => Asked::Triangles(options.triangles.unwrap_or(DEFAULT_TRIANGLES)),
     };
-    match job.attempt(asked, progress.part(0.0, 0.9))? {
-        Ok(sketch) => Ok(sketch),
-        Err(obstacle) => Err(job.least_that_works(expected, obstacle, progress)?),
+    let attempt = if job.is_hopeless(expected.round() as usize) {
+        let at = job.contours[0].points()[0];
+        Err(Obstacle { reason: "the drawing is too thin for two rows of triangles".to_owned(), at })
+    } else {
+        job.attempt(asked, Effort::Full, progress)?
+    };
+    let mut sketch = match attempt {
+        Ok(sketch) => sketch,
+        Err(obstacle) => return Err(job.least_that_works(expected, obstacle, progress)?),
+    };
+    if let Some((_, slivers)) = union {
+        // The sources so far lead to the outer outline.
+        let Patch { vertices, loops, .. } = &mut sketch.patch;
+        for (source, &vertex) in loops[0].source.iter_mut().zip(&*vertices) {
+            *source = nearest_source(outline, vertex);
+        }
+        sketch.report.repaired += slivers;
     }
+    Ok(sketch)
 }
 
 #[derive(Clone, Copy)]
@@ -82,10 +112,20 @@ enum Asked {
     Triangles(usize),
 }
 
+/// How hard to try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Effort {
+    /// All placements.
+    Full,
+    /// One.
+    Quick,
+}
+
 struct Job<'a> {
     contours: Vec<ClosedCurve>,
     options: &'a SketchOptions,
     area: f64,
+    centre: DVec2,
     seconds: Vec<(&'static str, f64)>,
     placements: usize,
 }
@@ -99,48 +139,88 @@ impl Job<'_> {
         }
     }
 
-    /// Tries lattice placements until one gives a valid patch of the size asked for.
-    fn attempt(&mut self, asked: Asked, progress: Progress<'_>) -> Result<Result<Sketch, Obstacle>> {
+    /// Tries lattice placements until one gives a valid patch of the size asked for: the angles
+    /// first, cheapest boundary first, then shifts of the lattice.
+    fn attempt(
+        &mut self,
+        asked: Asked,
+        effort: Effort,
+        progress: Progress<'_>,
+    ) -> Result<Result<Sketch, Obstacle>> {
+        let started = Instant::now();
+        let angles = self.angles(asked, effort);
+        let found: Vec<Result<Result<(Lattice, Outline), Obstacle>>> = angles
+            .par_iter()
+            .map(|&angle| self.outline(asked, angle, DVec2::ZERO, progress.part(0.0, 0.3)))
+            .collect();
         let mut obstacle = None;
-        for (k, shift) in SHIFTS.iter().enumerate() {
-            let part = |i: usize| (k as f64 + 0.5 * i as f64) / SHIFTS.len() as f64;
-            self.placements += 1;
-            let found = self.outline(asked, DVec2::from_array(*shift), progress.part(part(0), part(1)))?;
-            let (lattice, outline) = match found {
-                Ok(found) => found,
-                Err(found) => {
-                    obstacle.get_or_insert(found);
-                    continue;
-                }
-            };
-            let started = Instant::now();
-            let placed = place(
-                &self.contours,
-                &lattice,
-                outline.clone(),
-                self.options,
-                progress.part(part(1), part(2)),
-            )?;
-            self.lap("placement", started);
-            match placed {
-                Ok(placed) => {
-                    let (sketch, lost) = self.report(&outline, placed);
-                    match lost {
-                        None => return Ok(Ok(sketch)),
-                        Some(at) => obstacle = Some(Obstacle { reason: "a part of the drawing is lost", at }),
+        let mut outlines = Vec::new();
+        for found in found {
+            match found? {
+                Ok(found) => outlines.push(found),
+                Err(found) => obstacle = obstacle.or(Some(found)),
+            }
+        }
+        outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        self.lap("boundary", started);
+        let shifts = if effort == Effort::Full { SHIFTS.len() } else { 1 };
+        let mut shifts = SHIFTS[..shifts].iter().enumerate().skip(1);
+        let mut outlines = outlines.into_iter();
+        loop {
+            let (lattice, outline) = match outlines.next() {
+                Some(next) => next,
+                None => {
+                    let Some((k, shift)) = shifts.next() else { break };
+                    let started = Instant::now();
+                    let part = progress.part(0.3 + 0.1 * k as f64, 0.4 + 0.1 * k as f64);
+                    let found = self.outline(asked, angles[0], DVec2::from_array(*shift), part)?;
+                    self.lap("boundary", started);
+                    match found {
+                        Ok(found) => found,
+                        Err(found) => {
+                            obstacle = obstacle.or(Some(found));
+                            continue;
+                        }
                     }
                 }
+            };
+            self.placements += 1;
+            let started = Instant::now();
+            let placed = place(&self.contours, &lattice, &outline, self.options, progress.part(0.3, 0.9))?;
+            self.lap("placement", started);
+            match placed {
+                Ok(placed) => return Ok(Ok(self.report(&outline, placed))),
                 Err(found) => obstacle = Some(found),
             }
         }
-        Ok(Err(obstacle.unwrap_or(Obstacle { reason: "no lattice was tried", at: DVec2::ZERO })))
+        let none = || Obstacle { reason: "no lattice was tried".to_owned(), at: DVec2::ZERO };
+        Ok(Err(obstacle.unwrap_or_else(none)))
+    }
+
+    /// The lattice angles to try: the one asked for, or those with the fewest turns predicted.
+    fn angles(&self, asked: Asked, effort: Effort) -> Vec<f64> {
+        const CANDIDATES: usize = 4;
+        if let Some(angle) = self.options.angle {
+            return vec![angle.rem_euclid(std::f64::consts::FRAC_PI_3)];
+        }
+        let count = match (self.options.boundary, effort) {
+            (BoundaryMethod::Optimal, Effort::Full) => CANDIDATES,
+            _ => 1,
+        };
+        let edge_length = match asked {
+            Asked::EdgeLength(h) => h,
+            Asked::Triangles(n) => self.first_guess(n),
+        };
+        let angles = predicted_angles(&self.contours, edge_length, count);
+        if angles.is_empty() { vec![0.0] } else { angles }
     }
 
     /// The outline for one placement; with a number of triangles asked for, the edge length is
     /// corrected until the number is reached within 5 % (10 % are accepted in the end).
     fn outline(
-        &mut self,
+        &self,
         asked: Asked,
+        angle: f64,
         shift: DVec2,
         progress: Progress<'_>,
     ) -> Result<Result<(Lattice, Outline), Obstacle>> {
@@ -149,12 +229,15 @@ impl Job<'_> {
             Asked::EdgeLength(h) => h,
             Asked::Triangles(n) => self.first_guess(n),
         };
-        let started = Instant::now();
         let mut best: Option<(f64, Lattice, Outline)> = None;
-        let mut obstacle = Obstacle { reason: "the number of triangles is not reached", at: DVec2::ZERO };
+        let mut obstacle = Obstacle {
+            reason: "the number of triangles is not reached".to_owned(),
+            at: self.contours[0].points()[0],
+        };
         for _ in 0..CORRECTIONS {
-            let lattice = self.lattice(edge_length, shift);
-            let outline = match grown(&self.contours[0], &lattice, self.options, progress)? {
+            progress.report(0.0)?;
+            let lattice = self.lattice(edge_length, angle, shift);
+            let outline = match self.path(&lattice, progress)? {
                 Ok(outline) => outline,
                 Err(found) => {
                     obstacle = found;
@@ -175,7 +258,6 @@ impl Job<'_> {
             }
             edge_length *= ratio.sqrt().clamp(0.7, 1.4);
         }
-        self.lap("boundary", started);
         let allowed = match asked {
             Asked::EdgeLength(_) => 0.0,
             // A handful of triangles comes in few sizes: 6, 10, 13, 14, 16...
@@ -187,58 +269,91 @@ impl Job<'_> {
         })
     }
 
+    fn path(&self, lattice: &Lattice, progress: Progress<'_>) -> Result<Result<Outline, Obstacle>> {
+        match self.options.boundary {
+            BoundaryMethod::Grown => grown(&self.contours[0], lattice, self.options, progress),
+            BoundaryMethod::Optimal => traced(&self.contours, lattice, self.options, progress),
+        }
+    }
+
     /// The edge length at which a grown patch has about `n` triangles: growth stops inside the
     /// curve, on average 0.28 triangles for each edge length of curve short of its area.
     fn first_guess(&self, n: usize) -> f64 {
         const SHORT: f64 = 0.28;
         let area = self.area / (0.5 * crate::lattice::ROW_HEIGHT);
-        let short = SHORT * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
+        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.0 } else { SHORT };
+        let short = short * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
         2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
     }
 
-    fn lattice(&self, edge_length: f64, shift: DVec2) -> Lattice {
-        let angle = self.options.angle.unwrap_or(0.0).rem_euclid(std::f64::consts::FRAC_PI_3);
-        let centre = centroid(self.contours[0].points());
-        let origin = centre + edge_length * DVec2::from_angle(angle).rotate(shift);
+    fn lattice(&self, edge_length: f64, angle: f64, shift: DVec2) -> Lattice {
+        let origin = self.centre + edge_length * DVec2::from_angle(angle).rotate(shift);
         Lattice { origin, angle, edge_length }
     }
 
     /// The error for a drawing that has no patch of the size asked for: the least number of
-    /// triangles that works, searched in steps of a tenth.
+    /// triangles that works, searched in steps of a tenth, one placement each.
     fn least_that_works(&mut self, asked: f64, obstacle: Obstacle, progress: Progress<'_>) -> Result<Error> {
         const LARGEST: f64 = 1e6;
         let at = |step: i32| (asked.max(6.0) * 1.1f64.powi(step)).ceil() as usize;
         let (mut fails, mut works, mut stride) = (0, None, 1);
         while works.is_none() && (at(fails + stride) as f64) < LARGEST {
-            progress.part(0.9, 1.0).report(0.0)?;
+            progress.report(0.9)?;
             let step = fails + stride;
-            match self.attempt(Asked::Triangles(at(step)), Progress::NONE)? {
-                Ok(_) => works = Some(step),
-                Err(_) => fails = step,
+            if !self.is_hopeless(at(step))
+                && self.attempt(Asked::Triangles(at(step)), Effort::Quick, progress)?.is_ok()
+            {
+                works = Some(step);
+            } else {
+                fails = step;
             }
             // Small steps first, for drawings that nearly fit; larger ones after them.
-            stride = 1 + fails / 4;
+            stride = 1 + fails / 3;
         }
         let Some(mut works) = works else {
-            return Ok(Error::NoPatch { reason: obstacle.reason.to_owned(), at: obstacle.at.to_array() });
+            return Ok(Error::NoPatch { reason: obstacle.reason, at: obstacle.at.to_array() });
         };
         while works - fails > 1 {
-            progress.part(0.9, 1.0).report(0.5)?;
+            progress.report(0.9)?;
             let step = (works + fails) / 2;
-            match self.attempt(Asked::Triangles(at(step)), Progress::NONE)? {
+            match self.attempt(Asked::Triangles(at(step)), Effort::Quick, progress)? {
                 Ok(_) => works = step,
                 Err(_) => fails = step,
             }
         }
-        Ok(Error::TooCoarse { triangles: asked.round() as usize, least: at(works) })
+        Ok(Error::TooCoarse { triangles: asked.ceil() as usize, least: at(works) })
     }
 
-    /// The patch with its numbers, and a place of the drawing that it loses, if it loses any.
-    fn report(&mut self, outline: &Outline, placed: Placed) -> (Sketch, Option<DVec2>) {
+    /// True if `n` triangles cannot follow the drawing: a chord-free lattice patch with `b` boundary
+    /// vertices has at least `2 b - 6`, and a path beside the faired contours is not much shorter
+    /// than they are.
+    fn is_hopeless(&self, n: usize) -> bool {
+        const SHORTER: f64 = 0.7;
+        let lattice = self.lattice(self.first_guess(n), 0.0, DVec2::ZERO);
+        // The number of samples alone shows the worst cases; no need to take them.
+        let edges: f64 = self.contours.iter().map(|c| c.length() / lattice.edge_length).sum();
+        let needed = |edges: f64| 2.0 * SHORTER * edges - 6.0 * self.contours.len() as f64;
+        if needed(edges) <= n as f64 {
+            return false;
+        }
+        if edges > 20.0 * n as f64 {
+            return true;
+        }
+        let faired: f64 = self
+            .contours
+            .iter()
+            .map(|contour| {
+                let points = Target::new(contour, &lattice).points;
+                (0..points.len()).map(|i| points[i].distance(points[(i + 1) % points.len()])).sum::<f64>()
+            })
+            .sum();
+        needed(faired) > n as f64
+    }
+
+    /// The patch with its numbers.
+    fn report(&mut self, outline: &Outline, placed: Placed) -> Sketch {
         let started = Instant::now();
         let patch = placed.patch;
-        let h = patch.lattice.edge_length;
-        let (max_deviation, at) = deviation(&self.contours, &patch, STRAY * h);
         let mut report = SketchReport {
             triangles: patch.triangles.len(),
             irregular: outline.irregular(),
@@ -249,7 +364,8 @@ impl Job<'_> {
             cost_bound: outline.cost_bound,
             optimal: outline.optimal,
             max_distance_used: outline.max_distance_used,
-            max_deviation: max_deviation / h,
+            max_deviation: placed.max_deviation,
+            bridged_inlets: placed.bridged_inlets,
             min_angle: min_angle(&patch),
             corners: placed.corners,
             released_corners: placed.released_corners,
@@ -259,8 +375,7 @@ impl Job<'_> {
         };
         self.lap("report", started);
         report.seconds = self.seconds.clone();
-        let lost = (max_deviation > STRAY * h).then_some(at);
-        (Sketch { patch, report }, lost)
+        Sketch { patch, report }
     }
 }
 

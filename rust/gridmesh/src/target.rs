@@ -149,8 +149,9 @@ mod tests {
 
     #[test]
     fn a_large_circle_stays_where_it_is() -> Result<()> {
-        let circle: Vec<DVec2> =
-            (0..400).map(|i| 30.0 * DVec2::from_angle(f64::from(i) / 400.0 * 6.283185307)).collect();
+        let circle: Vec<DVec2> = (0..400)
+            .map(|i| 30.0 * DVec2::from_angle(f64::from(i) / 400.0 * std::f64::consts::TAU))
+            .collect();
         for p in target(&circle)?.points {
             assert!((p.length() - 30.0).abs() < 0.02);
         }

@@ -112,7 +112,9 @@ fn fans(triangles: &[[u32; 3]], n_rim: usize, n_free: usize) -> Result<(Vec<u32>
         around.push(fan[0].0);
         around.push(fan[0].1);
         for i in 1..fan.len() {
-            let Some(next) = (i..fan.len()).find(|&j| fan[j].0 == fan[i - 1].1) else { return Err(v) };
+            let Some(next) = (i..fan.len()).find(|&j| fan[j].0 == fan[i - 1].1) else {
+                return Err(v);
+            };
             fan.swap(i, next);
             around.push(fan[i].1);
         }
@@ -139,7 +141,9 @@ mod tests {
 
     #[test]
     fn fans_are_counter_clockwise_and_open_only_on_the_boundary() {
-        let band = Band::new(&two_wheels(), &[DVec2::ZERO; 10], 8, 5).unwrap();
+        let Ok(band) = Band::new(&two_wheels(), &[DVec2::ZERO; 10], 8, 5) else {
+            unreachable!("two wheels are a patch");
+        };
         assert_eq!((band.n_rim, band.n_free), (8, 10));
         assert_eq!(band.around(1), [2, 9, 8, 0]);
         let around: Vec<u32> = band.around(8).to_vec();

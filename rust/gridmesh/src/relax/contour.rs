@@ -77,4 +77,7 @@ pub struct Rim {
     pub s: Vec<f64>,
     /// Vertices that must not slide (they sit on drawn corners); cleared when one is released.
     pub pinned: Vec<bool>,
+    /// Pinned vertices that stay even if a triangle starves there; they go only if a triangle
+    /// would stay inverted.
+    pub held: Vec<bool>,
 }

@@ -105,7 +105,7 @@ mod tests {
             pinned[shift] = true;
             let mut turning = [vec![0.0; 8]];
             turning[0][shift] = 2.0;
-            let mut rims = [Rim { start: 0, s, pinned }];
+            let mut rims = [Rim { start: 0, held: vec![false; s.len()], s, pinned }];
             // Three triangles at each vertex but the one ahead of the corner, which has two.
             let ahead = (shift + 1) % 8;
             let triangles: Vec<[u32; 3]> =

@@ -56,42 +56,50 @@ impl Energy for Barrier {
     }
 }
 
-/// The fourth power of a barrier with little weight on the area, one for a unit equilateral
-/// triangle: what counts is the worst triangle.
+/// A high power, 2^`SQUARINGS`, of a barrier with little weight on the area, one for a unit
+/// equilateral triangle: what counts is the worst triangle.
 ///
-/// Above [`Worst::LINEAR`] (a least angle below some 18 degrees) it goes on linearly, so that the
-/// sharp tip of a drawing, which nothing can mend, does not blow up the triangle in it.
-pub(super) struct Worst;
+/// Above [`LINEAR`] (a least angle below some 18 degrees) it goes on linearly, so that the sharp
+/// tip of a drawing, which nothing can mend, does not blow up the triangle in it.
+pub(super) struct Power<const SQUARINGS: usize>;
 
-impl Worst {
-    const LINEAR: f64 = 2.0;
-    const AREA: f64 = 0.07;
-    const SCALE: f64 = 1.0 / (2.0 + 2.0 * Worst::AREA);
+const LINEAR: f64 = 2.0;
+const AREA: f64 = 0.07;
+const SCALE: f64 = 1.0 / (2.0 + 2.0 * AREA);
+
+impl<const SQUARINGS: usize> Power<SQUARINGS> {
+    const EXPONENT: f64 = (1u32 << SQUARINGS) as f64;
+
+    fn power(base: f64) -> f64 {
+        (0..SQUARINGS).fold(base, |power, _| power * power)
+    }
 }
 
-impl Energy for Worst {
+impl<const SQUARINGS: usize> Energy for Power<SQUARINGS> {
     const BARRIER: bool = true;
 
     fn value(&self, stretch: f64, det: f64) -> f64 {
         if det <= 0.0 {
             return f64::INFINITY;
         }
-        let e = ((stretch + Self::AREA) / det + Self::AREA * det) * Self::SCALE;
-        let low = e.min(Self::LINEAR);
-        low * low * low * (low + 4.0 * (e - low))
+        let e = ((stretch + AREA) / det + AREA * det) * SCALE;
+        let low = e.min(LINEAR);
+        let power = Self::power(low);
+        power + Self::EXPONENT * power / low * (e - low)
     }
 
     fn derivatives(&self, stretch: f64, det: f64) -> Derivatives {
-        let inverse = Self::SCALE / det;
-        let ratio = (stretch + Self::AREA) / det;
-        let e = (ratio + Self::AREA * det) * Self::SCALE;
-        let (eu, ed) = (inverse, Self::AREA * Self::SCALE - ratio * inverse);
-        let (eud, edd) = (-inverse / det, 2.0 * ratio * inverse / det);
-        let low = e.min(Self::LINEAR);
-        let first = 4.0 * low * low * low;
-        let second = if e > low { 0.0 } else { 12.0 * low * low };
+        let inverse = 1.0 / det;
+        let ratio = (stretch + AREA) * inverse;
+        let e = (ratio + AREA * det) * SCALE;
+        let (eu, ed) = (inverse * SCALE, (AREA - ratio * inverse) * SCALE);
+        let (eud, edd) = (-inverse * eu, 2.0 * ratio * inverse * eu);
+        let low = e.min(LINEAR);
+        let power = Self::power(low);
+        let first = Self::EXPONENT * power / low;
+        let second = if e > low { 0.0 } else { (Self::EXPONENT - 1.0) * first / low };
         Derivatives {
-            value: low * low * low * (low + 4.0 * (e - low)),
+            value: power + first * (e - low),
             u: first * eu,
             d: first * ed,
             uu: second * eu * eu,
@@ -251,7 +259,8 @@ mod tests {
     fn derivatives_are_those_of_the_value() {
         for x in [DVec2::ZERO, DVec2::new(0.2, -0.1), DVec2::new(-0.3, 0.25)] {
             derivatives_match_differences(&Barrier, x);
-            derivatives_match_differences(&Worst, x);
+            derivatives_match_differences(&Power::<2>, x);
+            derivatives_match_differences(&Power::<4>, x);
             derivatives_match_differences(&Regularised { eps: 0.3 }, x);
         }
         // Outside the ring: two inverted triangles.
@@ -266,6 +275,6 @@ mod tests {
         let l = local(&Barrier, DVec2::ZERO, &ring, &hexagon);
         assert!((l.value - 18.0).abs() < 1e-12);
         assert!(l.gradient.length() < 1e-12);
-        assert!(local(&Worst, DVec2::ZERO, &ring, &hexagon).gradient.length() < 1e-12);
+        assert!(local(&Power::<2>, DVec2::ZERO, &ring, &hexagon).gradient.length() < 1e-12);
     }
 }

@@ -11,6 +11,8 @@ pub(super) struct Slide<'a> {
     pub s: Vec<f64>,
     /// Vertices that must stay where they are.
     pub pinned: Vec<bool>,
+    /// Whether it stays pinned where a triangle starves.
+    pub held: Vec<bool>,
     /// Where the vertex was mapped to: sliding away from there costs a little.
     pub home: Vec<f64>,
     /// Contour segment of the last position, where a search begins.
@@ -32,6 +34,7 @@ impl<'a> Slide<'a> {
             contours,
             s: Vec::with_capacity(n),
             pinned: Vec::with_capacity(n),
+            held: Vec::with_capacity(n),
             home: Vec::new(),
             segment: Vec::with_capacity(n),
             contour: Vec::with_capacity(n),
@@ -43,6 +46,7 @@ impl<'a> Slide<'a> {
             let (start, n) = (slide.s.len() as u32, rim.s.len() as u32);
             slide.s.extend(&rim.s);
             slide.pinned.extend(&rim.pinned);
+            slide.held.extend(&rim.held);
             for i in 0..n {
                 slide.before.push(start + (i + n - 1) % n);
                 slide.after.push(start + (i + 1) % n);
@@ -177,7 +181,7 @@ mod tests {
     fn spreading_across_the_seam_keeps_the_order() {
         let contours = [Contour { points: &SQUARE, arc: &ARC }];
         let s = vec![0.1, 0.2, 0.3, 8.0, 15.7, 15.8, 15.9];
-        let rims = [Rim { start: 0, pinned: vec![false; s.len()], s }];
+        let rims = [Rim { start: 0, held: vec![false; s.len()], pinned: vec![false; s.len()], s }];
         for vertex in 0..7 {
             for reach in 1..9 {
                 let mut slide = Slide::new(&contours, &rims);
@@ -191,7 +195,12 @@ mod tests {
     fn pinned_vertices_stay_when_others_are_spread_or_evened_out() {
         let contours = [Contour { points: &SQUARE, arc: &ARC }];
         let s = vec![0.0, 0.2, 0.3, 4.0, 4.5, 12.0];
-        let rims = [Rim { start: 0, pinned: vec![true, false, false, true, false, false], s }];
+        let rims = [Rim {
+            start: 0,
+            held: vec![false; s.len()],
+            pinned: vec![true, false, false, true, false, false],
+            s,
+        }];
         for vertex in 0..6 {
             let mut slide = Slide::new(&contours, &rims);
             slide.spread(vertex, 3);

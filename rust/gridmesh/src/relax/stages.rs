@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::check::first_inverted;
-use super::energy::{Barrier, Energy, Regularised, Worst, det};
+use super::energy::{Barrier, Energy, Power, Regularised, det};
 use super::sweep::{Active, Motion};
 use crate::error::Result;
 use crate::progress::Progress;
@@ -102,7 +102,31 @@ impl Motion<'_> {
         let n = self.band.n_free;
         let even = self.settle(&Barrier, &mut Active::all(n), 8, tolerance, progress.part(0.0, 0.4))?;
         let all = &mut Active::all(n);
-        Ok(even + self.settle(&Worst, all, 12, 0.5 * tolerance, progress.part(0.4, 1.0))?)
+        Ok(even + self.settle(&Power::<2>, all, 12, 0.5 * tolerance, progress.part(0.4, 1.0))?)
+    }
+
+    /// Gives the worst triangles and their neighbours the say. What is worst is measured away from
+    /// pinned vertices, at which the drawing rules.
+    pub fn sharpen(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<usize> {
+        let margin = 6f64.to_radians();
+        let (most, cornered) = (45f64.to_radians(), 30f64.to_radians());
+        let angles: Vec<(f64, bool)> = self
+            .band
+            .triangles
+            .iter()
+            .map(|t| {
+                let at_corner = t.iter().any(|&v| self.slide.pinned.get(v as usize) == Some(&true));
+                (least_angle(t.map(|v| self.band.positions[v as usize])), at_corner)
+            })
+            .collect();
+        let least = angles.iter().filter(|a| !a.1).map(|a| a.0).fold(most, f64::min);
+        let limit = most.min(least + margin);
+        let worst: Vec<u32> = std::iter::zip(&self.band.triangles, &angles)
+            .filter(|(_, (angle, at_corner))| *angle < if *at_corner { cornered } else { limit })
+            .flat_map(|(t, _)| *t)
+            .collect();
+        let mut active = Active::near(&self.band, worst, 1);
+        self.settle(&Power::<4>, &mut active, 10, 0.5 * tolerance, progress)
     }
 
     /// Frees the pinned vertices at which a triangle starves, and lets their surroundings settle.
@@ -114,7 +138,7 @@ impl Motion<'_> {
         let mut released = Vec::new();
         for _ in 0..4 {
             let starved: Vec<u32> = (0..self.band.n_rim)
-                .filter(|&v| self.slide.pinned[v] && self.starves(v))
+                .filter(|&v| self.slide.pinned[v] && !self.slide.held[v] && self.starves(v))
                 .map(|v| v as u32)
                 .collect();
             if starved.is_empty() || !self.sliding {
@@ -125,7 +149,7 @@ impl Motion<'_> {
                 self.slide.home[v as usize] = self.slide.s[v as usize];
             }
             let mut active = Active::near(&self.band, starved.iter().copied(), 2);
-            self.settle(&Worst, &mut active, 30, 0.25 * tolerance, progress)?;
+            self.settle(&Power::<2>, &mut active, 30, 0.25 * tolerance, progress)?;
             released.extend(starved);
         }
         released.sort_unstable();

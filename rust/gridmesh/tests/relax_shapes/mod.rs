@@ -3,8 +3,9 @@
 //! The boundary is a shortest path through layers: layer `k` holds the lattice points near the
 //! `k`-th of `n` points spaced evenly along the curve; cells where the path meets itself are priced
 //! until it does not. Not fast and not the optimum, but every patch is chord-free.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used, clippy::panic)]
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::f64::consts::TAU;
 
@@ -148,7 +149,9 @@ pub fn shape(outline: &[DVec2], triangles: usize, angle: f64, corners: bool) -> 
     let mut prices: HashMap<Axial, f64> = HashMap::new();
     for round in 0..150 {
         let radius = 1.5 + 0.5 * f64::from(round / 50);
-        let Some(path) = cheapest_loop(&targets, radius, &prices) else { continue };
+        let Some(path) = cheapest_loop(&targets, radius, &prices) else {
+            continue;
+        };
         let conflicts = conflicts(&path);
         if conflicts.is_empty() {
             return Some(assemble(curve, arc, &path, &target_arc, corners));
@@ -219,7 +222,9 @@ fn solve(layers: &[Vec<(Axial, f64)>], steps: usize, start: Option<(Axial, Dir)>
             .map(|&(p, cost)| {
                 let mut row = [(f64::INFINITY, 0); 6];
                 for enter in Dir::ALL {
-                    let Some(&i) = index.get(&(p - enter)) else { continue };
+                    let Some(&i) = index.get(&(p - enter)) else {
+                        continue;
+                    };
                     let so_far = best[k - 1][i][enter.index()].0;
                     for turn in -2..=1i32 {
                         let leave = enter.rotate(turn).index();
@@ -286,8 +291,8 @@ fn assemble(curve: Vec<DVec2>, arc: Vec<f64>, path: &[Axial], target: &[f64], co
         todo.extend(inward(path, k).into_iter().map(|d| path[k] + d));
     }
     while let Some(p) = todo.pop() {
-        if !number.contains_key(&p) {
-            number.insert(p, order.len() as u32);
+        if let Entry::Vacant(entry) = number.entry(p) {
+            entry.insert(order.len() as u32);
             order.push(p);
             todo.extend(p.neighbours());
         }
@@ -340,7 +345,7 @@ fn assemble(curve: Vec<DVec2>, arc: Vec<f64>, path: &[Axial], target: &[f64], co
         arc,
         triangles: triangles.into_iter().collect(),
         positions,
-        rim: Rim { start: 0, s, pinned },
+        rim: Rim { start: 0, held: vec![false; pinned.len()], s, pinned },
         corner,
     }
 }

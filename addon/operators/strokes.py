@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`object.gridmesh_from_strokes`: every closed stroke becomes a mesh object."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
+
+from .. import api, meshes, outlines, strokes
+from ..properties import ShapeOptions, SketchOptions
+
+_NAMED = 3
+"""A message names this many strokes; the others are counted."""
+
+
+class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Operator):  # noqa: N801
+    """Make a smooth body with a clean triangle mesh from each closed stroke"""  # noqa: D400 (the tooltip)
+
+    bl_idname = "object.gridmesh_from_strokes"
+    bl_label = "Strokes to Mesh"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    source: EnumProperty(
+        name="Source",
+        description="Where the strokes are",
+        items=[
+            ("OBJECTS", "Objects", "Grease pencil, curve and text objects that are selected or being edited"),
+            ("ANNOTATIONS", "Annotations", "Annotations of the scene, drawn in space"),
+        ],
+        default="OBJECTS",
+        options={"SKIP_SAVE"},
+    )
+    use: EnumProperty(
+        name="Use",
+        description="Strokes that become meshes",
+        items=[
+            ("ALL", "All", "All strokes; those that cannot be closed are named"),
+            ("SELECTED", "Selected", "Strokes that are selected, or have a selected point"),
+            ("CLOSED", "Closed", "Strokes that are closed or nearly so; leave out open ones"),
+        ],
+        default="ALL",
+    )
+    close_gaps: FloatProperty(
+        name="Close Gaps",
+        description="Largest gap that is closed, and longest overshoot cut off, relative to the stroke",
+        subtype="FACTOR",
+        default=0.2,
+        min=0.0,
+        max=1.0,
+    )
+    use_holes: BoolProperty(
+        name="Holes",
+        description="Make strokes inside others of the same layer holes in them",
+        default=False,
+    )
+    update_existing: BoolProperty(
+        name="Update Existing",
+        description="Replace the mesh of the object made from the stroke before, and keep all else of it",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+    collection: EnumProperty(
+        name="Collection",
+        description="Collection that new objects go to",
+        items=[
+            ("SOURCE", "Of the Source", "Collection that the strokes are in"),
+            ("ACTIVE", "Active", "Active collection"),
+            ("NEW", "New", "New collection beside the strokes"),
+        ],
+        default="SOURCE",
+    )
+    result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Ask for an object with strokes, or annotations."""
+        if strokes.source_objects(context) or meshes.selected_bodies(context):
+            return True
+        if strokes.annotation(context.scene) is not None:
+            return True
+        cls.poll_message_set("Select a grease pencil, curve or text object with closed strokes")
+        return False
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Fill in what the strokes suggest: which to use, and an edge length."""
+        read = self._read(context).strokes
+        active = context.view_layer.objects.active
+        editing = active is not None and active.mode == "EDIT"
+        if editing and not self.properties.is_property_set("use"):
+            self.use = "SELECTED" if any(stroke.selected for stroke in read) else "ALL"
+        if not self.properties.is_property_set("edge_length"):
+            sketches, _ = api.sketches_of(self._chosen(read), close_gaps=self.close_gaps, holes=False)
+            length = api.suggested_edge_length(sketches, self.triangles)
+            self.edge_length = length if length is not None else self.edge_length
+        return self.execute(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Read, mesh, and only then change the scene."""
+        started = perf_counter()
+        try:
+            api.native()
+        except api.NativeError as error:
+            return self._refuse(str(error))
+        reading = self._read(context)
+        failures = list(reading.failures)
+        if not reading.strokes:
+            return self._refuse(*map(str, failures), *reading.notes)
+        chosen = self._chosen(reading.strokes)
+        if not chosen:
+            return self._refuse(_none_chosen(reading.strokes))
+        sketches, refused = api.sketches_of(chosen, close_gaps=self.close_gaps, holes=self.use_holes)
+        failures += refused
+        if self.update_existing:
+            sketches, refused = meshes.separate_blocked(context, sketches)
+            failures += refused
+        bodies, refused = api.build(sketches, self.sketch_options(), self.body_options())
+        failures += refused
+        if not bodies:
+            return self._refuse(*map(str, failures))
+        meshes.place(context, bodies, update=self.update_existing, collection=self.collection)
+        self.result = self._summary(bodies, perf_counter() - started)
+        self.report({"INFO"}, self.result)
+        for warning in _warnings(bodies, failures):
+            self.report({"WARNING"}, warning)
+        return {"FINISHED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw the redo panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        if self.result:
+            numbers = layout.column(align=True)
+            for part in self.result.split(", ", 1):  # on one line they would be cut off
+                numbers.label(text=part)
+        self.draw_shape_options(layout)
+        self.draw_sketch_options(layout)
+        header, body = layout.panel(f"{self.bl_idname}_strokes", default_closed=True)
+        header.label(text="Strokes")
+        if body is not None:
+            body.prop(self, "use")
+            body.prop(self, "close_gaps")
+            body.prop(self, "use_holes")
+        header, body = layout.panel(f"{self.bl_idname}_objects", default_closed=True)
+        header.label(text="Objects")
+        if body is not None:
+            body.prop(self, "update_existing")
+            body.prop(self, "collection")
+
+    def _read(self, context: bpy.types.Context) -> strokes.Reading:
+        if self.source == "ANNOTATIONS":
+            return strokes.read_annotations(context)
+        objects = strokes.source_objects(context)
+        if objects:
+            return strokes.read_objects(context, objects)
+        if self.update_existing:
+            return _read_for(context, meshes.selected_bodies(context))
+        return strokes.Reading(notes=["no object with strokes is selected; select a drawing or a curve"])
+
+    def _chosen(self, found: list[outlines.Stroke]) -> list[outlines.Stroke]:
+        """Strokes that `use` asks for; without those that are open where only closed ones are wanted."""
+        if self.use == "SELECTED":
+            return [stroke for stroke in found if stroke.selected]
+        if self.use == "CLOSED":
+            return [stroke for stroke in found if outlines.closable(stroke, self.close_gaps)]
+        return found
+
+    def _refuse(self, *reasons: str) -> set[str]:
+        """Report why nothing was made, and leave the scene alone."""
+        self.report({"ERROR"}, _listed(reasons))
+        return {"CANCELLED"}
+
+    def _summary(self, bodies: list[api.Body], seconds: float) -> str:
+        kind = "sheet" if self.shape == "SHEET" else "body"
+        triangles = sum(len(body.triangles) for body in bodies)
+        irregular = sum(body.report["irregular"] for body in bodies)
+        text = (
+            f"{_counted(len(bodies), kind)}: {triangles} triangles, "
+            f"{_counted(irregular, 'irregular vertex')}, {1000 * seconds:.0f} ms"
+        )
+        gaps = sum(body.sketch.closed_gap > 0 for body in bodies)
+        return f"{text}; {_counted(gaps, 'gap')} closed" if gaps else text
+
+
+def _read_for(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> strokes.Reading:
+    """Read the strokes that the bodies were made from, and name the bodies whose stroke is gone."""
+    made = {meshes.stroke_key(body): body for body in bodies}
+    names = dict.fromkeys(key[0] for key in made)
+    objects = [ob for ob in map(context.view_layer.objects.get, names) if ob is not None]
+    sources = [ob for ob in objects if ob.type in strokes.SOURCE_TYPES]
+    reading = strokes.read_objects(context, sources)
+    reading.strokes = [stroke for stroke in reading.strokes if stroke.key in made]
+    found = {stroke.key for stroke in reading.strokes}
+    for key, body in made.items():
+        if key not in found:
+            source, layer, index = key
+            where = f"'{source}', layer '{layer}'" if layer else f"'{source}'"
+            reason = f"its stroke ({where}, stroke {index + 1}) is gone or hidden; select the drawing instead"
+            reading.failures.append(api.Failure(f"'{body.name}'", reason))
+    return reading
+
+
+_PLURALS = {"body": "bodies", "irregular vertex": "irregular vertices"}
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what if number == 1 else _PLURALS.get(what, what + 's')}"
+
+
+def _listed(reasons: Any) -> str:
+    """Join reasons into a message of bounded length."""
+    reasons = list(reasons)
+    more = len(reasons) - _NAMED
+    text = "\n".join(reason[:1].upper() + reason[1:] for reason in reasons[:_NAMED])
+    return f"{text}\n... and {more} more" if more > 0 else text
+
+
+def _none_chosen(found: list[outlines.Stroke]) -> str:
+    """Say why none of the strokes is used."""
+    if any(stroke.selected is None for stroke in found):
+        return "modifiers hide which strokes are selected; set Use to All, or apply the modifiers"
+    return "none of the strokes is selected or closed; select one in Edit Mode, or set Use to All"
+
+
+def _warnings(bodies: list[api.Body], failures: list[api.Failure]) -> list[str]:
+    """Tell what the user should know about the strokes used, and name those left out."""
+    warnings = []
+    bent = [body.sketch for body in bodies if body.sketch.off_plane > outlines.NOTABLE * body.sketch.size]
+    if bent:
+        worst = max(bent, key=lambda sketch: sketch.off_plane / sketch.size)
+        more = f" (and {len(bent) - 1} more)" if len(bent) > 1 else ""
+        warnings.append(
+            f"{worst.stroke.label}{more}: not flat, up to {worst.off_plane:.3g} from its plane; "
+            "it was projected onto the plane"
+        )
+    crossed = sum(body.report.get("self_intersections", 0) > 0 for body in bodies)
+    if crossed:
+        cut = "cuts through itself" if crossed == 1 else "cut through themselves"
+        warnings.append(f"{_counted(crossed, 'body')} {cut}; use a smaller depth or more triangles")
+    if failures:
+        warnings.append(f"{_counted(len(failures), 'stroke')} left out:\n{_listed(map(str, failures))}")
+    return warnings
+
+
+classes = (OBJECT_OT_gridmesh_from_strokes,)

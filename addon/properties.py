@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Options that the redo panel shows, and what the module `gridmesh` makes of them.
+
+No limits are enforced here but in the module, which says what is allowed instead of changing the value.
+"""
+
+from math import pi, radians
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+
+
+class SketchOptions:
+    """How an outline is meshed. Mixed into operators."""
+
+    resolution: EnumProperty(
+        name="Resolution",
+        description="How the fineness of the mesh is given",
+        items=[
+            ("TRIANGLES", "Triangles", "Give the number of triangles of each side"),
+            ("EDGE_LENGTH", "Edge Length", "Give the length of the edges"),
+        ],
+        default="TRIANGLES",
+    )
+    triangles: IntProperty(
+        name="Triangles",
+        description="Number of triangles of one side, reached within 10%; a body has two sides",
+        default=2000,
+        soft_min=50,
+        soft_max=100_000,
+    )
+    edge_length: FloatProperty(
+        name="Edge Length",
+        description="Length of the edges of the mesh, seeded from the strokes",
+        subtype="DISTANCE",
+        default=0.1,
+        soft_min=0.001,
+        soft_max=10.0,
+        precision=4,
+        options={"SKIP_SAVE"},
+    )
+    boundary: EnumProperty(
+        name="Boundary",
+        description="How the rim of the triangle grid is chosen",
+        items=[
+            (
+                "OPTIMAL",
+                "Optimal",
+                "Find the rim with the fewest turns near the stroke, for the fewest irregular vertices",
+            ),
+            ("GROWN", "Grown", "Grow the grid from the middle and straighten its rim"),
+        ],
+        default="OPTIMAL",
+    )
+    max_distance: FloatProperty(
+        name="Max Distance",
+        description="How far the grid's rim may stray before it is moved onto the stroke, in edge lengths",
+        default=1.5,
+        soft_min=0.5,
+        soft_max=3.0,
+    )
+    angle_mode: EnumProperty(
+        name="Grid Angle",
+        description="Direction of the triangle grid",
+        items=[
+            ("AUTO", "Automatic", "Take the best of several angles"),
+            ("FIXED", "Fixed", "Give the angle"),
+        ],
+        default="AUTO",
+    )
+    angle: FloatProperty(
+        name="Angle",
+        description="Angle of the triangle grid in the drawing plane, from 0 to 60 degrees",
+        subtype="ANGLE",
+        default=0.0,
+        soft_min=0.0,
+        soft_max=pi / 3 - 1e-4,
+    )
+    corner_angle: FloatProperty(
+        name="Corner Angle",
+        description="Keep corners where the stroke turns by more than this angle",
+        subtype="ANGLE",
+        default=radians(40.0),
+        soft_min=radians(5.0),
+        soft_max=pi,
+    )
+
+    def sketch_options(self) -> dict[str, Any]:
+        """Keyword arguments of `gridmesh.mesh_sketch`."""
+        by_length = self.resolution == "EDGE_LENGTH"
+        return {
+            ("edge_length" if by_length else "triangles"): self.edge_length if by_length else self.triangles,
+            "boundary": self.boundary.lower(),
+            "max_distance": self.max_distance,
+            "angle": self.angle if self.angle_mode == "FIXED" else None,
+            "corner_angle": self.corner_angle,
+        }
+
+    def draw_sketch_options(self, layout: bpy.types.UILayout) -> None:
+        """Draw the resolution, and the grid's options in a closed panel below."""
+        column = layout.column()
+        column.prop(self, "resolution")
+        column.prop(self, "edge_length" if self.resolution == "EDGE_LENGTH" else "triangles")
+        header, body = layout.panel(f"{self.bl_idname}_grid", default_closed=True)
+        header.label(text="Grid")
+        if body is not None:
+            body.prop(self, "boundary")
+            body.prop(self, "max_distance")
+            body.prop(self, "angle_mode")
+            if self.angle_mode == "FIXED":
+                body.prop(self, "angle")
+            body.prop(self, "corner_angle")
+
+
+class ShapeOptions:
+    """What is made of the meshed outline. Mixed into operators."""
+
+    shape: EnumProperty(
+        name="Shape",
+        description="What is made of a stroke",
+        items=[
+            ("BODY", "Body", "A smooth closed body, inflated to both sides of the drawing plane"),
+            ("SHEET", "Flat Sheet", "A flat mesh in the drawing plane"),
+        ],
+        default="BODY",
+    )
+    profile: EnumProperty(
+        name="Profile",
+        description="Cross-section of the body",
+        items=[
+            ("ROUND", "Round", "Round; a circle becomes a sphere"),
+            ("FLAT", "Flat", "Flat with a rounded rim"),
+            ("PEAK", "Peak", "Rising evenly to a ridge"),
+        ],
+        default="ROUND",
+    )
+    depth: FloatProperty(
+        name="Depth",
+        description="Thickness of the body; at 1 a circle becomes a sphere",
+        default=1.0,
+        soft_min=0.01,
+        soft_max=3.0,
+    )
+    use_sides: BoolProperty(
+        name="Separate Sides",
+        description="Give the depth of the front and the back separately",
+        default=False,
+    )
+    depth_front: FloatProperty(
+        name="Front",
+        description="Depth of the side that faces up or to the front",
+        default=1.0,
+        soft_min=0.0,
+        soft_max=3.0,
+    )
+    depth_back: FloatProperty(
+        name="Back",
+        description="Depth of the side that faces down or to the back",
+        default=1.0,
+        soft_min=0.0,
+        soft_max=3.0,
+    )
+
+    def body_options(self) -> dict[str, Any] | None:
+        """Keyword arguments of `gridmesh.inflate`; None for a flat sheet."""
+        if self.shape == "SHEET":
+            return None
+        options: dict[str, Any] = {"profile": self.profile.lower(), "corner_angle": self.corner_angle}
+        if self.use_sides:
+            options |= {"front": self.depth_front, "back": self.depth_back}
+        else:
+            options["depth"] = self.depth
+        return options
+
+    def draw_shape_options(self, layout: bpy.types.UILayout) -> None:
+        """Draw the shape and, for a body, its profile and depth."""
+        layout.prop(self, "shape")
+        if self.shape == "SHEET":
+            return
+        layout.prop(self, "profile")
+        column = layout.column()
+        column.prop(self, "use_sides")
+        if self.use_sides:
+            column.prop(self, "depth_front")
+            column.prop(self, "depth_back")
+        else:
+            column.prop(self, "depth")

@@ -1,0 +1,31 @@
+"""Semi-regular triangle meshes from drawn closed curves.
+
+``mesh_sketch`` meshes the inside of a drawing, ``inflate`` makes a smooth watertight body of it, ``stitch`` a
+flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. Positions are float64, indices
+int32, angles radians, options keyword-only. The same input gives the same bytes. The one exception for what
+cannot be done is ``GridMeshError``.
+"""
+
+from gridmesh._native import (
+    GridMeshError,
+    Patch,
+    Surface,
+    __version__,
+    flat,
+    inflate,
+    map_sketches,
+    mesh_sketch,
+    stitch,
+)
+
+__all__ = [
+    "GridMeshError",
+    "Patch",
+    "Surface",
+    "__version__",
+    "flat",
+    "inflate",
+    "map_sketches",
+    "mesh_sketch",
+    "stitch",
+]

@@ -1,0 +1,126 @@
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Literal, TypedDict, Unpack, final
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = [
+    "GridMeshError",
+    "Patch",
+    "Surface",
+    "__version__",
+    "_patch",
+    "_surface",
+    "flat",
+    "inflate",
+    "map_sketches",
+    "mesh_sketch",
+    "stitch",
+]
+
+__version__: str
+
+_Points = npt.ArrayLike
+_Side = float | npt.ArrayLike | None
+_Axis = tuple[npt.ArrayLike, npt.ArrayLike]
+_Progress = Callable[[float], object]
+
+class _Options(TypedDict, total=False):
+    edge_length: float | None
+    triangles: int | None
+    boundary: Literal["optimal", "grown"]
+    max_distance: float
+    closeness: float
+    angle: float | None
+    corner_angle: float
+    mirror: _Axis | Literal["auto"] | None
+    self_crossing: Literal["error", "union"]
+    proof_nodes: int
+    relax: bool
+    depth: float
+    profile: Literal["round", "even", "flat", "peak"]
+    front: _Side
+    back: _Side
+
+class GridMeshError(ValueError):
+    kind: str
+
+@final
+class Patch:
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def triangles(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def loops(self) -> list[npt.NDArray[np.int32]]: ...
+    @property
+    def arc(self) -> list[npt.NDArray[np.float64]]: ...
+    @property
+    def source(self) -> list[npt.NDArray[np.float64]]: ...
+    @property
+    def corner(self) -> list[npt.NDArray[np.float64]]: ...
+    @property
+    def edge_length(self) -> float: ...
+    @property
+    def angle(self) -> float: ...
+    @property
+    def origin(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+    def __copy__(self) -> Patch: ...
+    def __deepcopy__(self, _memo: object, /) -> Patch: ...
+
+@final
+class Surface:
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def triangles(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def silhouette(self) -> list[npt.NDArray[np.int32]]: ...
+    @property
+    def uv(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+    def __copy__(self) -> Surface: ...
+    def __deepcopy__(self, _memo: object, /) -> Surface: ...
+
+def mesh_sketch(
+    outline: _Points,
+    holes: Sequence[_Points] = (),
+    *,
+    edge_length: float | None = None,
+    triangles: int | None = None,
+    boundary: Literal["optimal", "grown"] = "optimal",
+    max_distance: float = 1.5,
+    closeness: float = 0.3,
+    angle: float | None = None,
+    corner_angle: float = 0.6981317007977318,
+    mirror: _Axis | Literal["auto"] | None = None,
+    self_crossing: Literal["error", "union"] = "error",
+    proof_nodes: int = 0,
+    relax: bool = True,
+    progress: _Progress | None = None,
+) -> Patch: ...
+def stitch(patch: Patch) -> Surface: ...
+def flat(patch: Patch) -> Surface: ...
+def inflate(
+    patch: Patch,
+    *,
+    depth: float = 1.0,
+    profile: Literal["round", "even", "flat", "peak"] = "round",
+    front: _Side = None,
+    back: _Side = None,
+    corner_angle: float = 0.6981317007977318,
+    progress: _Progress | None = None,
+) -> Surface: ...
+def map_sketches(
+    outlines: Iterable[_Points | tuple[_Points, Sequence[_Points]]],
+    *,
+    inflate: bool = True,
+    threads: int | None = None,
+    progress: _Progress | None = None,
+    **options: Unpack[_Options],
+) -> list[Surface | GridMeshError]: ...
+def _patch(vertices: Any, triangles: Any, contours: Any, lattice: Any, report: Any) -> Patch: ...
+def _surface(vertices: Any, triangles: Any, silhouette: Any, uv: Any, report: Any) -> Surface: ...

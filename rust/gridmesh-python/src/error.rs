@@ -1,0 +1,79 @@
+//! Rust errors as the one Python exception.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use gridmesh::error::{Error, Result};
+use pyo3::create_exception;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+create_exception!(
+    gridmesh,
+    GridMeshError,
+    PyValueError,
+    "Why a call was refused; nothing was changed or returned half done.\n\
+     \n\
+     The message says what is wrong, where, what is allowed and what to do.\n\
+     \n\
+     Attributes\n\
+     ----------\n\
+     kind : str\n    \
+         A stable word for programs: \"not_finite\", \"too_few_points\", \"zero_area\",\n    \
+         \"self_intersecting\", \"hole_misplaced\", \"invalid_option\", \"invalid_shape\",\n    \
+         \"invalid_type\" (only inside the list of `map_sketches`; elsewhere a TypeError is raised),\n    \
+         \"too_coarse\", \"too_large\", \"no_patch\", \"solver\", \"cancelled\" or \"internal\" (a bug\n    \
+         in gridmesh: please report it)."
+);
+
+/// A [`GridMeshError`] with its `kind`.
+pub fn error(py: Python<'_>, kind: &str, message: impl Into<String>) -> PyErr {
+    let err = GridMeshError::new_err(message.into());
+    match err.value(py).setattr("kind", kind) {
+        Ok(()) => err,
+        Err(other) => other,
+    }
+}
+
+/// An error of the library as a [`GridMeshError`].
+pub fn from_core(py: Python<'_>, err: &Error) -> PyErr {
+    error(py, err.kind(), err.to_string())
+}
+
+/// Runs `work` without the interpreter lock; a panic, always a bug, becomes an error of kind `internal`.
+pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> Result<T, Failure> {
+    py.detach(|| guarded(work))
+}
+
+/// Runs `work`; a panic becomes [`Failure::Panic`].
+pub fn guarded<T>(work: impl FnOnce() -> Result<T>) -> Result<T, Failure> {
+    match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(result) => result.map_err(Failure::Refused),
+        Err(payload) => Err(Failure::Panic(text_of(payload.as_ref()))),
+    }
+}
+
+/// Why there is no result.
+pub enum Failure {
+    /// The library said why.
+    Refused(Error),
+    /// The library broke; the text of the panic.
+    Panic(String),
+}
+
+impl Failure {
+    /// As a Python exception.
+    pub fn into_py(self, py: Python<'_>) -> PyErr {
+        match self {
+            Failure::Refused(err) => from_core(py, &err),
+            Failure::Panic(text) => {
+                error(py, "internal", format!("a bug in gridmesh, please report it with this input: {text}"))
+            }
+        }
+    }
+}
+
+fn text_of(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no message").to_owned()
+}

@@ -1,0 +1,103 @@
+//! Options by name: one table for `mesh_sketch`, `inflate` and `map_sketches`.
+
+use gridmesh::inflate::{InflateOptions, Profile, Side};
+use gridmesh::options::{BoundaryMethod, Mirror, SelfCrossing, SketchOptions};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyFloat, PyInt, PyString};
+
+use crate::input::Argument;
+
+/// Reads every option of `given` with `set`, which says whether it knows the name.
+pub fn read<'py>(
+    function: &str,
+    given: Option<&Bound<'py, PyDict>>,
+    mut set: impl FnMut(&str, &Bound<'py, PyAny>) -> PyResult<bool>,
+) -> PyResult<()> {
+    for (name, value) in given.into_iter().flat_map(|dict| dict.iter()) {
+        let name = name.cast::<PyString>()?.to_string();
+        if !set(&name, &value)? {
+            return Err(PyTypeError::new_err(format!(
+                "{function}() has no option {name}; see help(gridmesh.{function})"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Sets an option of `mesh_sketch`; false if it has none of this name.
+pub fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let argument = |allowed| Argument { name, value, allowed };
+    match name {
+        "edge_length" => {
+            let it = argument("a positive number in the units of the outline, or None");
+            options.edge_length = it.optional(|it| it.float())?;
+        }
+        "triangles" => {
+            let it = argument("a positive whole number, or None");
+            options.triangles = it.optional(|it| it.count())?;
+        }
+        "boundary" => {
+            let words = [("optimal", BoundaryMethod::Optimal), ("grown", BoundaryMethod::Grown)];
+            options.boundary = argument("'optimal' or 'grown'").word(&words)?;
+        }
+        "max_distance" => options.max_distance = argument("a positive number of edge lengths").float()?,
+        "closeness" => options.closeness = argument("a number not below 0").float()?,
+        "angle" => {
+            let it = argument("a number of radians from 0 to below pi / 3, or None");
+            options.angle = it.optional(|it| it.float())?;
+        }
+        "corner_angle" => options.corner_angle = argument("a number of radians from 0 to pi").float()?,
+        "mirror" => {
+            let it = argument("an axis (point, direction) of two pairs of numbers, 'auto', or None");
+            options.mirror = it.optional(mirror)?;
+        }
+        "self_crossing" => {
+            let words = [("error", SelfCrossing::Error), ("union", SelfCrossing::Union)];
+            options.self_crossing = argument("'error' or 'union'").word(&words)?;
+        }
+        "proof_nodes" => options.proof_nodes = argument("a whole number not below 0").count()?,
+        "relax" => options.relax = argument("True or False").bool()?,
+        _ => return Ok(false),
+    }
+    Ok(true)
+}
+
+/// Sets an option of `inflate`; false if it has none of this name.
+pub fn set_inflate(options: &mut InflateOptions, name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let argument = |allowed| Argument { name, value, allowed };
+    let side = "a number, one number per point of the outline, or None";
+    match name {
+        "depth" => options.depth = argument("a positive number").float()?,
+        "profile" => {
+            let words = [
+                ("round", Profile::Round),
+                ("even", Profile::Even),
+                ("flat", Profile::Flat),
+                ("peak", Profile::Peak),
+            ];
+            options.profile = argument("'round', 'even', 'flat' or 'peak'").word(&words)?;
+        }
+        "front" => options.front = argument(side).optional(depths)?,
+        "back" => options.back = argument(side).optional(depths)?,
+        "corner_angle" => options.corner_angle = argument("a number of radians from 0 to pi").float()?,
+        _ => return Ok(false),
+    }
+    Ok(true)
+}
+
+fn mirror(it: Argument<'_, '_>) -> PyResult<Mirror> {
+    if it.value.is_instance_of::<PyString>() {
+        return it.word(&[("auto", ())]).map(|()| Mirror::Auto);
+    }
+    let [point, direction] = it.value.extract::<[Bound<'_, PyAny>; 2]>().map_err(|_| it.wrong_type())?;
+    Ok(Mirror::Axis {
+        point: Argument { value: &point, ..it }.pair()?,
+        direction: Argument { value: &direction, ..it }.pair()?,
+    })
+}
+
+fn depths(it: Argument<'_, '_>) -> PyResult<Side> {
+    let is_number = it.value.is_instance_of::<PyFloat>() || it.value.is_instance_of::<PyInt>();
+    if is_number { it.float().map(Side::Uniform) } else { it.numbers().map(Side::PerPoint) }
+}

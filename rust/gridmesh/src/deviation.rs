@@ -1,0 +1,126 @@
+//! How far a drawing lies from the boundary of its mesh.
+
+use glam::DVec2;
+
+use crate::curve::ClosedCurve;
+use crate::segments::{SegmentGrid, nearest_on_segment};
+
+/// A boundary edge that the drawing strays from, and the farthest point of the stretch beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stray {
+    /// The contour.
+    pub(crate) contour: usize,
+    /// The edge starts at this vertex of the contour's loop.
+    pub(crate) edge: usize,
+    /// Arc length of the farthest point, between those of the edge's ends (the drawing's units).
+    pub(crate) arc: f64,
+    /// The point.
+    pub(crate) point: DVec2,
+    /// Its distance from the boundary.
+    pub(crate) distance: f64,
+}
+
+/// The greatest distance from the drawn points to the mesh boundary, and the strays: the farthest
+/// point beside each edge from which the drawing is more than `limit` away.
+///
+/// `vertices` are numbered loop by loop, `arcs` are their arc lengths: strictly increasing,
+/// unwrapped. Each point is measured against the edge beside it, which bounds the distance of all
+/// the curve between the points; only where that exceeds `limit`, against all edges nearby.
+pub(crate) fn deviation(
+    contours: &[ClosedCurve],
+    vertices: &[DVec2],
+    arcs: &[Vec<f64>],
+    limit: f64,
+) -> (f64, Vec<Stray>) {
+    let mut worst = 0.0f64;
+    let mut far: Vec<Stray> = Vec::new();
+    let mut start = 0;
+    for (k, (contour, arcs)) in contours.iter().zip(arcs).enumerate() {
+        let n = arcs.len();
+        let vertices = &vertices[start..start + n];
+        for (&point, &s) in contour.points().iter().zip(contour.arc()) {
+            let arc = arcs[0] + (s - arcs[0]).rem_euclid(contour.length());
+            let edge = arcs.partition_point(|&a| a <= arc).max(1) - 1;
+            let squared = nearest_on_segment(point, vertices[edge], vertices[(edge + 1) % n]).1;
+            if squared > limit * limit {
+                far.push(Stray { contour: k, edge, arc, point, distance: squared.sqrt() });
+            } else {
+                worst = worst.max(squared.sqrt());
+            }
+        }
+        start += n;
+    }
+    if !far.is_empty() {
+        measure_all_round(&mut far, vertices, arcs, limit);
+    }
+    worst = far.iter().map(|stray| stray.distance).fold(worst, f64::max);
+    far.retain(|stray| stray.distance > limit);
+    // The farthest of each edge; the first and the last points may share one.
+    far.sort_by(|a, b| (a.contour, a.edge).cmp(&(b.contour, b.edge)).then(b.distance.total_cmp(&a.distance)));
+    far.dedup_by_key(|stray| (stray.contour, stray.edge));
+    (worst, far)
+}
+
+/// Replaces the distances by those to the nearest of all boundary edges.
+fn measure_all_round(far: &mut [Stray], vertices: &[DVec2], arcs: &[Vec<f64>], limit: f64) {
+    let mut edges: Vec<[DVec2; 2]> = Vec::new();
+    let mut start = 0;
+    for arcs in arcs {
+        let n = arcs.len();
+        edges.extend((0..n).map(|i| [vertices[start + i], vertices[start + (i + 1) % n]]));
+        start += n;
+    }
+    let grid = SegmentGrid::new(&edges);
+    let distance = |p: DVec2, i: usize| nearest_on_segment(p, edges[i][0], edges[i][1]).1;
+    for stray in far {
+        let mut squared = f64::INFINITY;
+        grid.near(stray.point - limit, stray.point + limit, |i| {
+            squared = squared.min(distance(stray.point, i));
+        });
+        if squared > limit * limit {
+            squared = (0..edges.len()).map(|i| distance(stray.point, i)).fold(f64::INFINITY, f64::min);
+        }
+        stray.distance = squared.sqrt();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::Winding;
+    use crate::error::Result;
+
+    #[test]
+    fn a_cut_tip_is_found_and_measured() -> Result<()> {
+        let drawn = [[0.0, 0.0], [10.0, 0.0], [10.0, 4.0], [6.0, 4.0], [5.0, 9.0], [4.0, 4.0], [0.0, 4.0]];
+        let drawn = drawn.map(DVec2::from_array);
+        let contour = ClosedCurve::new(&drawn, Winding::CounterClockwise, "outline")?;
+        // The boundary leaves the tip out.
+        let kept = [0, 1, 2, 3, 5, 6];
+        let vertices: Vec<DVec2> = kept.iter().map(|&i| drawn[i]).collect();
+        let arcs = vec![kept.iter().map(|&i| contour.arc()[i]).collect::<Vec<f64>>()];
+        let contours = [contour];
+        let (worst, strays) = deviation(&contours, &vertices, &arcs, 2.0);
+        assert_eq!(worst, 5.0);
+        assert_eq!(strays.len(), 1);
+        assert_eq!((strays[0].edge, strays[0].point), (3, drawn[4]));
+        let (worst, strays) = deviation(&contours, &vertices, &arcs, 6.0);
+        assert_eq!((worst, strays.len()), (5.0, 0));
+        Ok(())
+    }
+
+    #[test]
+    fn an_edge_across_the_first_point_strays_once() -> Result<()> {
+        // The first point, the one farthest left, lies in the middle of the tip that is cut off.
+        let drawn = [[-5.0, 2.0], [-4.0, 1.5], [0.0, 0.0], [10.0, 0.0], [10.0, 4.0], [0.0, 4.0], [-4.0, 2.5]];
+        let drawn = drawn.map(DVec2::from_array);
+        let contour = ClosedCurve::new(&drawn, Winding::CounterClockwise, "outline")?;
+        let vertices: Vec<DVec2> = (2..6).map(|i| drawn[i]).collect();
+        let arcs = vec![contour.arc()[2..6].to_vec()];
+        let (worst, strays) = deviation(&[contour], &vertices, &arcs, 2.0);
+        assert_eq!(worst, 5.0);
+        assert_eq!(strays.len(), 1);
+        assert_eq!((strays[0].edge, strays[0].point), (3, drawn[0]));
+        Ok(())
+    }
+}

@@ -1,0 +1,150 @@
+//! Interior vertices that lie outside the drawing: in inlets that the boundary bridges.
+
+use glam::DVec2;
+
+use crate::contours::encloses;
+use crate::curve::ClosedCurve;
+use crate::deviation::Stray;
+use crate::segments::nearest_on_segment;
+
+/// Rings of vertices behind a boundary edge that are looked at.
+const RINGS: usize = 3;
+
+/// For each boundary edge that bridges an inlet with a mesh vertex in it: the farthest point of the
+/// drawing beside the edge.
+///
+/// A vertex counts if it lies between the edge and the stretch of drawing beside it, by more than
+/// `limit` off the drawing. `distance` of a stray is the greatest such distance. `vertices` are
+/// numbered loop by loop, then the interior; `arcs` are the loops' arc lengths, unwrapped. Linear.
+pub(crate) fn pockets(
+    contours: &[ClosedCurve],
+    vertices: &[DVec2],
+    triangles: &[[u32; 3]],
+    arcs: &[Vec<f64>],
+    limit: f64,
+) -> Vec<Stray> {
+    let fans = Fans::new(vertices.len(), triangles);
+    let n_boundary: usize = arcs.iter().map(Vec::len).sum();
+    let mut found = Vec::new();
+    let mut start = 0;
+    for (k, (contour, arcs)) in contours.iter().zip(arcs).enumerate() {
+        let n = arcs.len();
+        let points = contour.points();
+        let edge_of = |s: f64| {
+            let arc = arcs[0] + (s - arcs[0]).rem_euclid(contour.length());
+            (arcs.partition_point(|&a| a <= arc).max(1) - 1, arc)
+        };
+        // The points in order, beginning with the first on the first edge.
+        let first = contour.arc()[..points.len()].partition_point(|&s| s < contour.wrap(arcs[0]));
+        let mut i = 0;
+        while i < points.len() {
+            let at = |i: usize| (first + i) % points.len();
+            let edge = edge_of(contour.arc()[at(i)]).0;
+            let mut end = i + 1;
+            while end < points.len() && edge_of(contour.arc()[at(end)]).0 == edge {
+                end += 1;
+            }
+            let (a, b) = (vertices[start + edge], vertices[start + (edge + 1) % n]);
+            let off = |p: DVec2| nearest_on_segment(p, a, b).1;
+            let deepest = (i..end).max_by(|&x, &y| off(points[at(x)]).total_cmp(&off(points[at(y)])));
+            let stretch = (i..end).map(|x| points[at(x)]);
+            i = end;
+            let Some(deepest) = deepest.filter(|&x| off(points[at(x)]) > limit * limit) else { continue };
+            let pocket: Vec<DVec2> = [a].into_iter().chain(stretch).chain([b]).collect();
+            let depth = fans
+                .around([start + edge, start + (edge + 1) % n], RINGS)
+                .into_iter()
+                .filter(|&v| v >= n_boundary && encloses(&pocket, vertices[v]))
+                .map(|v| distance_to(&pocket, vertices[v]))
+                .fold(0.0, f64::max);
+            if depth > limit {
+                let point = points[at(deepest)];
+                let arc = edge_of(contour.arc()[at(deepest)]).1;
+                found.push(Stray { contour: k, edge, arc, point, distance: depth });
+            }
+        }
+        start += n;
+    }
+    found
+}
+
+/// Distance to an open polyline.
+fn distance_to(line: &[DVec2], p: DVec2) -> f64 {
+    line.windows(2).map(|w| nearest_on_segment(p, w[0], w[1]).1).fold(f64::INFINITY, f64::min).sqrt()
+}
+
+/// The triangles at each vertex.
+struct Fans<'a> {
+    triangles: &'a [[u32; 3]],
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl<'a> Fans<'a> {
+    fn new(n_vertices: usize, triangles: &'a [[u32; 3]]) -> Self {
+        let mut starts = vec![0u32; n_vertices + 1];
+        for &v in triangles.iter().flatten() {
+            starts[v as usize + 1] += 1;
+        }
+        for v in 0..n_vertices {
+            starts[v + 1] += starts[v];
+        }
+        let mut next = starts.clone();
+        let mut items = vec![0; 3 * triangles.len()];
+        for (t, corners) in triangles.iter().enumerate() {
+            for &v in corners {
+                items[next[v as usize] as usize] = t as u32;
+                next[v as usize] += 1;
+            }
+        }
+        Self { triangles, starts, items }
+    }
+
+    /// The vertices within `rings` edges of any of `seeds`.
+    fn around(&self, seeds: [usize; 2], rings: usize) -> Vec<usize> {
+        let mut found = seeds.to_vec();
+        let mut from = 0;
+        for _ in 0..rings {
+            let to = found.len();
+            for i in from..to {
+                let v = found[i];
+                for &t in &self.items[self.starts[v] as usize..self.starts[v + 1] as usize] {
+                    for w in self.triangles[t as usize] {
+                        if !found.contains(&(w as usize)) {
+                            found.push(w as usize);
+                        }
+                    }
+                }
+            }
+            from = to;
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::Winding;
+    use crate::error::Result;
+
+    #[test]
+    fn a_vertex_in_a_bridged_inlet_is_found() -> Result<()> {
+        let drawn = [[0.0, 0.0], [10.0, 0.0], [10.0, 8.0], [6.0, 8.0], [5.0, 3.0], [4.0, 8.0], [0.0, 8.0]];
+        let drawn = drawn.map(DVec2::from_array);
+        let contour = ClosedCurve::new(&drawn, Winding::CounterClockwise, "outline")?;
+        let kept = [0, 1, 2, 3, 5, 6];
+        let mut vertices: Vec<DVec2> = kept.iter().map(|&i| drawn[i]).collect();
+        let arcs = vec![kept.iter().map(|&i| contour.arc()[i]).collect::<Vec<f64>>()];
+        vertices.push(DVec2::new(5.0, 5.0));
+        let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
+        let contours = [contour];
+        let found = pockets(&contours, &vertices, &triangles, &arcs, 0.1);
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].edge, found[0].point), (3, drawn[4]));
+        assert!((found[0].distance - 0.392).abs() < 1e-3, "{}", found[0].distance);
+        vertices[6] = DVec2::new(5.0, 2.0);
+        assert!(pockets(&contours, &vertices, &triangles, &arcs, 0.1).is_empty());
+        Ok(())
+    }
+}

@@ -1,0 +1,323 @@
+//! The optimal boundary: the cheapest closed lattice paths near the drawn contours.
+//!
+//! Where the paper grows a boundary greedily (section IV-B) and then mends it (IV-D), this takes the
+//! best there is: among all closed paths in the [band](crate::band) around each contour the one of
+//! least cost, turns plus a little squared distance. It is a shortest path over band nodes and
+//! directions. Since nodes belong to stretches of curve, not to places, walls of a narrow part stay
+//! apart and no part of the drawing can be lost; but paths of different stretches, or different
+//! contours, may get in each other's way. Then [`trace`] prices what conflicts until nothing does.
+
+mod conflicts;
+mod dive;
+mod graph;
+mod parameters;
+mod prices;
+mod proof;
+mod queue;
+mod search;
+mod sides;
+
+#[cfg(test)]
+mod oracle;
+
+use std::fmt;
+
+use crate::axial::Axial;
+use crate::band::Band;
+use crate::error::Error;
+use crate::lattice::Lattice;
+use crate::progress::Progress;
+use crate::target::Target;
+
+use conflicts::Vertex;
+use dive::{Contour, Dive};
+use graph::{Graph, TURN};
+use prices::Prices;
+use proof::Proof;
+use search::{Search, Walk};
+
+/// Where the distance goes when no boundary is found within the one asked for.
+const SECOND_DISTANCE: f64 = 2.0;
+/// Greatest distance that is looked at.
+const MOST_DISTANCE: f64 = 4.0;
+
+/// What a boundary should be like.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TraceOptions {
+    /// Greatest distance of a lattice path from its contour's target, in edges; the target is
+    /// within 0.3 more of the path. Below about 1.25 narrow parts have no boundary; more than 4
+    /// counts as 4.
+    pub max_distance: f64,
+    /// Price of a squared distance of one edge, in turns; 0.05 gives the straightest boundaries,
+    /// 1 the closest ones. At most 100.
+    pub closeness: f64,
+    /// Greatest number of parts of the search space that a proof of optimality looks at; 0 for a
+    /// quick try only.
+    pub proof_nodes: usize,
+}
+
+impl Default for TraceOptions {
+    fn default() -> Self {
+        Self { max_distance: 1.5, closeness: 0.3, proof_nodes: 0 }
+    }
+}
+
+/// The lattice path of one contour.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// The vertices, closed, with the patch on the left: counter-clockwise for the outline,
+    /// clockwise for holes.
+    pub points: Vec<Axial>,
+    /// For each vertex where it belongs on its target, in samples: strictly increasing, the last
+    /// less than one turn after the first.
+    pub parameters: Vec<f64>,
+}
+
+/// Lattice paths that bound a patch, and how good they are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traced {
+    /// One path for each contour, in their order.
+    pub paths: Vec<Path>,
+    /// Turns plus closeness times squared distances, in turns.
+    pub cost: f64,
+    /// No boundary at this distance costs less (to 1/2048 of a turn per vertex, the precision of the
+    /// search).
+    pub cost_bound: f64,
+    /// Number of turns by 60 degrees; turns by 120 count twice. The paper's `err_dc`.
+    pub turns: usize,
+    /// Number of turns of the paths that are cheapest regardless of conflicts, or `turns` if that
+    /// is less or the paths are optimal.
+    pub turns_bound: usize,
+    /// The paths are proved to be the cheapest.
+    pub optimal: bool,
+    /// The distance that was allowed: `max_distance`, or 2 if there was no boundary within it.
+    pub max_distance_used: f64,
+    /// Number of rounds of conflict pricing.
+    pub rounds: usize,
+}
+
+/// Why there is no boundary. The places are lattice points.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TraceFailure {
+    /// The caller asked to stop.
+    Cancelled,
+    /// No closed lattice path goes round a contour.
+    NoPath {
+        /// The contour.
+        contour: usize,
+        /// A point near it.
+        at: Axial,
+    },
+    /// Two walls want the same lattice point.
+    Repeated {
+        /// The contours of the walls.
+        contours: [usize; 2],
+        /// The point.
+        at: Axial,
+    },
+    /// An edge across the inside joins two walls.
+    Chord {
+        /// The contours of the walls.
+        contours: [usize; 2],
+        /// The ends of the edge.
+        between: [Axial; 2],
+    },
+    /// A path has the patch on its wrong side.
+    WrongSide {
+        /// The contour.
+        contour: usize,
+        /// A vertex where it does.
+        at: Axial,
+    },
+}
+
+impl TraceFailure {
+    /// The lattice point where it fails.
+    pub fn at(&self) -> Option<Axial> {
+        match self {
+            TraceFailure::Cancelled => None,
+            TraceFailure::NoPath { at, .. }
+            | TraceFailure::Repeated { at, .. }
+            | TraceFailure::WrongSide { at, .. }
+            | TraceFailure::Chord { between: [at, _], .. } => Some(*at),
+        }
+    }
+}
+
+impl fmt::Display for TraceFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TraceFailure::Cancelled => write!(f, "cancelled"),
+            TraceFailure::NoPath { .. } => {
+                write!(f, "no lattice path goes round a contour this small")
+            }
+            TraceFailure::Repeated { .. } => {
+                write!(f, "two walls are too close together to pass each other")
+            }
+            TraceFailure::Chord { .. } => {
+                write!(f, "a part is too narrow for two rows of triangles")
+            }
+            TraceFailure::WrongSide { .. } => write!(f, "a contour is too thin to have an inside"),
+        }
+    }
+}
+
+impl std::error::Error for TraceFailure {}
+
+impl From<Error> for TraceFailure {
+    /// Progress reports fail for one reason only.
+    fn from(_: Error) -> Self {
+        TraceFailure::Cancelled
+    }
+}
+
+/// The cheapest closed lattice paths along the targets that bound a chord-free patch together.
+///
+/// `targets[0]` is the outline and runs counter-clockwise, the others are holes and run clockwise.
+/// First each contour gets its cheapest path: a shortest path over (band node, direction), found
+/// with a lower bound from every state to the end. If the paths conflict, by a repeated point or an
+/// edge inside the patch between two vertices, the conflicts are priced and the paths searched
+/// again, at most 100 rounds; then Lagrange prices, and as far as `proof_nodes` allows branch and
+/// bound, improve the result and the lower bound. If no boundary is found within `max_distance` a
+/// distance of 2 is tried.
+///
+/// The paths are simple and disjoint, their turns add up to 6 (the outline) and -6 (holes), all
+/// edges have the patch on their left, and no edge inside joins two vertices. Equal input gives
+/// equal output. O(n log n) in the total length in edges if there are no conflicts.
+///
+/// # Errors
+/// [`TraceFailure`] says what stood in the way last, and where: usually the lattice is too coarse
+/// for the drawing there (a chord-free patch has at least `2 b - 6` triangles for `b` boundary
+/// vertices).
+pub fn trace(
+    targets: &[Target],
+    options: &TraceOptions,
+    progress: Progress<'_>,
+) -> Result<Traced, TraceFailure> {
+    let first = options.max_distance.min(MOST_DISTANCE);
+    match attempt(targets, options, first, progress.part(0.0, 0.5)) {
+        Err(failure) if failure != TraceFailure::Cancelled && first < SECOND_DISTANCE => {
+            attempt(targets, options, SECOND_DISTANCE, progress.part(0.5, 1.0))
+        }
+        result => result,
+    }
+}
+
+fn attempt(
+    targets: &[Target],
+    options: &TraceOptions,
+    max_distance: f64,
+    progress: Progress<'_>,
+) -> Result<Traced, TraceFailure> {
+    let mut search = Search::new();
+    let (contours, roots) = relaxed(targets, options, max_distance, &mut search, progress)?;
+    let none = |contour: &Contour| Prices::none(contour.graph.n_nodes());
+    let mut prices: Vec<Prices> = contours.iter().map(none).collect();
+    let mut walks = roots.clone();
+    let share = progress.part(0.3, 0.7);
+    let mut dive = dive::dive(&contours, &mut walks, &mut prices, &mut search, share)?;
+    if failure(&dive, &contours, &walks).is_some() {
+        dive::keep_apart(&contours, &mut walks, &mut prices, &mut search);
+        let rounds = dive.rounds;
+        dive = dive::dive(&contours, &mut walks, &mut prices, &mut search, share)?;
+        dive.rounds += rounds;
+    }
+    if let Some(failure) = failure(&dive, &contours, &walks) {
+        return Err(failure);
+    }
+    let best = total(&walks);
+    let mut proof = Proof { bound: best, walks: None, optimal: true };
+    if dive.rounds > 0 {
+        let share = progress.part(0.7, 1.0);
+        let nodes = options.proof_nodes;
+        proof = proof::prove(&contours, &roots, best, nodes, &mut search, share)?;
+    }
+    if let Some(better) = proof.walks {
+        walks = better;
+    }
+    progress.report(1.0)?;
+    let turns = turns(&walks);
+    let cost = turns as f64 + options.closeness * squared_distances(&contours, &walks);
+    let bound = f64::from(proof.bound) / f64::from(TURN);
+    Ok(Traced {
+        cost,
+        cost_bound: if proof.optimal { cost } else { bound.min(cost) },
+        turns,
+        turns_bound: if proof.optimal { turns } else { turns.min(self::turns(&roots)) },
+        optimal: proof.optimal,
+        max_distance_used: max_distance,
+        rounds: dive.rounds,
+        paths: contours
+            .iter()
+            .zip(&walks)
+            .map(|(Contour { graph, .. }, walk)| Path {
+                points: walk.points(graph).collect(),
+                parameters: parameters::parameters(graph, walk),
+            })
+            .collect(),
+    })
+}
+
+/// What each contour is searched on, and its cheapest path regardless of conflicts.
+fn relaxed(
+    targets: &[Target],
+    options: &TraceOptions,
+    max_distance: f64,
+    search: &mut Search,
+    progress: Progress<'_>,
+) -> Result<(Vec<Contour>, Vec<Walk>), TraceFailure> {
+    let mut contours = Vec::with_capacity(targets.len());
+    let mut walks = Vec::with_capacity(targets.len());
+    for (i, target) in targets.iter().enumerate() {
+        progress.report(0.3 * i as f64 / targets.len() as f64)?;
+        let graph = Graph::new(&Band::new(target, max_distance), options.closeness);
+        let potential = search.potential(&graph);
+        let prices = Prices::none(graph.n_nodes());
+        let Some((walk, _)) = search.closed(&graph, &potential, &prices, u32::MAX) else {
+            let some = target.points.first().copied().unwrap_or_default();
+            return Err(TraceFailure::NoPath { contour: i, at: Lattice::nearest(some) });
+        };
+        contours.push(Contour { graph, potential });
+        walks.push(walk);
+    }
+    Ok((contours, walks))
+}
+
+/// The first thing that a dive left.
+fn failure(dive: &Dive, contours: &[Contour], walks: &[Walk]) -> Option<TraceFailure> {
+    let point = |v: Vertex| {
+        let node = walks[v.contour as usize].node(v.index as usize);
+        contours[v.contour as usize].graph.points[node as usize]
+    };
+    if let Some(conflict) = dive.conflicts.first() {
+        let contours = [conflict.a, conflict.b].map(|v| v.contour as usize);
+        return Some(match conflict.chord {
+            Some(_) => TraceFailure::Chord { contours, between: [conflict.a, conflict.b].map(point) },
+            None => TraceFailure::Repeated { contours, at: point(conflict.a) },
+        });
+    }
+    dive.wrong
+        .first()
+        .map(|&vertex| TraceFailure::WrongSide { contour: vertex.contour as usize, at: point(vertex) })
+}
+
+fn total(walks: &[Walk]) -> u32 {
+    walks.iter().map(|walk| walk.cost).sum()
+}
+
+fn turns(walks: &[Walk]) -> usize {
+    let turns = |walk: &Walk| -> usize {
+        let turn = |i| walk.turn(i).unsigned_abs() as usize;
+        (0..walk.len()).map(turn).sum()
+    };
+    walks.iter().map(turns).sum()
+}
+
+fn squared_distances(contours: &[Contour], walks: &[Walk]) -> f64 {
+    let squared = |(contour, walk): (&Contour, &Walk)| -> f64 {
+        let of = |i| contour.graph.squared[walk.node(i) as usize];
+        (0..walk.len()).map(of).sum()
+    };
+    contours.iter().zip(walks).map(squared).sum()
+}

@@ -1,0 +1,200 @@
+//! Plain Dijkstra from every start, without bounds or pruning: what the search must agree with.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use glam::DVec2;
+
+use super::graph::{Graph, TURN};
+use super::prices::Prices;
+use super::search::Search;
+use crate::band::Band;
+use crate::dir::Dir;
+use crate::target::Target;
+
+const SHEETS: i64 = 4;
+
+/// The least cost of a closed path once round the band, over four sheets of it.
+fn brute_force(band: &Band, closeness: f64) -> Option<u32> {
+    let n = band.nodes.len() as i64;
+    let cost = |node: usize| {
+        let distance = band.nodes[node].distance;
+        (closeness * distance * distance * f64::from(TURN)).round() as u32
+    };
+    let state = |node: u32, sheet: i64, dir: usize| 6 * (i64::from(node) + sheet * n) + dir as i64;
+    let mut best = None;
+    for node in 0..band.nodes.len() {
+        for dir in Dir::ALL {
+            let behind = band.links(node, dir.opposite());
+            if !behind.iter().any(|link| link.wrap == -1) {
+                continue;
+            }
+            let start = state(node as u32, 1, dir.index());
+            let goal = state(node as u32, 2, dir.index());
+            let mut reached = vec![u32::MAX; (6 * n * SHEETS) as usize];
+            let mut heap = BinaryHeap::from([Reverse((0, start))]);
+            reached[start as usize] = 0;
+            while let Some(Reverse((so_far, at))) = heap.pop() {
+                if reached[at as usize] < so_far {
+                    continue;
+                }
+                if at == goal {
+                    best = Some(best.map_or(so_far, |best: u32| best.min(so_far)));
+                    break;
+                }
+                let (place, dir) = (at / 6, Dir::new((at % 6) as i32));
+                let (node, sheet) = ((place % n) as usize, place / n);
+                for turn in -2..=1 {
+                    let out = dir.rotate(turn);
+                    for link in band.links(node, out) {
+                        let next_sheet = sheet + i64::from(link.wrap);
+                        if !(0..SHEETS).contains(&next_sheet) {
+                            continue;
+                        }
+                        let next = state(link.node, next_sheet, out.index());
+                        let through = so_far + turn.unsigned_abs() * TURN + cost(link.node as usize);
+                        if through < reached[next as usize] {
+                            reached[next as usize] = through;
+                            heap.push(Reverse((through, next)));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    best
+}
+
+/// Points a quarter of an edge apart.
+fn target(corners: &[DVec2], angle: f64) -> Target {
+    let turn = DVec2::from_angle(angle);
+    let mut points = Vec::new();
+    for (i, &a) in corners.iter().enumerate() {
+        let b = corners[(i + 1) % corners.len()];
+        let pieces = (a.distance(b) / 0.25).ceil().max(1.0) as usize;
+        points.extend((0..pieces).map(|k| turn.rotate(a.lerp(b, k as f64 / pieces as f64))));
+    }
+    Target { points, step: 0.25 }
+}
+
+fn polar(n: usize, radius: impl Fn(f64) -> f64) -> Vec<DVec2> {
+    (0..n)
+        .map(|i| {
+            let t = std::f64::consts::TAU * i as f64 / n as f64;
+            radius(t) * DVec2::from_angle(t)
+        })
+        .collect()
+}
+
+/// A circle roughened by random displacement of midpoints.
+fn coast(seed: u64, radius: f64, roughness: f64) -> Vec<DVec2> {
+    let mut state = seed;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / (1u64 << 31) as f64 - 0.5
+    };
+    let mut points = polar(8, |_| radius);
+    for _ in 0..6 {
+        points = (0..points.len())
+            .flat_map(|i| {
+                let (a, b) = (points[i], points[(i + 1) % points.len()]);
+                [a, 0.5 * (a + b) + roughness * random() * (b - a).perp()]
+            })
+            .collect();
+    }
+    points
+}
+
+fn shapes() -> Vec<(String, Vec<DVec2>)> {
+    let xy = |coords: &[[f64; 2]]| coords.iter().map(|&c| DVec2::from_array(c)).collect();
+    let mut shapes: Vec<(String, Vec<DVec2>)> = vec![
+        ("disc".into(), polar(60, |_| 7.0)),
+        ("flower".into(), polar(200, |t| 8.0 + 5.0 * (5.0 * t).cos())),
+        ("square".into(), xy(&[[0.0, 0.0], [12.0, 0.0], [12.0, 12.0], [0.0, 12.0]])),
+        (
+            "inlet".into(),
+            xy(&[
+                [0.0, 0.0],
+                [14.0, 0.0],
+                [14.0, 6.0],
+                [3.0, 6.2],
+                [3.0, 6.7],
+                [14.0, 6.9],
+                [14.0, 13.0],
+                [0.0, 13.0],
+            ]),
+        ),
+        (
+            "neck".into(),
+            xy(&[
+                [0.0, 0.0],
+                [7.0, 0.0],
+                [7.0, 3.8],
+                [15.0, 3.8],
+                [15.0, 0.0],
+                [22.0, 0.0],
+                [22.0, 8.0],
+                [15.0, 8.0],
+                [15.0, 4.1],
+                [7.0, 4.1],
+                [7.0, 8.0],
+                [0.0, 8.0],
+            ]),
+        ),
+        ("sliver".into(), xy(&[[0.0, 0.0], [30.0, 0.3], [0.0, 0.8]])),
+    ];
+    shapes.extend((1..12).map(|seed| (format!("coast {seed}"), coast(seed, 9.0, 0.9))));
+    shapes.extend((1..4).map(|seed| (format!("rough {seed}"), coast(seed, 7.0, 1.6))));
+    shapes
+}
+
+#[test]
+fn the_search_finds_what_brute_force_finds() {
+    let mut search = Search::new();
+    for (name, corners) in shapes() {
+        for (angle, max_distance, closeness) in
+            [(0.0, 1.5, 0.3), (0.4, 1.5, 0.3), (0.9, 1.0, 1.0), (0.2, 2.0, 0.05)]
+        {
+            let band = Band::new(&target(&corners, angle), max_distance);
+            let graph = Graph::new(&band, closeness);
+            let potential = search.potential(&graph);
+            let prices = Prices::none(graph.n_nodes());
+            let found = search.closed(&graph, &potential, &prices, u32::MAX);
+            if let Some((walk, cost)) = &found {
+                assert_eq!(walk.cost, *cost);
+                assert_eq!(walk.base_cost(&graph), *cost);
+            }
+            assert_eq!(
+                found.map(|(_, cost)| cost),
+                brute_force(&band, closeness),
+                "{name} at {angle}, distance {max_distance}, closeness {closeness}"
+            );
+        }
+    }
+}
+
+#[test]
+fn windows_give_the_same_as_the_whole() {
+    let mut search = Search::new();
+    for (name, corners) in shapes() {
+        let band = Band::new(&target(&corners, 0.3), 1.5);
+        let graph = Graph::new(&band, 0.3);
+        let potential = search.potential(&graph);
+        let prices = Prices::none(graph.n_nodes());
+        let Some((walk, _)) = search.closed(&graph, &potential, &prices, u32::MAX) else {
+            continue;
+        };
+        // A part of a cheapest path is a cheapest path; round the end too.
+        let n = walk.len();
+        for from in (0..n).step_by(7) {
+            let to = from + 12.min(n - 1);
+            let part = (&walk, from, to);
+            let found = search.between(&graph, &potential, &prices, part, u32::MAX);
+            assert!(found.is_some(), "{name}: no way from {from} to {to}");
+            let (steps, cost) = found.unwrap_or_default();
+            let mut other = walk.clone();
+            other.splice(from, to, &steps);
+            assert_eq!(other.base_cost(&graph), walk.cost, "{name} {from} {to} {cost}");
+        }
+    }
+}

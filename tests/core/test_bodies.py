@@ -1,0 +1,95 @@
+"""stitch, inflate and flat."""
+
+import gridmesh
+import numpy as np
+import pytest
+from checks import check_array, check_body, check_mirrored
+from sketches import DRAWINGS, SHAPES, circle
+
+
+@pytest.fixture(scope="module", params=[*DRAWINGS, "bean", "trefoil", "arrow", "circle"])
+def patch(request):
+    points = {**SHAPES, **DRAWINGS}[request.param]["points"]
+    return gridmesh.mesh_sketch(points, triangles=3000)
+
+
+def test_a_stitched_patch_is_a_closed_body(patch):
+    pillow = gridmesh.stitch(patch)
+    check_body(pillow, patch)
+    check_mirrored(pillow, patch)
+    assert not pillow.vertices[:, 2].any()
+
+
+@pytest.mark.parametrize("profile", ["round", "even", "flat", "peak"])
+def test_an_inflated_patch_is_a_closed_body(patch, profile):
+    body = gridmesh.inflate(patch, profile=profile)
+    check_body(body, patch)
+    check_mirrored(body, patch)
+    assert body.report["volume"] > 0
+    assert body.report["self_intersections"] == 0
+    assert body.report["min_angle"] > 0
+
+
+def test_a_flat_patch_is_the_patch(patch):
+    sheet = gridmesh.flat(patch)
+    check_array(sheet.vertices, np.float64, 3)
+    assert np.array_equal(sheet.vertices[:, :2], patch.vertices)
+    assert not sheet.vertices[:, 2].any()
+    assert np.array_equal(sheet.triangles, patch.triangles)
+    assert sheet.report["watertight"] is False
+
+
+@pytest.mark.parametrize("triangles", [150, 600, 5000])
+@pytest.mark.parametrize("n", [40, 300])
+def test_a_circle_becomes_a_sphere(triangles, n):
+    patch = gridmesh.mesh_sketch(circle(n, radius=7), triangles=triangles)
+    radii = np.linalg.norm(gridmesh.inflate(patch).vertices, axis=1)
+    assert np.abs(radii / 7 - 1).max() <= 0.01
+
+
+@pytest.mark.parametrize("depth", [0.5, 3.0])
+def test_depth_scales_the_height(depth):
+    patch = gridmesh.mesh_sketch(SHAPES["bean"]["points"], triangles=1000)
+    height, scaled = (gridmesh.inflate(patch, depth=d).vertices[:, 2].max() for d in (1.0, depth))
+    assert scaled == pytest.approx(depth * height, rel=0.1)
+
+
+def test_sides_may_differ():
+    patch = gridmesh.mesh_sketch(circle(), triangles=1000)
+    body = gridmesh.inflate(patch, front=1.0, back=0.25)
+    check_body(body, patch)
+    assert body.vertices[:, 2].max() == pytest.approx(1.0, rel=0.05)
+    assert body.vertices[:, 2].min() == pytest.approx(-0.25, rel=0.05)
+
+
+def test_depth_follows_the_points_of_the_outline():
+    points = circle(64)
+    patch = gridmesh.mesh_sketch(points, triangles=1000)
+    even = gridmesh.inflate(patch, front=np.full(64, 0.5), back=np.full(64, 0.5))
+    plain = gridmesh.inflate(patch, front=0.5, back=0.5)
+    assert np.allclose(even.vertices, plain.vertices, atol=1e-9)
+    deeper_right = gridmesh.inflate(patch, front=1 + 0.5 * points[:, 0])
+    check_body(deeper_right, patch)
+    x, z = deeper_right.vertices[:, 0], deeper_right.vertices[:, 2]
+    front = z > 0
+    assert z[front & (x > 0.3)].mean() > 1.2 * z[front & (x < -0.3)].mean()
+
+
+def test_the_same_patch_gives_the_same_bytes():
+    patch = gridmesh.mesh_sketch(DRAWINGS["frog"]["points"], triangles=2000)
+    bodies = [gridmesh.inflate(patch) for _ in range(3)]
+    assert len({body.vertices.tobytes() + body.uv.tobytes() for body in bodies}) == 1
+
+
+def test_arrays_are_shared_and_read_only():
+    patch = gridmesh.mesh_sketch(circle(), triangles=200)
+    body = gridmesh.inflate(patch)
+    for thing in (patch, body):
+        assert thing.vertices is thing.vertices
+        with pytest.raises(ValueError, match="read-only"):
+            thing.vertices[0] = 0
+        with pytest.raises(AttributeError):
+            thing.vertices = None
+    kept = body.vertices
+    del body, patch
+    assert np.isfinite(kept).all()

@@ -1,0 +1,61 @@
+"""Docstrings, their examples, and the stub file."""
+
+import doctest
+import inspect
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import gridmesh
+import pytest
+
+FUNCTIONS = [gridmesh.mesh_sketch, gridmesh.stitch, gridmesh.flat, gridmesh.inflate, gridmesh.map_sketches]
+
+README = Path(__file__).parents[2] / "README.md"
+
+
+def readme_examples() -> list[str]:
+    """The Python examples of the README that need no Blender."""
+    text = README.read_text(encoding="utf-8") if README.exists() else ""
+    return [code for code in re.findall(r"^```python\n(.*?)^```", text, re.M | re.S) if "bpy" not in code]
+
+
+@pytest.mark.parametrize("code", readme_examples())
+def test_readme_examples_run(code, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {"__name__": "__main__"})
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.__name__)
+def test_examples_run(function):
+    example = doctest.DocTestParser().get_doctest(function.__doc__, {}, function.__name__, None, 0)
+    assert example.examples
+    failures = []
+    runner = doctest.DocTestRunner(verbose=False, optionflags=doctest.NORMALIZE_WHITESPACE)
+    runner.run(example, out=failures.append)
+    assert not failures, "".join(failures)
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.__name__)
+def test_every_parameter_is_described(function):
+    text = inspect.getdoc(function)
+    for section in ("Parameters", "Returns", "Raises", "Examples"):
+        assert f"{section}\n{'-' * len(section)}" in text
+    for parameter in inspect.signature(function).parameters.values():
+        stars = "**" if parameter.kind is parameter.VAR_KEYWORD else ""
+        assert f"\n{stars}{parameter.name}" in text or f", {parameter.name} :" in text, parameter.name
+
+
+@pytest.mark.parametrize("cls", [gridmesh.Patch, gridmesh.Surface], ids=lambda c: c.__name__)
+def test_every_attribute_is_described(cls):
+    text = inspect.getdoc(cls)
+    for name in vars(cls):
+        if not name.startswith("_"):
+            assert f"\n{name} : " in text, name
+
+
+def test_the_stub_file_is_true():
+    command = [sys.executable, "-m", "mypy.stubtest", "gridmesh"]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stdout + result.stderr

@@ -1,0 +1,221 @@
+"""mesh_sketch: what it promises for good drawings."""
+
+import copy
+import inspect
+import pickle
+import re
+
+import gridmesh
+import numpy as np
+import pytest
+from checks import check_patch
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+from sketches import DRAWINGS, SHAPES, blob, circle
+
+METHODS = ["optimal", "grown"]
+SLOW = settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+
+
+def bytes_of(patch):
+    parts = [patch.vertices, patch.triangles, *patch.arc, *patch.corner]
+    return b"".join(part.tobytes() for part in parts)
+
+
+def mesh_or_least(points, triangles, **options):
+    """A patch of about so many triangles, or of the least number that the refusal names."""
+    try:
+        return gridmesh.mesh_sketch(points, triangles=triangles, **options)
+    except gridmesh.GridMeshError as refused:
+        assert refused.kind == "too_coarse", refused
+        least = int(re.search(r"; (\d+) work", str(refused))[1])
+        assert least > triangles
+        return gridmesh.mesh_sketch(points, triangles=least, **options)
+
+
+@pytest.mark.parametrize("boundary", METHODS)
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_drawings_are_meshed(name, boundary):
+    points = DRAWINGS[name]["points"]
+    patch = gridmesh.mesh_sketch(points, triangles=3000, boundary=boundary)
+    check_patch(patch, [points])
+    assert abs(len(patch.triangles) / 3000 - 1) <= 0.1
+
+
+@pytest.mark.parametrize("boundary", METHODS)
+@pytest.mark.parametrize("triangles", [6, 60, 400, 2000])
+@pytest.mark.parametrize("name", SHAPES)
+def test_shapes_are_meshed_or_the_least_count_works(name, triangles, boundary):
+    points = SHAPES[name]["points"]
+    patch = mesh_or_least(points, triangles, boundary=boundary)
+    check_patch(patch, [points])
+
+
+@SLOW
+@given(
+    amplitudes=st.lists(st.floats(-0.25, 0.25), min_size=5, max_size=5),
+    phase=st.floats(0, 6.3),
+    triangles=st.integers(100, 4000),
+    angle=st.floats(0, 1.04),
+    method=st.sampled_from(METHODS),
+)
+@example(amplitudes=[0.0] * 5, phase=0.0, triangles=100, angle=0.0, method="grown")
+def test_random_blobs_are_meshed(amplitudes, phase, triangles, angle, method):
+    points = blob(amplitudes, [k * phase for k in range(5)])
+    patch = mesh_or_least(points, triangles, angle=angle, boundary=method)
+    check_patch(patch, [points])
+
+
+@SLOW
+@given(
+    corners=st.lists(st.tuples(st.floats(0.3, 1), st.floats(0.3, 1)), min_size=3, max_size=12),
+    triangles=st.integers(200, 3000),
+)
+def test_random_polygons_with_sharp_corners_are_meshed(corners, triangles):
+    angle = np.cumsum([gap for gap, _ in corners])
+    angle *= 2 * np.pi / angle[-1]
+    radius = np.array([r for _, r in corners])
+    points = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    try:
+        patch = mesh_or_least(points, triangles)
+    except gridmesh.GridMeshError as refused:
+        # Three directions within a half turn can enclose the origin from outside only.
+        assert refused.kind in {"zero_area", "self_intersecting"}, refused
+    else:
+        check_patch(patch, [points])
+
+
+@pytest.mark.parametrize("name", [*SHAPES, "frog", "letter"])
+def test_start_direction_and_repeats_change_nothing(name):
+    points = {**SHAPES, **DRAWINGS}[name]["points"]
+    expected = mesh_or_least(points, 1500)
+    variants = {
+        "reversed": points[::-1],
+        "rotated": np.roll(points, 7, axis=0),
+        "repeated": np.repeat(points, 2, axis=0),
+        "closed": np.vstack([points, points[:1]]),
+    }
+    for what, variant in variants.items():
+        patch = mesh_or_least(variant, 1500)
+        assert patch.vertices.tobytes() == expected.vertices.tobytes(), what
+        assert patch.triangles.tobytes() == expected.triangles.tobytes(), what
+        check_patch(patch, [variant])
+
+
+@pytest.mark.parametrize("name", ["bean", "arrow", "frog"])
+def test_scaling_by_a_power_of_two_scales_the_mesh(name):
+    points = {**SHAPES, **DRAWINGS}[name]["points"]
+    small, large = (gridmesh.mesh_sketch(points * k, triangles=1500) for k in (1, 1024))
+    assert (small.vertices * 1024).tobytes() == large.vertices.tobytes()
+    assert small.triangles.tobytes() == large.triangles.tobytes()
+
+
+def test_the_same_input_gives_the_same_bytes():
+    points = DRAWINGS["octopus"]["points"]
+    assert len({bytes_of(gridmesh.mesh_sketch(points, triangles=2500)) for _ in range(3)}) == 1
+
+
+@pytest.mark.parametrize(
+    "convert",
+    [
+        np.ndarray.tolist,
+        np.asfortranarray,
+        lambda p: np.repeat(p, 2, axis=1)[:, ::2],
+        lambda p: [tuple(q) for q in p],
+        lambda p: [np.array(q) for q in p],
+        lambda p: p.astype(np.longdouble),
+    ],
+    ids=["lists", "fortran", "strided", "tuples", "rows", "long double"],
+)
+def test_any_form_of_the_same_points_gives_the_same_bytes(convert):
+    points = SHAPES["bean"]["points"]
+    expected = gridmesh.mesh_sketch(points, triangles=500)
+    assert bytes_of(gridmesh.mesh_sketch(convert(points), triangles=500)) == bytes_of(expected)
+
+
+@pytest.mark.parametrize("dtype", [np.int8, np.uint16, np.int64, np.float16, np.float32])
+def test_other_number_types_are_read(dtype):
+    square = np.array([[0, 0], [4, 0], [4, 4], [0, 4]])
+    expected = gridmesh.mesh_sketch(square, triangles=500)
+    assert bytes_of(gridmesh.mesh_sketch(square.astype(dtype), triangles=500)) == bytes_of(expected)
+
+
+def test_the_input_is_neither_changed_nor_kept():
+    points = SHAPES["bean"]["points"].copy()
+    before = points.copy()
+    patch = gridmesh.mesh_sketch(points, triangles=500)
+    assert np.array_equal(points, before)
+    points[:] = np.nan
+    assert np.isfinite(patch.vertices).all()
+
+
+def test_edge_length_is_used_as_given():
+    patch = gridmesh.mesh_sketch(circle(), edge_length=0.125)
+    assert patch.edge_length == 0.125
+    check_patch(patch, [circle()])
+    edges = patch.vertices[patch.triangles] - patch.vertices[np.roll(patch.triangles, 1, axis=1)]
+    assert np.median(np.hypot(*edges.reshape(-1, 2).T)) == pytest.approx(0.125, rel=0.1)
+
+
+def test_angle_and_defaults_are_reported():
+    patch = gridmesh.mesh_sketch(circle(), angle=0.3)
+    assert patch.angle == pytest.approx(0.3)
+    assert abs(len(patch.triangles) / 2000 - 1) <= 0.1
+
+
+def test_the_signature_tells_the_true_defaults():
+    parameters = inspect.signature(gridmesh.mesh_sketch).parameters.values()
+    defaults = {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY}
+    points = DRAWINGS["guitar"]["points"]
+    explicit = gridmesh.mesh_sketch(points, **defaults)
+    assert bytes_of(explicit) == bytes_of(gridmesh.mesh_sketch(points))
+    patch = gridmesh.mesh_sketch(points, triangles=800)
+    parameters = inspect.signature(gridmesh.inflate).parameters.values()
+    defaults = {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY}
+    assert (
+        gridmesh.inflate(patch, **defaults).vertices.tobytes() == gridmesh.inflate(patch).vertices.tobytes()
+    )
+
+
+def test_a_report_holds_plain_numbers():
+    patch = gridmesh.mesh_sketch(circle(), triangles=500)
+    for report in (patch.report, gridmesh.inflate(patch).report):
+        seconds = report["seconds"]
+        assert type(seconds) is dict
+        assert all(type(value) is float and value >= 0 for value in seconds.values())
+        plain = {key: value for key, value in report.items() if key != "seconds"}
+        assert all(type(value) in {int, float, bool, type(None)} for value in plain.values())
+
+
+def test_a_patch_survives_pickling_and_copying():
+    patch = gridmesh.mesh_sketch(SHAPES["trefoil"]["points"], triangles=700)
+    again = pickle.loads(pickle.dumps(patch))
+    assert bytes_of(again) == bytes_of(patch)
+    assert [loop.tobytes() for loop in again.loops] == [loop.tobytes() for loop in patch.loops]
+    assert [source.tobytes() for source in again.source] == [source.tobytes() for source in patch.source]
+    assert again.report == patch.report
+    assert gridmesh.inflate(again).vertices.tobytes() == gridmesh.inflate(patch).vertices.tobytes()
+    assert copy.copy(patch) is patch
+    assert copy.deepcopy(patch) is patch
+    body = gridmesh.inflate(patch)
+    assert pickle.loads(pickle.dumps(body)).vertices.tobytes() == body.vertices.tobytes()
+
+
+@pytest.mark.parametrize("damage", ["index", "loop", "columns"])
+def test_a_damaged_pickle_is_refused(damage):
+    patch = gridmesh.mesh_sketch(circle(), triangles=200)
+    make, (vertices, triangles, contours, lattice, report) = patch.__reduce__()
+    if damage == "index":
+        triangles = triangles + len(vertices)
+    elif damage == "loop":
+        contours = ([arc[:-1] for arc in contours[0]], *contours[1:])
+    else:
+        vertices = np.column_stack([vertices, vertices])
+    with pytest.raises(gridmesh.GridMeshError, match="damaged"):
+        make(vertices, triangles, contours, lattice, report)
+
+
+def test_classes_are_made_by_the_library_only():
+    for cls in (gridmesh.Patch, gridmesh.Surface):
+        with pytest.raises(TypeError):
+            cls()

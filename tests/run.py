@@ -1,0 +1,297 @@
+# /// script
+# requires-python = ">=3.11"
+# dependencies = []
+#
+# [tool.uv]
+# python-downloads = "never"
+# ///
+"""Run every test: Rust, the Python module, and the extension in three versions of Blender.
+
+    uv run tests/run.py [PART ...]
+
+Parts (all without a name): fmt clippy cargo doc ruff core core313 blender45 blender52 blender50. The module is
+built once, as the wheel that is shipped; every Python environment lives in `.venv/` and is made when it is missing. Blender
+5.2 needs Python 3.13: without one its parts count as skipped, never as passed.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import system_libraries
+
+ROOT = Path(__file__).resolve().parent.parent
+OUT = ROOT / "out" / "tests"
+UV = os.environ.get("UV") or shutil.which("uv")
+
+# Part: Python version, dependency group of pyproject.toml, arguments of pytest.
+PYTHON_PARTS = {
+    "core": ("3.11", "core", ["tests/core"]),
+    "blender45": ("3.11", "blender45", ["tests/blender"]),
+    "core313": ("3.13", "blender52", ["tests/core"]),
+    "blender52": ("3.13", "blender52", ["tests/blender"]),
+    "blender50": ("3.11", "blender50", ["tests/blender", "-m", "smoke"]),
+}
+RUST_PARTS = {
+    "fmt": ["cargo", "fmt", "--all", "--check"],
+    "clippy": [
+        "cargo",
+        "clippy",
+        "--release",
+        "--locked",
+        "--workspace",
+        "--all-targets",
+        "--",
+        "-D",
+        "warnings",
+    ],
+    # Release, so that the wheel is built from the same compiled dependencies.
+    "cargo": ["cargo", "test", "--release", "--locked"],
+    "doc": ["cargo", "doc", "--release", "--locked", "--no-deps"],
+}
+RUFF = ["addon", "docs", "tests", "rust/gridmesh-python"]
+
+
+@dataclass
+class Result:
+    """What came of one part."""
+
+    part: str
+    status: str = "passed"
+    seconds: float = 0.0
+    counts: dict[str, int] = field(default_factory=dict)
+    note: str = ""
+
+
+def main() -> int:
+    """Run the parts that are asked for; 0 if nothing failed."""
+    parts = [*RUST_PARTS, "ruff", *PYTHON_PARTS]
+    wanted = sys.argv[1:] or parts
+    if unknown := sorted(set(wanted) - set(parts)):
+        sys.exit(f"unknown: {', '.join(unknown)}; allowed: {', '.join(parts)}")
+    if UV is None:
+        sys.exit("uv is missing; install it with: python3 -m pip install uv")
+    os.chdir(ROOT)
+    OUT.mkdir(parents=True, exist_ok=True)
+    if any(part.startswith("blender") for part in wanted):
+        system_libraries.ensure()
+    pythons = {version: find_python(version) for version in ("3.11", "3.13")}
+    groups = {group: version for version, group, _ in (PYTHON_PARTS[p] for p in wanted if p in PYTHON_PARTS)}
+    if "ruff" in wanted:
+        groups.setdefault("core", "3.11")
+    # Downloads take their time: they go on while cargo compiles.
+    environments = {
+        group: Environment(group, pythons[version]) for group, version in groups.items() if pythons[version]
+    }
+    results = [run_rust(part) for part in RUST_PARTS if part in wanted]
+    wheel = None
+    if PYTHON_PARTS.keys() & set(wanted):
+        built, wheel = build_wheel()
+        results.append(built)
+    for part in wanted:
+        if part == "ruff":
+            results.append(run_ruff(environments.get("core")))
+        elif part in PYTHON_PARTS:
+            results.append(run_pytest(part, environments, wheel))
+    return report(results)
+
+
+# -------------------------------------------------------------------------------------------------- parts
+
+
+def run_rust(part: str) -> Result:
+    """One cargo command."""
+    if part in {"fmt", "clippy"} and shutil.which("rustup"):
+        # A minimal toolchain has neither.
+        component = "rustfmt" if part == "fmt" else part
+        subprocess.run(["rustup", "component", "add", component], check=False, capture_output=True)
+    environment = {**os.environ, "RUSTDOCFLAGS": "-D warnings"} if part == "doc" else None
+    result, output = run(part, RUST_PARTS[part], environment)
+    for passed, failed, ignored in re.findall(r"(\d+) passed; (\d+) failed; (\d+) ignored", output):
+        count(result, passed=int(passed), failed=int(failed), skipped=int(ignored))
+    return result
+
+
+def run_ruff(environment: Environment | None) -> Result:
+    """Lint and format of all Python files."""
+    if environment is None or (note := environment.wait()):
+        return Result("ruff", "failed", note=note if environment else "Python 3.11 is missing")
+    ruff = environment.script("ruff")
+    result, _ = run("ruff", [ruff, "check", *RUFF])
+    other, _ = run("ruff", [ruff, "format", "--check", *RUFF])
+    result.seconds += other.seconds
+    if other.status == "failed":
+        result.status = "failed"
+    return result
+
+
+def run_pytest(part: str, environments: dict[str, Environment], wheel: Path | None) -> Result:
+    """pytest in the environment of a part."""
+    version, group, arguments = PYTHON_PARTS[part]
+    if group not in environments:
+        missing = f"PYTHON {version} IS MISSING, so {part} was not tested"
+        return Result(part, "skipped" if version == "3.13" else "failed", note=missing)
+    if wheel is None:
+        return Result(part, "failed", note="the wheel was not built")
+    environment = environments[group]
+    if note := environment.wait() or environment.install(wheel):
+        return Result(part, "failed", note=note)
+    record = OUT / f"{part}.xml"
+    record.unlink(missing_ok=True)
+    command = [environment.script("python"), "-m", "pytest", "-q", f"--junitxml={record}", *arguments]
+    result, _ = run(part, command)
+    if not record.exists():
+        result.status, result.note = "failed", "pytest left no record; it crashed or was killed"
+        return result
+    for suite in ElementTree.parse(record).getroot().iter("testsuite"):
+        bad = int(suite.get("failures", 0)) + int(suite.get("errors", 0))
+        skipped = int(suite.get("skipped", 0))
+        count(result, passed=int(suite.get("tests", 0)) - bad - skipped, failed=bad, skipped=skipped)
+    if result.counts["failed"] or not result.counts["passed"]:
+        result.status = "failed"
+    return result
+
+
+def build_wheel() -> tuple[Result, Path | None]:
+    """The wheel, built as it is shipped: one for every Python from 3.11 on."""
+    folder = OUT / "wheel"
+    shutil.rmtree(folder, ignore_errors=True)
+    result, _ = run("wheel", [UV, "build", "--wheel", "--quiet", "--out-dir", str(folder)])
+    wheels = list(folder.glob("gridmesh-*-abi3-*.whl"))
+    if result.status == "passed" and len(wheels) != 1:
+        result.status, result.note = "failed", f"one abi3 wheel was expected, found {len(wheels)}"
+    return result, wheels[0] if result.status == "passed" else None
+
+
+# ------------------------------------------------------------------------------------------- environments
+
+
+class Environment:
+    """A virtual environment with one dependency group, installed in the background."""
+
+    def __init__(self, group: str, python: str) -> None:
+        self.path = ROOT / ".venv" / group
+        self.log = OUT / f"{group}.log"
+        create = '"$0" venv --quiet --allow-existing --python "$1" "$2"'
+        command = f'{create} && "$0" pip install --quiet --python "$2" --group "$3"'
+        with self.log.open("w") as log:
+            self.process = subprocess.Popen(
+                ["sh", "-c", command, UV, python, self.path, group], stdout=log, stderr=subprocess.STDOUT
+            )
+
+    def script(self, name: str) -> str:
+        """Path of a program of the environment."""
+        return str(self.path / "bin" / name)
+
+    def wait(self) -> str:
+        """Wait for the installation; what went wrong, or nothing."""
+        return f"installation failed:\n{self.log.read_text()}" if self.process.wait() else ""
+
+    def install(self, wheel: Path) -> str:
+        """Put the wheel in; what went wrong, or nothing."""
+        command = [
+            UV,
+            "pip",
+            "install",
+            "--quiet",
+            "--no-deps",
+            "--reinstall",
+            "--python",
+            str(self.path),
+            str(wheel),
+        ]
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+        return result.stderr if result.returncode else ""
+
+
+def find_python(version: str) -> str | None:
+    """An interpreter of this version that runs, on the path or from pyenv; nothing is downloaded."""
+    found = [sys.executable]
+    query = subprocess.run(
+        [UV, "python", "find", "--no-python-downloads", "--no-project", "--system", version],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    found.append(query.stdout.strip())
+    if pyenv := shutil.which("pyenv"):
+        # Its shims refuse to run a version that is installed but not chosen.
+        listed = subprocess.run([pyenv, "versions", "--bare"], capture_output=True, text=True, check=False)
+        for name in listed.stdout.split():
+            if name.startswith(f"{version}."):
+                prefix = subprocess.run([pyenv, "prefix", name], capture_output=True, text=True, check=False)
+                found.append(f"{prefix.stdout.strip()}/bin/python")
+    return next((python for python in found if python and runs(python, version)), None)
+
+
+def runs(python: str, version: str) -> bool:
+    """Whether the interpreter starts and has this version."""
+    tell = "import sys; print('%d.%d' % sys.version_info[:2])"
+    try:
+        told = subprocess.run([python, "-c", tell], capture_output=True, text=True, check=False, timeout=60)
+    except OSError:
+        return False
+    return told.stdout.strip() == version
+
+
+# ------------------------------------------------------------------------------------------ running, report
+
+
+def run(part: str, command: list[str], environment: dict[str, str] | None = None) -> tuple[Result, str]:
+    """Run a command, showing its output; the result and the output."""
+    print(f"\n=== {part}: {' '.join(str(word) for word in command)}", flush=True)
+    started = time.monotonic()
+    lines = []
+    with subprocess.Popen(
+        command,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+    ) as process:
+        for line in process.stdout:
+            lines.append(line)
+            print(line, end="", flush=True)
+    status = "failed" if process.returncode else "passed"
+    return Result(part, status, time.monotonic() - started), "".join(lines)
+
+
+def count(result: Result, **counts: int) -> None:
+    """Add to the counts of a result."""
+    for key, number in counts.items():
+        result.counts[key] = result.counts.get(key, 0) + number
+
+
+def report(results: list[Result]) -> int:
+    """Print the summary; the exit code."""
+    print(f"\n{'=' * 78}")
+    for result in results:
+        counts = ", ".join(f"{number} {key}" for key, number in result.counts.items() if number)
+        print(f"{result.part:<10} {result.status.upper():<8} {result.seconds:7.1f} s   {counts}")
+        if result.note:
+            print(f"           {result.note.strip()}")
+    failed = [result for result in results if result.status == "failed"]
+    skipped = [result for result in results if result.status == "skipped"]
+    tests = {key: sum(r.counts.get(key, 0) for r in results) for key in ("passed", "failed", "skipped")}
+    print("=" * 78)
+    print(
+        f"parts: {len(results) - len(failed) - len(skipped)} passed, {len(failed)} failed, {len(skipped)} skipped"
+    )
+    print(f"tests: {tests['passed']} passed, {tests['failed']} failed, {tests['skipped']} skipped")
+    if skipped:
+        print(f"NOT TESTED HERE: {', '.join(result.part for result in skipped)}")
+    print("FAILED" if failed else "ALL THAT RAN PASSED" if skipped else "ALL PASSED")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
