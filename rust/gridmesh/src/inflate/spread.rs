@@ -88,7 +88,7 @@ impl<'a> Guide<'a> {
         least_area: f64,
     ) -> Self {
         let first: usize = loops.iter().map(Loop::len).sum();
-        let goal = |v: usize| if v < first { 0.0 } else { unrolled(field, v, limb(v)) };
+        let goal = |v: usize| if v < first { 0.0 } else { unrolled(field, v, limb(v), depth) };
         Guide {
             field,
             depth,
@@ -128,9 +128,11 @@ pub(crate) fn spread(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_
 /// `f (1 - t) / (1 + t)^2`, where `t = 1 - f / R^2` is also `s^2 / (f + s^2)` with `s` half the slope
 /// of `f`: so read it needs no circle, and at the silhouette of any drawing the height becomes the
 /// distance from it. A limb is stretched across only; there vertices move less.
-fn unrolled(field: &Field<'_>, v: usize, limb: f64) -> f64 {
+///
+/// A body deeper than a sphere has the heights of the sphere, scaled.
+fn unrolled(field: &Field<'_>, v: usize, limb: f64, depth: f64) -> f64 {
     let value = field.value[v];
-    let half = 0.25 * field.gradient[v].length_squared();
+    let half = 0.25 * field.gradient[v].length_squared() / depth.max(1.0).powi(2);
     let t = half / (value + half);
     let k = 2.0 - 1.7 * limb;
     (value * (1.0 - t) / (1.0 + k * t + (3.0 - k) * t * t)).sqrt()
