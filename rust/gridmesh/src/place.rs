@@ -18,8 +18,17 @@ use crate::relax::{Contour, RelaxOptions, Rim, first_inverted, relax, settle_cor
 /// Half the length over which a corner's turning angle is measured, in edges.
 const CORNER_WINDOW: f64 = 0.5;
 
+/// A boundary vertex moves this far along the drawing to sit on a corner, in edges.
+const REACH: f64 = 1.5;
+
 /// The drawing may lie this far outside the mesh, in edges.
 const STRAY: f64 = 2.0;
+
+/// Where it lies this far outside, a boundary vertex is held there, if the triangles allow.
+const CLOSE: f64 = 0.7;
+
+/// Triangles may be bent down to this angle for the drawing's sake.
+const LEAST_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
 /// A vertex may lie this far outside the drawing, in an inlet that the boundary bridges.
 const INLET: f64 = 0.05;
@@ -87,9 +96,10 @@ pub(crate) fn place(
             obstacle = Obstacle { reason: "a triangle stays inverted".to_owned(), at };
             break;
         }
-        let (farthest, strays) = deviation(contours, &vertices, &arcs, STRAY * h);
-        if let Some(&Stray { point, .. }) = strays.first() {
-            obstacle.at = point;
+        let (farthest, mut strays) = deviation(contours, &vertices, &arcs, CLOSE * h);
+        if farthest > STRAY * h {
+            strays.retain(|stray| stray.distance > STRAY * h);
+            obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
             if !hold(&strays, &mut rims, &lengths, h) {
                 break;
             }
@@ -105,14 +115,33 @@ pub(crate) fn place(
             max_deviation: farthest / h,
             bridged_inlets: occupied.len(),
         };
-        if valid.as_ref().is_none_or(|best| placed.bridged_inlets < best.bridged_inlets) {
+        let first = valid.is_none();
+        if valid.as_ref().is_none_or(|best| better(&placed, best)) {
             valid = Some(placed);
         }
-        if occupied.is_empty() || !options.relax || !hold(&occupied, &mut rims, &lengths, h) {
+        if !options.relax {
+            break;
+        }
+        // Following the drawing more closely is worth one more round.
+        strays.extend(occupied);
+        strays.sort_by_key(|stray| (stray.contour, stray.edge));
+        strays.dedup_by_key(|stray| (stray.contour, stray.edge));
+        if !first && valid.as_ref().is_some_and(|best| best.bridged_inlets == 0)
+            || !hold(&strays, &mut rims, &lengths, h)
+        {
             break;
         }
     }
     Ok(valid.ok_or(obstacle))
+}
+
+/// Whether a patch that follows the drawing more closely is worth the triangles that this bends.
+fn better(placed: &Placed, best: &Placed) -> bool {
+    let (least, before) = (min_angle(&placed.patch), min_angle(&best.patch));
+    placed.bridged_inlets < best.bridged_inlets
+        || (placed.bridged_inlets == best.bridged_inlets
+            && placed.max_deviation < best.max_deviation
+            && least >= before.min(LEAST_ANGLE))
 }
 
 /// Boundary vertices with their arc lengths in edges, some of them pinned to corners; the corners'
@@ -128,7 +157,7 @@ fn rims(
         let found = corners_of(contour, options.corner_angle, h);
         n_corners += found.len();
         let mut s = arcs.clone();
-        let angle = snap(&mut s, &found, contour.length() / h, 1.0);
+        let angle = snap(&mut s, &found, contour.length() / h, REACH);
         let n = s.len();
         rims.push(Rim { start, s, pinned: angle.iter().map(|&a| a != 0.0).collect(), held: vec![false; n] });
         angles.push(angle);

@@ -321,7 +321,7 @@ impl Job<'_> {
                 Err(_) => fails = step,
             }
         }
-        Ok(Error::TooCoarse { triangles: asked.ceil() as usize, least: at(works) })
+        Ok(Error::TooCoarse { triangles: asked.round().max(1.0) as usize, least: at(works) })
     }
 
     /// True if `n` triangles cannot follow the drawing: a chord-free lattice patch with `b` boundary
