@@ -40,7 +40,7 @@ impl ClosedCurve {
     /// counted by [`ClosedCurve::repaired`]; nothing else is changed. O(n) for ordinary drawings.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::TooFewPoints`], [`Error::ZeroArea`], and
+    /// [`Error::NotFinite`], [`Error::ExtremeSize`], [`Error::TooFewPoints`], [`Error::ZeroArea`], and
     /// [`Error::SelfIntersecting`] if two segments cross, touch or overlap.
     pub fn new(input: &[DVec2], winding: Winding, what: &str) -> Result<Self> {
         if let Some(point) = input.iter().position(|p| !p.is_finite()) {
@@ -61,8 +61,8 @@ impl ClosedCurve {
             let (low, high) = bounds(input);
             (high - low).max_element()
         };
-        if !size.is_finite() {
-            return Err(Error::NotFinite { what: format!("{what}'s extent"), point: 0 });
+        if size > 0.0 && !(1e-60..=1e60).contains(&size) {
+            return Err(Error::ExtremeSize { what: what.to_owned(), size });
         }
         let reversed = (doubled_area(&order, input) < 0.0) != (winding == Winding::Clockwise);
         if reversed {
@@ -356,7 +356,8 @@ mod tests {
         assert_eq!(kind(&[[0.0, 0.0]; 5]), Some("too_few_points"));
         assert_eq!(kind(&[[0.0, 0.0], [1.0, 0.0]]), Some("too_few_points"));
         assert_eq!(kind(&[[0.0, 0.0], [1.0, 0.0], [f64::NAN, 1.0]]), Some("not_finite"));
-        assert_eq!(kind(&[[-1e308, 0.0], [1e308, 0.0], [0.0, 1e308]]), Some("not_finite"));
+        assert_eq!(kind(&[[-1e308, 0.0], [1e308, 0.0], [0.0, 1e308]]), Some("extreme_size"));
+        assert_eq!(kind(&[[0.0, 0.0], [1e-99, 0.0], [0.0, 1e-99]]), Some("extreme_size"));
         assert_eq!(kind(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]), Some("zero_area"));
         assert_eq!(kind(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), Some("self_intersecting"));
         assert_eq!(kind(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 2.0]]), Some("self_intersecting"));

@@ -16,6 +16,13 @@ pub enum Error {
         /// Index of the point.
         point: usize,
     },
+    /// The drawing is so large or small that areas leave the range of floating point.
+    ExtremeSize {
+        /// What was given, such as `outline` or `hole 2`.
+        what: String,
+        /// Its width or height.
+        size: f64,
+    },
     /// Fewer than three distinct points.
     TooFewPoints {
         /// What was given, such as `outline` or `hole 2`.
@@ -99,6 +106,7 @@ impl Error {
     pub fn kind(&self) -> &'static str {
         match self {
             Error::NotFinite { .. } => "not_finite",
+            Error::ExtremeSize { .. } => "extreme_size",
             Error::TooFewPoints { .. } => "too_few_points",
             Error::ZeroArea { .. } => "zero_area",
             Error::SelfIntersecting { .. } => "self_intersecting",
@@ -119,6 +127,9 @@ impl fmt::Display for Error {
         match self {
             Error::NotFinite { what, point } => {
                 write!(f, "point {point} of the {what} is NaN or infinite; all coordinates must be finite")
+            }
+            Error::ExtremeSize { what, size } => {
+                write!(f, "the {what} is {size:.3e} across; allowed: 1e-60 to 1e60, scale the drawing")
             }
             Error::TooFewPoints { what, distinct } => {
                 write!(

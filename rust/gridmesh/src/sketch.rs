@@ -1,5 +1,6 @@
 //! From a drawn outline to a flat patch: the whole of the paper's section IV.
 
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use glam::DVec2;
@@ -56,6 +57,17 @@ pub fn mesh_sketch(
     progress: Progress<'_>,
 ) -> Result<Sketch> {
     options.check()?;
+    progress.report(0.0)?;
+    // Angles are solved side by side, and failed placements start again: only what rises is passed on.
+    let state = Mutex::new((0.0f64, false));
+    let rising = |fraction: f64| {
+        let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.0 = state.0.max(fraction);
+        // Once cancelled, the other angles hear of it without asking again.
+        state.1 = state.1 || progress.report(state.0).is_err();
+        !state.1
+    };
+    let progress = Progress::new(&rising);
     let started = Instant::now();
     let union = match options.self_crossing {
         SelfCrossing::Error => None,
@@ -103,6 +115,7 @@ pub fn mesh_sketch(
         }
         sketch.report.repaired += slivers;
     }
+    progress.report(1.0)?;
     Ok(sketch)
 }
 
@@ -298,11 +311,8 @@ impl Job<'_> {
         let at = |step: i32| (asked.max(6.0) * 1.1f64.powi(step)).ceil() as usize;
         let (mut fails, mut works, mut stride) = (0, None, 1);
         while works.is_none() && (at(fails + stride) as f64) < LARGEST {
-            progress.report(0.9)?;
             let step = fails + stride;
-            if !self.is_hopeless(at(step))
-                && self.attempt(Asked::Triangles(at(step)), Effort::Quick, progress)?.is_ok()
-            {
+            if self.works(at(step), progress)? {
                 works = Some(step);
             } else {
                 fails = step;
@@ -314,14 +324,20 @@ impl Job<'_> {
             return Ok(Error::NoPatch { reason: obstacle.reason, at: obstacle.at.to_array() });
         };
         while works - fails > 1 {
-            progress.report(0.9)?;
             let step = (works + fails) / 2;
-            match self.attempt(Asked::Triangles(at(step)), Effort::Quick, progress)? {
-                Ok(_) => works = step,
-                Err(_) => fails = step,
+            if self.works(at(step), progress)? {
+                works = step;
+            } else {
+                fails = step;
             }
         }
         Ok(Error::TooCoarse { triangles: asked.round().max(1.0) as usize, least: at(works) })
+    }
+
+    /// Whether the first placement at `n` triangles gives a valid patch.
+    fn works(&mut self, n: usize, progress: Progress<'_>) -> Result<bool> {
+        progress.report(0.9)?;
+        Ok(!self.is_hopeless(n) && self.attempt(Asked::Triangles(n), Effort::Quick, progress)?.is_ok())
     }
 
     /// True if `n` triangles cannot follow the drawing: a chord-free lattice patch with `b` boundary

@@ -1,5 +1,7 @@
 //! Properties of stitched and inflated bodies.
 
+#![allow(clippy::unwrap_used)]
+
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec2, DVec3};
