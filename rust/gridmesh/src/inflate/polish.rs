@@ -1,5 +1,7 @@
 //! Improves the triangles of a front, vertex by vertex.
 
+use std::f64::consts::FRAC_PI_4;
+
 use glam::{DVec2, DVec3};
 
 use super::field::Field;
@@ -9,11 +11,14 @@ use crate::patch::Loop;
 /// Sum of the squared sides over twice the area of an equilateral triangle.
 const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
 
-/// Cotangent of the angle, 30 degrees, below which [`sharpen`] acts.
-const SHARP: f64 = 1.732_050_807_568_877_2;
+/// Cotangent of the angle, 27 degrees, below which [`sharpen`] acts.
+const SHARP: f64 = 1.962_610_505_505_15;
 
 /// Rounds of [`sharpen`] at most.
 const ROUNDS: u32 = 24;
+
+/// Rounds that a vertex may fail in a row, see [`sharpen`].
+const PATIENCE: u8 = 6;
 
 /// How much flatter than equilateral the triangles at each boundary vertex are to be.
 ///
@@ -98,7 +103,7 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>) {
         }
         let u = -DVec2::new(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
         let u = u.clamp_length_max(0.5 * reach / fan.len() as f64);
-        let Some(target) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else {
+        let Some((target, _)) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else {
             continue;
         };
         let before = worst(front, fan, here);
@@ -124,21 +129,33 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>) {
 }
 
 /// Moves the vertices of the sharpest triangles to where the least angle around them is largest, by
-/// trial in eight directions, until nothing improves or [`ROUNDS`] are done.
+/// trial in eight directions. A vertex is left alone once it has not moved for some rounds, nor
+/// its neighbours.
 pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>) {
-    let mut active: Vec<u32> = (front.first as u32..front.flat.len() as u32).collect();
+    let first = front.first;
+    let mut patience = vec![PATIENCE; front.flat.len()];
+    let mut active: Vec<u32> = (first as u32..front.flat.len() as u32).collect();
     for round in 0..ROUNDS {
         let reach = [0.3, 0.12, 0.05][round as usize % 3];
         let mut next = vec![];
         for &v in &active {
             let v = v as usize;
             let fan = guide.field.topology.fan(v);
-            if sharpest(front, fan, front.position(v)) <= SHARP {
+            let present = sharpest(front, fan, front.position(v));
+            if present <= SHARP {
                 continue;
             }
-            next.push(v as u32);
-            if try_around(front, guide, v, reach, 0.3 * f64::from(round)) {
-                next.extend(fan.iter().flatten().filter(|&&u| u as usize >= front.first));
+            if try_around(front, guide, v, present, reach, 0.3 * f64::from(round)) {
+                patience[v] = PATIENCE;
+                for &u in fan.iter().flatten().filter(|&&u| u as usize >= first) {
+                    patience[u as usize] = PATIENCE;
+                    next.push(u);
+                }
+            } else {
+                patience[v] -= 1;
+            }
+            if patience[v] > 0 {
+                next.push(v as u32);
             }
         }
         next.sort_unstable();
@@ -150,8 +167,9 @@ pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>) {
     }
 }
 
-/// Moves `v` to the best of eight places around it; false if none is better.
-fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, reach: f64, turn: f64) -> bool {
+/// Moves `v`, the largest cotangent around which is `present`, to the best of eight places around it;
+/// false if none is better.
+fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reach: f64, turn: f64) -> bool {
     let field = guide.field;
     let slot = v - front.first;
     let fan = field.topology.fan(v);
@@ -161,16 +179,19 @@ fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, reach: f64, turn: 
     let (e, f) = normal.any_orthonormal_pair();
     let mean =
         fan.iter().map(|&[a, _]| here.distance(front.position(a as usize))).sum::<f64>() / fan.len() as f64;
-    let mut best = sharpest(front, fan, here);
+    let mut best = present;
     let mut moved = false;
     for k in 0..8 {
-        let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4 + turn).sin_cos();
+        let (sin, cos) = (f64::from(k) * FRAC_PI_4 + turn).sin_cos();
         let target = here + reach * mean * (cos * e + sin * f);
-        let Some(point) = project(field, target, front.place[slot].triangle) else { continue };
+        // Off the surface by a second-order term: a cheap first look.
+        if sharpest(front, fan, target) >= best {
+            continue;
+        }
+        let Some((point, place)) = project(field, target, front.place[slot].triangle) else { continue };
         if !front.may_move(guide, v, start, point) {
             continue;
         }
-        let Some(place) = field.locate(point, front.place[slot].triangle) else { continue };
         let height = field.at(point, place).0.sqrt();
         let now = sharpest(front, fan, point.extend(height));
         if now < best {

@@ -183,7 +183,7 @@ fn slide(front: &mut Front, guide: &Guide<'_>, share: f64) {
 }
 
 /// The point of the plane below the foot of `point` on the surface `z^2 = field`.
-pub(crate) fn project(field: &Field<'_>, point: DVec3, triangle: u32) -> Option<DVec2> {
+pub(crate) fn project(field: &Field<'_>, point: DVec3, triangle: u32) -> Option<(DVec2, Place)> {
     let mut point = point;
     let mut triangle = triangle;
     for _ in 0..2 {
@@ -193,7 +193,7 @@ pub(crate) fn project(field: &Field<'_>, point: DVec3, triangle: u32) -> Option<
         let slope = (-gradient).extend(2.0 * point.z);
         point -= (point.z * point.z - value) / slope.length_squared().max(f64::MIN_POSITIVE) * slope;
     }
-    field.locate(point.truncate(), triangle).map(|_| point.truncate())
+    field.locate(point.truncate(), triangle).map(|place| (point.truncate(), place))
 }
 
 /// Moves the vertices in the plane as far towards `target` as the triangles allow.
