@@ -22,8 +22,8 @@ Every drawing is meshed at every number of triangles. Ours come first and say ho
 vertices there are. The others get the drawing resampled evenly to that number of boundary vertices, and a
 size that is searched until their number of triangles is within 3 % of ours. Then all run in turn, on one
 thread, several rounds; a drawing's time is the median of its rounds, in processor time. The tables show
-medians over the drawings that all could do. Deviations are in edge lengths of an equilateral mesh of the same
-number of triangles.
+medians over the drawings that we and all peers could do; variants of ours say if there are fewer (`grown`
+has no holes). Deviations are in edge lengths of an equilateral mesh of the same number of triangles.
 """
 
 from __future__ import annotations
@@ -69,10 +69,7 @@ COLUMNS = {
 
 @dataclass
 class Results:
-    """By number of triangles: for each drawing that all could do, the numbers of each mesher.
-
-    `grown` has no holes: drawings with holes are compared without it.
-    """
+    """By number of triangles: for each drawing that we and all peers could do, the numbers of each mesher."""
 
     rows: dict[int, list[dict[str, dict[str, float]]]] = field(default_factory=dict)
     notes: dict[int, Counter[str]] = field(default_factory=dict)
@@ -120,7 +117,7 @@ def main() -> None:
 def compare(
     drawing: Drawing, count: int, reference: Mesher, others: list[Mesher], rounds: int, notes: Counter[str]
 ) -> dict[str, dict[str, float]] | None:
-    """The numbers of every mesher, or None if one of them could not do the drawing."""
+    """The numbers of every mesher, or None if we or a peer could not do the drawing."""
     problem = Problem(drawing.contours, drawing.contours, count)
     try:
         first = reference.mesh(problem, count, keep=True)
@@ -141,7 +138,7 @@ def compare(
             sizes[mesher], meshes[mesher] = search(mesher, problem, edge, keep=count <= LARGE)
         except Failed as failed:
             notes[f"{mesher.name}: {failed}: {drawing.name}"] += 1
-    if any(mesher not in meshes for mesher in others if mesher.has_holes):
+    if any(mesher not in meshes for mesher in others if mesher.is_peer):
         return None
 
     seconds: dict[Mesher, list[float]] = {mesher: [] for mesher in meshes}
@@ -188,7 +185,7 @@ def search(mesher: Mesher, problem: Problem, edge: float, keep: bool) -> tuple[f
         inside = between and min(fewer, more) < step < max(fewer, more)
         size = step if inside or not between else (fewer * more) ** 0.5
     nearest = min(reached, key=lambda ratio: abs(ratio - 1))
-    raise Failed(f"reaches {100 * nearest:.0f} % of the triangles only")
+    raise Failed(f"its nearest number of triangles is {100 * nearest:.1f} % of ours")
 
 
 def table(count: int, names: list[str], results: Results) -> str:
@@ -201,7 +198,7 @@ def table(count: int, names: list[str], results: Results) -> str:
     for name in names:
         able = [row[name] for row in rows if name in row]
         cells = [COLUMNS[key][1].format(median(numbers[key] for numbers in able)) for key in columns]
-        label = name if len(able) == len(rows) else f"{name} ({len(able)} drawings without holes)"
+        label = name if len(able) == len(rows) else f"{name} ({len(able)} drawings)"
         lines.append(f"| {label} | " + " | ".join(cells) + " |")
     if notes := results.notes[count]:
         lines += ["", "Left out:", *(f"* {note}" for note in notes)]

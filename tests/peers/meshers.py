@@ -9,18 +9,27 @@ from __future__ import annotations
 
 import json
 import subprocess
+import sys
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import gmsh
 import gridmesh
 import numpy as np
 import triangle
 from drawing import point_inside, sides
 from netgen.geom2d import SplineGeometry
+
+try:
+    import gmsh
+except OSError as error:
+    # A desktop has the libraries of its window, which is never opened here.
+    packages = (
+        "libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxfixes3 libxft2 libxinerama1 libxrender1"
+    )
+    sys.exit(f"gmsh does not load ({error}); on Debian it needs\n\n    sudo apt-get install {packages}\n")
 
 
 class Failed(Exception):
@@ -52,6 +61,8 @@ class Mesher(ABC):
     """The number of triangles goes with this power of the size."""
     has_holes = True
     """Whether drawings with holes can be meshed."""
+    is_peer = True
+    """False for variants of our own: drawings are compared without them where they fail."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -76,6 +87,7 @@ class Ours(Mesher):
     """Our own mesher through its Python module; the size is a number of triangles."""
 
     power = 1.0
+    is_peer = False
 
     def __init__(self, name: str, **options: object) -> None:
         super().__init__(name)
@@ -190,6 +202,7 @@ class InRust(Mesher):
         super().__init__(name)
         self.process, self.mesher, self.ours = process, mesher, ours
         self.power = Ours.power if ours else Mesher.power
+        self.is_peer = not ours
 
     def guess(self, problem: Problem, edge: float) -> float:
         return problem.target if self.ours else edge
