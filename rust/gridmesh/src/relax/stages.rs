@@ -105,6 +105,17 @@ impl Motion<'_> {
         Ok(even + self.settle(&Power::<2>, all, 12, 0.5 * tolerance, progress.part(0.4, 1.0))?)
     }
 
+    /// Lets the surroundings of some boundary vertices settle.
+    pub fn mend(
+        &mut self,
+        vertices: impl IntoIterator<Item = u32>,
+        tolerance: f64,
+        progress: Progress<'_>,
+    ) -> Result<usize> {
+        let active = &mut Active::near(&self.band, vertices, 4);
+        self.settle(&Power::<2>, active, 12, 0.5 * tolerance, progress)
+    }
+
     /// Gives the worst triangles and their neighbours the say. What is worst is measured away from
     /// pinned vertices, at which the drawing rules.
     pub fn sharpen(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<usize> {
