@@ -39,7 +39,7 @@ pub(crate) fn deviation(
         let n = arcs.len();
         let vertices = &vertices[start..start + n];
         for (&point, &s) in contour.points().iter().zip(contour.arc()) {
-            let arc = arcs[0] + (s - arcs[0]).rem_euclid(contour.length());
+            let arc = s - contour.length() * ((s - arcs[0]) / contour.length()).floor();
             let edge = arcs.partition_point(|&a| a <= arc).max(1) - 1;
             let squared = nearest_on_segment(point, vertices[edge], vertices[(edge + 1) % n]).1;
             if squared > limit * limit {

@@ -244,13 +244,13 @@ fn nearest_drawn(contour: &ClosedCurve, s: f64) -> f64 {
 
 /// Smallest angle of any triangle, in radians.
 pub(crate) fn min_angle(patch: &Patch) -> f64 {
-    let mut least = f64::INFINITY;
+    let mut sharpest = -f64::INFINITY;
     for t in &patch.triangles {
         let p = t.map(|v| patch.vertices[v as usize]);
         for i in 0..3 {
             let (a, b) = (p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
-            least = least.min(a.perp_dot(b).atan2(a.dot(b)));
+            sharpest = sharpest.max(a.dot(b) / a.perp_dot(b));
         }
     }
-    least
+    1f64.atan2(sharpest)
 }

@@ -33,7 +33,7 @@ pub(crate) fn pockets(
         let n = arcs.len();
         let points = contour.points();
         let edge_of = |s: f64| {
-            let arc = arcs[0] + (s - arcs[0]).rem_euclid(contour.length());
+            let arc = s - contour.length() * ((s - arcs[0]) / contour.length()).floor();
             (arcs.partition_point(|&a| a <= arc).max(1) - 1, arc)
         };
         // The points in order, beginning with the first on the first edge.

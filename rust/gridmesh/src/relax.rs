@@ -52,7 +52,7 @@ pub struct RelaxOptions {
 
 impl Default for RelaxOptions {
     fn default() -> Self {
-        RelaxOptions { rings: 3, slide: true, stiffness: 0.25, tolerance: 0.015 }
+        RelaxOptions { rings: 3, slide: true, stiffness: 0.25, tolerance: 0.03 }
     }
 }
 

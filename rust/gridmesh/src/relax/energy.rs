@@ -70,8 +70,9 @@ const SCALE: f64 = 1.0 / (2.0 + 2.0 * AREA);
 impl<const SQUARINGS: usize> Power<SQUARINGS> {
     const EXPONENT: f64 = (1u32 << SQUARINGS) as f64;
 
-    fn power(base: f64) -> f64 {
-        (0..SQUARINGS).fold(base, |power, _| power * power)
+    /// The powers `EXPONENT - 2` and `EXPONENT - 1`.
+    fn powers(base: f64) -> (f64, f64) {
+        (1..SQUARINGS).fold((1.0, base), |(second, first), _| (second * first * base, first * first * base))
     }
 }
 
@@ -84,8 +85,8 @@ impl<const SQUARINGS: usize> Energy for Power<SQUARINGS> {
         }
         let e = ((stretch + AREA) / det + AREA * det) * SCALE;
         let low = e.min(LINEAR);
-        let power = Self::power(low);
-        power + Self::EXPONENT * power / low * (e - low)
+        let (_, first) = Self::powers(low);
+        first * (low + Self::EXPONENT * (e - low))
     }
 
     fn derivatives(&self, stretch: f64, det: f64) -> Derivatives {
@@ -95,16 +96,17 @@ impl<const SQUARINGS: usize> Energy for Power<SQUARINGS> {
         let (eu, ed) = (inverse * SCALE, (AREA - ratio * inverse) * SCALE);
         let (eud, edd) = (-inverse * eu, 2.0 * ratio * inverse * eu);
         let low = e.min(LINEAR);
-        let power = Self::power(low);
-        let first = Self::EXPONENT * power / low;
-        let second = if e > low { 0.0 } else { (Self::EXPONENT - 1.0) * first / low };
+        let (second, power) = Self::powers(low);
+        let first = Self::EXPONENT * power;
+        let second = if e > low { 0.0 } else { Self::EXPONENT * (Self::EXPONENT - 1.0) * second };
+        let (su, sd) = (second * eu, second * ed);
         Derivatives {
-            value: power + first * (e - low),
+            value: power * low + first * (e - low),
             u: first * eu,
             d: first * ed,
-            uu: second * eu * eu,
-            ud: first * eud + second * eu * ed,
-            dd: first * edd + second * ed * ed,
+            uu: su * eu,
+            ud: first * eud + su * ed,
+            dd: first * edd + sd * ed,
         }
     }
 }
