@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::assemble::assemble;
 use crate::curve::ClosedCurve;
-use crate::deviation::{Stray, deviation};
+use crate::deviation::{Stray, beside, deviation};
 use crate::error::Result;
 use crate::lattice::Lattice;
 use crate::mapping::{Corner, corners, snap};
@@ -102,7 +102,8 @@ pub(crate) fn place(
             obstacle = Obstacle { reason: "a triangle stays inverted".to_owned(), at };
             break;
         }
-        let (farthest, mut strays) = deviation(contours, &vertices, &arcs, CLOSE * h);
+        let beside = beside(contours, &vertices, &arcs);
+        let (farthest, mut strays) = deviation(&beside, &vertices, &arcs, CLOSE * h);
         if farthest > STRAY * h {
             strays.retain(|stray| stray.distance > STRAY * h);
             obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
@@ -112,7 +113,7 @@ pub(crate) fn place(
             }
             continue;
         }
-        let (inlets, occupied) = pockets(contours, &vertices, &region.triangles, &arcs, INLET * h);
+        let (inlets, occupied) = pockets(&beside, &vertices, &region.triangles, &arcs, INLET * h);
         let kept = rims.iter().zip(&angles).flat_map(|(rim, angle)| rim.pinned.iter().zip(angle));
         let kept = kept.filter(|(pinned, angle)| **pinned && **angle != 0.0).count();
         let placed = Placed {

@@ -6,11 +6,12 @@
 //! Newton steps with exact derivatives, and the boundary vertices slide along the curve.
 //!
 //! Stages: even spacing along the curve; harmonic extension of the boundary's displacement;
-//! a regularised energy around inverted triangles until there is none; the barrier energy; its
+//! a regularised energy around inverted triangles until there is none; a barrier energy to the
 //! fourth power, in which the worse triangles count; its sixteenth power around the worst; corners
-//! that starve a triangle let go; exact check. Where triangles stay inverted, boundary vertices are spaced evenly around them, more
-//! rings may move, and corners next to them are released. Everything is in lattice units and
-//! visits vertices in the order of their numbers: the same input gives the same bits.
+//! that starve a triangle let go; exact check. Where triangles stay inverted, boundary vertices are
+//! spaced evenly around them, more rings may move, and corners next to them are released.
+//! Everything is in lattice units and visits vertices in the order of their numbers: the same input
+//! gives the same bits.
 //!
 //! The regularised energy is that of Garanzha, Kaporin, Kudryavtseva, Protais, Ray and Sokolov,
 //! Foldover-free maps in 50 lines of code, 2021. The paper (section IV-C) only smooths.
@@ -44,7 +45,7 @@ pub struct RelaxOptions {
     pub rings: usize,
     /// Whether boundary vertices slide along their contours.
     pub slide: bool,
-    /// Sliding by d edges costs this times d squared; the energy of a triangle is 3 or more.
+    /// Sliding by d edges costs this times d squared; the energy of a triangle is one or more.
     pub stiffness: f64,
     /// Vertices that move by less than this (edges) in a sweep are done.
     pub tolerance: f64,

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::check::first_inverted;
-use super::energy::{Barrier, Energy, Power, Regularised, det};
+use super::energy::{Energy, Power, Regularised, det};
 use super::sweep::{Active, Motion};
 use crate::error::Result;
 use crate::progress::Progress;
@@ -97,12 +97,10 @@ impl Motion<'_> {
         Ok(sweeps)
     }
 
-    /// Evens out the valid triangulation, then gives the worst triangles the say.
+    /// Moves every vertex to where its triangles are best, the worse ones counting more.
     pub fn improve(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<usize> {
-        let n = self.band.n_free;
-        let even = self.settle(&Barrier, &mut Active::all(n), 8, tolerance, progress.part(0.0, 0.4))?;
-        let all = &mut Active::all(n);
-        Ok(even + self.settle(&Power::<2>, all, 12, 0.5 * tolerance, progress.part(0.4, 1.0))?)
+        let all = &mut Active::all(self.band.n_free);
+        self.settle(&Power::<2>, all, 12, tolerance, progress)
     }
 
     /// Lets the surroundings of some boundary vertices settle.
@@ -112,8 +110,8 @@ impl Motion<'_> {
         tolerance: f64,
         progress: Progress<'_>,
     ) -> Result<usize> {
-        let active = &mut Active::near(&self.band, vertices, 4);
-        self.settle(&Power::<2>, active, 12, 0.5 * tolerance, progress)
+        let active = &mut Active::near(&self.band, vertices, 2);
+        self.settle(&Power::<2>, active, 12, tolerance, progress)
     }
 
     /// Gives the worst triangles and their neighbours the say. What is worst is measured away from
@@ -137,7 +135,7 @@ impl Motion<'_> {
             .flat_map(|(t, _)| *t)
             .collect();
         let mut active = Active::near(&self.band, worst, 1);
-        self.settle(&Power::<4>, &mut active, 10, 0.5 * tolerance, progress)
+        self.settle(&Power::<4>, &mut active, 10, tolerance, progress)
     }
 
     /// Frees the pinned vertices at which a triangle starves, and lets their surroundings settle.
@@ -160,7 +158,7 @@ impl Motion<'_> {
                 self.slide.home[v as usize] = self.slide.s[v as usize];
             }
             let mut active = Active::near(&self.band, starved.iter().copied(), 2);
-            self.settle(&Power::<2>, &mut active, 30, 0.25 * tolerance, progress)?;
+            self.settle(&Power::<2>, &mut active, 10, tolerance, progress)?;
             released.extend(starved);
         }
         released.sort_unstable();
