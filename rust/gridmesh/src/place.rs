@@ -245,13 +245,30 @@ fn nearest_drawn(contour: &ClosedCurve, s: f64) -> f64 {
 
 /// Smallest angle of any triangle, in radians.
 pub(crate) fn min_angle(patch: &Patch) -> f64 {
-    let mut sharpest = -f64::INFINITY;
-    for t in &patch.triangles {
+    sharpest(patch, |_| true)
+}
+
+/// Smallest angle of the triangles that have no vertex on a corner of the drawing, in radians: what
+/// the placement answers for.
+pub(crate) fn min_angle_off_corners(patch: &Patch) -> f64 {
+    let mut on_corner = vec![false; patch.vertices.len()];
+    for l in &patch.loops {
+        for (flag, &turning) in on_corner[l.start as usize..].iter_mut().zip(&l.corner) {
+            *flag = turning != 0.0;
+        }
+    }
+    sharpest(patch, |t| t.iter().all(|&v| !on_corner[v as usize]))
+}
+
+fn sharpest(patch: &Patch, counts: impl Fn(&[u32; 3]) -> bool) -> f64 {
+    // The cotangent of the least angle.
+    let mut most = -f64::INFINITY;
+    for t in patch.triangles.iter().filter(|t| counts(t)) {
         let p = t.map(|v| patch.vertices[v as usize]);
         for i in 0..3 {
             let (a, b) = (p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
-            sharpest = sharpest.max(a.dot(b) / a.perp_dot(b));
+            most = most.max(a.dot(b) / a.perp_dot(b));
         }
     }
-    1f64.atan2(sharpest)
+    1f64.atan2(most)
 }

@@ -31,7 +31,9 @@ pub(crate) fn pockets(
     for (contour, (beside, arcs)) in beside.iter().zip(arcs).enumerate() {
         let n = arcs.len();
         for stretch in beside.chunk_by(|a, b| a.edge == b.edge) {
-            let Some(deepest) = stretch.iter().max_by(|a, b| a.squared.total_cmp(&b.squared)) else { continue };
+            let Some(deepest) = stretch.iter().max_by(|a, b| a.squared.total_cmp(&b.squared)) else {
+                continue;
+            };
             if deepest.squared <= limit * limit {
                 continue;
             }
@@ -139,14 +141,17 @@ mod tests {
         vertices.push(DVec2::new(5.0, 5.0));
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
         let contours = [contour];
-        let (inlets, found) = pockets(&beside(&contours, &vertices, &arcs), &vertices, &triangles, &arcs, 0.1);
+        let (inlets, found) =
+            pockets(&beside(&contours, &vertices, &arcs), &vertices, &triangles, &arcs, 0.1);
         assert_eq!(inlets.len(), 1);
         assert!(inlets[0].contains(&drawn[4]));
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].edge, found[0].point), (3, drawn[4]));
         assert!((found[0].distance - 0.392).abs() < 1e-3, "{}", found[0].distance);
         vertices[6] = DVec2::new(5.0, 2.0);
-        assert!(pockets(&beside(&contours, &vertices, &arcs), &vertices, &triangles, &arcs, 0.1).1.is_empty());
+        assert!(
+            pockets(&beside(&contours, &vertices, &arcs), &vertices, &triangles, &arcs, 0.1).1.is_empty()
+        );
         Ok(())
     }
 }
