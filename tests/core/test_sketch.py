@@ -51,6 +51,15 @@ def test_shapes_are_meshed_or_the_least_count_works(name, triangles, boundary):
     check_patch(patch, [points])
 
 
+def test_straightening_lowers_the_turns_by_a_third_in_the_median():
+    kept = []
+    for drawing in DRAWINGS.values():
+        report = gridmesh.mesh_sketch(drawing["points"], triangles=3000, boundary="grown").report
+        assert report["turns"] <= report["turns_before"]
+        kept.append(report["turns"] / report["turns_before"])
+    assert np.median(kept) <= 2 / 3
+
+
 @SLOW
 @given(
     amplitudes=st.lists(st.floats(-0.25, 0.25), min_size=5, max_size=5),

@@ -393,6 +393,7 @@ impl Job<'_> {
             irregular: outline.irregular(),
             minimum_irregular: 6 + 3 * (self.contours.len() - 1),
             turns: outline.turns(),
+            turns_before: outline.turns_before,
             turns_bound: outline.turns_bound,
             cost: outline.cost,
             cost_bound: outline.cost_bound,
