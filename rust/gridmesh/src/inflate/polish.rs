@@ -11,11 +11,11 @@ use crate::patch::Loop;
 /// Sum of the squared sides over twice the area of an equilateral triangle.
 const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
 
-/// Cotangent of the angle, 27 degrees, below which [`sharpen`] acts.
-const SHARP: f64 = 1.962_610_505_505_15;
+/// Cotangent of the angle, 30 degrees, below which [`sharpen`] acts.
+const SHARP: f64 = 1.732_050_807_568_877_2;
 
 /// Rounds of [`sharpen`] at most.
-const ROUNDS: u32 = 24;
+const ROUNDS: u32 = 32;
 
 /// Rounds that a vertex may fail in a row, see [`sharpen`].
 const PATIENCE: u8 = 6;
