@@ -7,23 +7,35 @@ numpy only, no bpy: everything here runs in plain Python. Points are float64 in 
 from __future__ import annotations
 
 import importlib
+import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .outlines import Sketch, Stroke, StrokeError, area, nest, prepare, project
 
-NATIVE_VERSION = "0.1.0"
+MANIFEST = tomllib.loads((Path(__file__).parent / "blender_manifest.toml").read_text(encoding="utf-8"))
+
+NATIVE_VERSION: str = MANIFEST["version"]
 """Version of the `gridmesh` module that this extension is shipped with; newer patch releases serve too."""
+
+Progress = Callable[[float], object]
+"""Called with the fraction that is done, from any thread; cancels by returning False."""
 
 
 class NativeError(RuntimeError):
     """The module `gridmesh` cannot be used. The message says why and what to do."""
 
 
-def native() -> Any:
-    """Import the module `gridmesh` and check its version.
+class CancelledError(Exception):
+    """The user asked to stop. Nothing was made."""
+
+
+def native(*needed: str) -> Any:
+    """Import the module `gridmesh` and check that it has this extension's version and what is needed of it.
 
     Raises
     ------
@@ -42,6 +54,13 @@ def native() -> Any:
         raise NativeError(
             f"The native module 'gridmesh' is {version}, this extension needs {NATIVE_VERSION}; "
             "update GridMesh and every extension that brings the module, then restart Blender"
+        )
+    missing = [name for name in needed if not hasattr(module, name)]
+    if missing:
+        where = getattr(module, "__file__", None) or "an unknown place"
+        raise NativeError(
+            f"The native module 'gridmesh' ({version}, from {where}) is an unfinished build without "
+            f"'{missing[0]}'; install GridMesh {NATIVE_VERSION} again and restart Blender"
         )
     return module
 
@@ -80,8 +99,8 @@ class Failure:
 
 def sketches_of(
     strokes: list[Stroke], *, close_gaps: float, holes: bool
-) -> tuple[list[Sketch], list[Failure]]:
-    """Prepare every stroke; strokes that cannot be are returned with the reason."""
+) -> tuple[list[Sketch], list[Failure], list[str]]:
+    """Prepare every stroke; strokes that cannot be are returned with the reason, and what else to tell."""
     sketches: list[Sketch] = []
     failures: list[Failure] = []
     for stroke in strokes:
@@ -89,24 +108,33 @@ def sketches_of(
             sketches.append(prepare(stroke, close_gaps))
         except StrokeError as error:
             failures.append(Failure(stroke.label, str(error)))
-    return (nest(sketches) if holes else sketches), failures
+    outer, notes = nest(sketches) if holes else (sketches, [])
+    return outer, failures, notes
 
 
 def build(
-    sketches: list[Sketch], sketch_options: dict[str, Any], body_options: dict[str, Any] | None
+    sketches: list[Sketch],
+    sketch_options: dict[str, Any],
+    body_options: dict[str, Any] | None,
+    progress: Progress | None = None,
 ) -> tuple[list[Body], list[Failure]]:
     """Mesh every sketch, several at once, and inflate it unless `body_options` is None.
 
     sketch_options, body_options : keyword arguments of `gridmesh.mesh_sketch` and `gridmesh.inflate`.
-    Sketches that are refused are returned with the reason. Raises NativeError without the module.
+    Sketches that are refused are returned with the reason. Raises NativeError without the module, and
+    CancelledError if `progress` or Ctrl-C asked to stop.
     """
-    gridmesh = native()
+    gridmesh = native("mesh_sketch", "map_sketches", "inflate", "flat")
     bodies: list[Body] = []
     failures: list[Failure] = []
-    for sketch, surface in zip(
-        sketches, _surfaces(gridmesh, sketches, sketch_options, body_options), strict=True
-    ):
+    try:
+        surfaces = _surfaces(gridmesh, sketches, sketch_options, body_options, progress)
+    except KeyboardInterrupt as error:
+        raise CancelledError from error
+    for sketch, surface in zip(sketches, surfaces, strict=True):
         if isinstance(surface, gridmesh.GridMeshError):
+            if surface.kind == "cancelled":
+                raise CancelledError from surface
             failures.append(Failure(sketch.stroke.label, str(surface)))
             continue
         bodies.append(
@@ -122,29 +150,52 @@ def build(
     return bodies, failures
 
 
+_MESHING = 0.8
+"""Part of the time that meshing takes; the rest is inflation."""
+
+
 def _surfaces(
-    gridmesh: Any, sketches: list[Sketch], sketch_options: dict[str, Any], body_options: dict[str, Any] | None
+    gridmesh: Any,
+    sketches: list[Sketch],
+    sketch_options: dict[str, Any],
+    body_options: dict[str, Any] | None,
+    progress: Progress | None,
 ) -> list[Any]:
     """Surface or GridMeshError for every sketch."""
     drawings = [
         (sketch.outline, [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]) for sketch in sketches
     ]
     if body_options is not None and len(drawings) > 1:
-        return list(gridmesh.map_sketches(drawings, **{**sketch_options, **body_options}))
-
-    def surface(outline: np.ndarray, holes: list[np.ndarray]) -> Any:
         try:
-            patch = gridmesh.mesh_sketch(outline, holes, **sketch_options)
-            return gridmesh.flat(patch) if body_options is None else gridmesh.inflate(patch, **body_options)
+            options = {**sketch_options, **body_options}
+            return list(gridmesh.map_sketches(drawings, progress=progress, **options))
+        except gridmesh.GridMeshError as error:  # cancelled, or an option that is wrong for all
+            return [error] * len(drawings)
+
+    def surface(at: int, outline: np.ndarray, holes: list[np.ndarray]) -> Any:
+        meshing = 1.0 if body_options is None else _MESHING
+        first = _part(progress, at / len(drawings), (at + meshing) / len(drawings))
+        second = _part(progress, (at + meshing) / len(drawings), (at + 1) / len(drawings))
+        try:
+            patch = gridmesh.mesh_sketch(outline, holes, progress=first, **sketch_options)
+            if body_options is None:
+                return gridmesh.flat(patch)
+            return gridmesh.inflate(patch, progress=second, **body_options)
         except gridmesh.GridMeshError as error:
             return error
 
-    return [surface(outline, holes) for outline, holes in drawings]
+    return [surface(at, outline, holes) for at, (outline, holes) in enumerate(drawings)]
+
+
+def _part(progress: Progress | None, begin: float, end: float) -> Progress | None:
+    """Progress of a part of the work, from `begin` to `end`."""
+    return None if progress is None else lambda fraction: progress(begin + fraction * (end - begin))
 
 
 def suggested_edge_length(sketches: list[Sketch], triangles: int) -> float | None:
     """Edge length at which the largest sketch has about that many triangles; None if none has an area."""
-    largest = max((area(sketch.outline) for sketch in sketches), default=0.0)
+    areas = (area(sketch.outline) - sum(area(hole.outline) for hole in sketch.holes) for sketch in sketches)
+    largest = max(areas, default=0.0)
     if largest <= 0 or triangles <= 0:
         return None
     return float(np.sqrt(largest / triangles * 4 / np.sqrt(3)))

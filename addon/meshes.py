@@ -10,6 +10,7 @@ import numpy as np
 from mathutils import Matrix
 
 from .api import Body, Failure
+from .creases import rim_creases
 from .outlines import Sketch
 from .strokes import selected
 
@@ -24,6 +25,8 @@ class Transaction:
 
     def __init__(self) -> None:
         self._made: list[tuple[Any, bpy.types.ID]] = []
+        self.notes: list[str] = []
+        """What the user should know of choices made on the way."""
 
     def __enter__(self) -> Transaction:
         return self
@@ -75,6 +78,17 @@ def obstacle(ob: bpy.types.Object) -> str:
     return ""
 
 
+def made_from_holes(context: bpy.types.Context, sketches: list[Sketch]) -> list[str]:
+    """Tell which objects were made from strokes that are holes of others now; they are left as they are."""
+    before = made_before(context)
+    holes = [hole.stroke for sketch in sketches for hole in sketch.holes]
+    return [
+        f"{stroke.label}: it is a hole now; '{before[stroke.key].name}' was made from it and is left as it is"
+        for stroke in holes
+        if stroke.key in before
+    ]
+
+
 def separate_blocked(
     context: bpy.types.Context, sketches: list[Sketch]
 ) -> tuple[list[Sketch], list[Failure]]:
@@ -93,12 +107,13 @@ def separate_blocked(
 
 
 def place(
-    context: bpy.types.Context, bodies: list[Body], *, update: bool, collection: str
-) -> list[bpy.types.Object]:
-    """Make an object of every body, or bring the one made earlier up to date.
+    context: bpy.types.Context, bodies: list[Body], *, update: bool, collection: str, crease_angle: float
+) -> list[str]:
+    """Make an object of every body, or bring the one made earlier up to date; return what is worth telling.
 
-    collection : "SOURCE", "ACTIVE" or "NEW". In Object Mode the objects become the selection, the first one
-    active. If anything fails, everything made is removed again.
+    collection : "SOURCE", "ACTIVE" or "NEW". crease_angle : in radians, creases from which on are marked sharp.
+    In Object Mode the objects become the selection, the first one active. If anything fails, everything made
+    is removed again.
     """
     before = made_before(context) if update else {}
     objects = []
@@ -106,20 +121,22 @@ def place(
         into = _Collections(context, transaction, collection)
         for body in bodies:
             ob = before.get(body.sketch.stroke.key)
-            objects.append(ob if ob is not None else _new_object(body, into, transaction))
+            objects.append(ob if ob is not None else _new_object(body, into, transaction, crease_angle))
         for body, ob in zip(bodies, objects, strict=True):
             if body.sketch.stroke.key in before:
-                _refresh(ob, body)
+                _refresh(ob, body, crease_angle)
     _show(context, objects)
-    return objects
+    return list(dict.fromkeys(transaction.notes))
 
 
-def _new_object(body: Body, into: _Collections, transaction: Transaction) -> bpy.types.Object:
+def _new_object(
+    body: Body, into: _Collections, transaction: Transaction, crease_angle: float
+) -> bpy.types.Object:
     stroke = body.sketch.stroke
     mesh = transaction.new(
         bpy.data.meshes, f"{stroke.source}.{stroke.layer}" if stroke.layer else stroke.source
     )
-    fill(mesh, body)
+    fill(mesh, body, crease_angle)
     material = surface_material(stroke.material, stroke.filled, transaction)
     if material is not None:
         mesh.materials.append(material)
@@ -136,8 +153,8 @@ def _link(body: Body) -> dict[str, Any]:
     return {"source": source, "layer": layer, "stroke": index, "matrix": matrix}
 
 
-def fill(mesh: bpy.types.Mesh, body: Body) -> None:
-    """Put the body's geometry and UV map into an empty mesh. Faces are smooth."""
+def fill(mesh: bpy.types.Mesh, body: Body, crease_angle: float) -> None:
+    """Put the body's geometry and UV map into an empty mesh. Faces are smooth, creases marked sharp."""
     triangles = np.ascontiguousarray(body.triangles, np.int32)
     n_corners = triangles.size
     mesh.vertices.add(len(body.vertices))
@@ -149,9 +166,21 @@ def fill(mesh: bpy.types.Mesh, body: Body) -> None:
     mesh.update(calc_edges=True)
     layer = mesh.uv_layers.new(name=UV_MAP, do_init=False)
     layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
+    _mark_creases(mesh, body, crease_angle)
 
 
-def _refresh(ob: bpy.types.Object, body: Body) -> None:
+def _mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
+    edges = np.empty(len(mesh.edges) * 2, np.int32)
+    mesh.edges.foreach_get("vertices", edges)
+    sides = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", sides)
+    edges, sides = edges.reshape(-1, 2), sides.reshape(-1, 3)
+    sharp = rim_creases(body.vertices, body.triangles, body.silhouette, edges, sides, angle)
+    if sharp.any():
+        mesh.edges.foreach_set("use_edge_sharp", sharp)
+
+
+def _refresh(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
     """Replace the geometry of an object made earlier; keep name, materials, modifiers, children, shading.
 
     Where the drawing plane moved, the object moves along, from wherever it was put meanwhile.
@@ -160,7 +189,7 @@ def _refresh(ob: bpy.types.Object, body: Body) -> None:
     flat_shaded = _flat_shaded(mesh)
     groups = [group.name for group in ob.vertex_groups]
     mesh.clear_geometry()
-    fill(mesh, body)
+    fill(mesh, body, crease_angle)
     for name in groups:  # cleared with the geometry, but modifiers refer to them
         if name not in ob.vertex_groups:
             ob.vertex_groups.new(name=name)
@@ -186,19 +215,24 @@ def _flat_shaded(mesh: bpy.types.Mesh) -> bool:
 def surface_material(
     material: bpy.types.Material | None, filled: bool, transaction: Transaction
 ) -> bpy.types.Material | None:
-    """Return the material for a body drawn with `material`: itself, or for grease pencil its surface twin.
+    """Return the material for a body drawn with `material`: itself, or for grease pencil its twin.
 
-    A grease pencil material shows on a mesh as plain grey. Its twin has its colour and the name
-    "<name> Surface"; it is made once and found by name afterwards, so that it can be edited.
+    A grease pencil material shows on a mesh as plain grey. Its twins have its colours: "<name> Surface" that of
+    the stroke, "<name> Fill" that of the fill, for bodies of filled strokes. Each is made once and found by name
+    afterwards, so that it can be edited.
     """
     if material is None or not material.is_grease_pencil:
         return material
-    name = _shortened(material.name, " Surface")
+    style = material.grease_pencil
+    filled = _shows_fill(style, filled)
+    color = (*(style.fill_color if filled else style.color)[:3], 1.0)
+    name = _shortened(material.name, " Fill" if filled else " Surface")
     twin = bpy.data.materials.get(name)
     if twin is not None and not twin.is_grease_pencil:
+        if not np.allclose(twin.diffuse_color, color, atol=1e-3):
+            transaction.notes.append(f"material '{name}' was there and is used with its own colour")
         return twin
     twin = transaction.new(bpy.data.materials, name)
-    color = _color(material.grease_pencil, filled)
     twin.diffuse_color = color
     if twin.node_tree is None:
         twin.use_nodes = True  # before Blender 5.0
@@ -213,12 +247,12 @@ def _shortened(name: str, suffix: str) -> str:
     return name.encode()[: 63 - len(suffix)].decode(errors="ignore") + suffix
 
 
-def _color(style: bpy.types.MaterialGPencilStyle, filled: bool) -> tuple[float, float, float, float]:
-    """Opaque colour of the fill if there is one, else of the stroke."""
+def _shows_fill(style: bpy.types.MaterialGPencilStyle, filled: bool) -> bool:
+    """Whether strokes of this material are seen with a fill, where the stroke itself says `filled`."""
     option = style.bl_rna.properties.get("show_fill")  # deprecated in 5.2, where strokes have fills
-    if option is not None and not getattr(option, "is_deprecated", False):
-        filled = filled or style.show_fill
-    return (*(style.fill_color if filled else style.color)[:3], 1.0)
+    if option is None or getattr(option, "is_deprecated", False):
+        return filled
+    return filled or style.show_fill
 
 
 class _Collections:
@@ -231,7 +265,7 @@ class _Collections:
 
     def of(self, source: str) -> bpy.types.Collection:
         if self.choice == "ACTIVE":
-            return self.context.collection
+            return self._active()
         beside = self._beside(source)
         if self.choice == "SOURCE":
             return beside
@@ -244,13 +278,35 @@ class _Collections:
         """First collection of the source that is shown and can be changed, else the active one."""
         ob = self.context.view_layer.objects.get(source)
         own = ob.users_collection if ob is not None else ()
-        return next((one for one in own if one in self.usable), self.context.collection)
+        home = next((one for one in own if one in self.usable), None)
+        if home is not None:
+            return home
+        active = self._active()
+        if own:
+            self.transaction.notes.append(
+                f"the collection '{own[0].name}' of '{source}' is hidden, excluded or linked; "
+                f"what was made of it is in '{active.name}'"
+            )
+        return active
+
+    def _active(self) -> bpy.types.Collection:
+        """Return the active collection, or one around it that is shown; new objects are never out of sight."""
+        active = self.context.collection
+        if active in self.usable:
+            return active
+        root = self.context.scene.collection
+        self.transaction.notes.append(
+            f"the active collection '{active.name}' is hidden, excluded or linked; "
+            f"what was made is in '{root.name}'"
+        )
+        return root
 
 
 def _usable(layer_collection: bpy.types.LayerCollection) -> list[bpy.types.Collection]:
-    """All collections of the view layer that are not excluded and can be changed."""
+    """All collections of the view layer that are shown and can be changed."""
     own = layer_collection.collection
-    found = [] if layer_collection.exclude or not own.is_editable or own.override_library else [own]
+    changeable = own.is_editable and not own.override_library
+    found = [own] if changeable and layer_collection.is_visible else []
     for child in layer_collection.children:
         found += _usable(child)
     return found

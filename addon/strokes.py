@@ -22,6 +22,9 @@ SOURCE_TYPES = {"GREASEPENCIL", "CURVE", "FONT", "CURVES"}
 # What the attribute `curve_type` means. Where it is absent, all are Catmull-Rom.
 _CATMULL_ROM, _POLY, _BEZIER, _NURBS = range(4)
 
+# What the values of an attribute are called, where not "value".
+_VALUES = {"FLOAT_VECTOR": "vector", "FLOAT_COLOR": "color", "BYTE_COLOR": "color"}
+
 
 @dataclass
 class Reading:
@@ -30,6 +33,8 @@ class Reading:
     strokes: list[Stroke] = field(default_factory=list)
     failures: list[Failure] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    wanted: set[tuple[str, str, int]] | None = None
+    """Keys of the strokes that become bodies; the others are there as their holes. None: all."""
 
     def add(self, other: Reading) -> None:
         """Append what another reading found."""
@@ -152,7 +157,7 @@ class _Attributes:
         values[:] = default
         attribute = self.attributes.get(name)
         if attribute is not None and attribute.domain == domain and len(attribute.data) == size:
-            key = "vector" if default.ndim else "value"
+            key = _VALUES.get(attribute.data_type, "value")
             flat = values.reshape(-1)
             attribute.data.foreach_get(key, flat)
         return values
@@ -172,6 +177,14 @@ class _Attributes:
         before = np.concatenate([[0], np.cumsum(self.read(".selection", "POINT", np.bool_(True)))])
         return before[offsets[1:]] > before[offsets[:-1]]
 
+    def painted(self, offsets: np.ndarray) -> np.ndarray:
+        """Whether each curve has colours painted over those of its material."""
+        clear = np.zeros(4, np.float32)
+        before = np.concatenate([[0], np.cumsum(self.read("vertex_color", "POINT", clear)[:, 3] > 0)])
+        return (before[offsets[1:]] > before[offsets[:-1]]) | (
+            self.read("fill_color", "CURVE", clear)[:, 3] > 0
+        )
+
 
 def _read_geometry(
     ob: bpy.types.Object, layer: str, attributes: Any, offsets: np.ndarray, world: np.ndarray
@@ -185,6 +198,7 @@ def _read_geometry(
     selected = table.selected(offsets)
     materials = table.read("material_index", "CURVE", np.int32(0))
     filled = table.read("fill_id", "CURVE", np.int32(0)) != 0  # from Blender 5.2 on
+    painted = table.painted(offsets)
     sample = _sampler(table, positions, cyclic, offsets)
     slots = [slot.material for slot in ob.material_slots]
     for index in range(n_curves):
@@ -198,6 +212,7 @@ def _read_geometry(
             "selected": bool(selected[index]),
             "material": slots[material] if 0 <= material < len(slots) else None,
             "filled": bool(filled[index]),
+            "painted": bool(painted[index]),
         }
         try:
             points = sample(index)
@@ -222,7 +237,11 @@ def _sampler(table: _Attributes, positions: np.ndarray, cyclic: np.ndarray, offs
     def sample(index: int) -> np.ndarray:
         at = slice(offsets[index], offsets[index + 1])
         points, closed, resolution = positions[at], bool(cyclic[index]), int(resolutions[index])
-        if kinds[index] == _BEZIER and left is not None and right is not None:
+        if kinds[index] == _BEZIER:
+            if left is None or right is None:
+                raise sampling.SamplingError(
+                    "it is a Bezier stroke without handles; set its handle type to Automatic or its type to Poly"
+                )
             return sampling.bezier(points, left[at], right[at], closed, resolution)
         if kinds[index] == _CATMULL_ROM:
             return sampling.catmull_rom(points, closed, resolution)

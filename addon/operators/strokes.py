@@ -10,6 +10,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from .. import api, meshes, outlines, strokes
+from ..progress import Pointer
 from ..properties import ShapeOptions, SketchOptions
 
 _NAMED = 3
@@ -53,8 +54,8 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
     )
     use_holes: BoolProperty(
         name="Holes",
-        description="Make strokes inside others of the same layer holes in them",
-        default=False,
+        description="Make strokes inside others of the same layer holes in them, and strokes inside holes bodies",
+        default=True,
     )
     update_existing: BoolProperty(
         name="Update Existing",
@@ -92,7 +93,8 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
         if editing and not self.properties.is_property_set("use"):
             self.use = "SELECTED" if any(stroke.selected for stroke in read) else "ALL"
         if not self.properties.is_property_set("edge_length"):
-            sketches, _ = api.sketches_of(self._chosen(read), close_gaps=self.close_gaps, holes=False)
+            chosen = self._chosen(read)
+            sketches, _, _ = api.sketches_of(chosen, close_gaps=self.close_gaps, holes=self.use_holes)
             length = api.suggested_edge_length(sketches, self.triangles)
             self.edge_length = length if length is not None else self.edge_length
         return self.execute(context)
@@ -111,18 +113,34 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
         chosen = self._chosen(reading.strokes)
         if not chosen:
             return self._refuse(_none_chosen(reading.strokes))
-        sketches, refused = api.sketches_of(chosen, close_gaps=self.close_gaps, holes=self.use_holes)
+        sketches, refused, notes = api.sketches_of(chosen, close_gaps=self.close_gaps, holes=self.use_holes)
+        if reading.wanted is not None:
+            sketches, refused = _only(reading.wanted, sketches, chosen, refused)
         failures += refused
         if self.update_existing:
+            notes += meshes.made_from_holes(context, sketches)
             sketches, refused = meshes.separate_blocked(context, sketches)
             failures += refused
-        bodies, refused = api.build(sketches, self.sketch_options(), self.body_options())
+        try:
+            with Pointer(context) as pointer:
+                bodies, refused = api.build(sketches, self.sketch_options(), self.body_options(), pointer)
+        except api.CancelledError:
+            self.report({"WARNING"}, "Cancelled; nothing was made")
+            return {"CANCELLED"}
         failures += refused
         if not bodies:
             return self._refuse(*map(str, failures))
-        meshes.place(context, bodies, update=self.update_existing, collection=self.collection)
+        notes += meshes.place(
+            context,
+            bodies,
+            update=self.update_existing,
+            collection=self.collection,
+            crease_angle=self.corner_angle,
+        )
         self.result = self._summary(bodies, perf_counter() - started)
         self.report({"INFO"}, self.result)
+        if notes:
+            self.report({"INFO"}, _listed(notes))
         for warning in _warnings(bodies, failures):
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
@@ -192,7 +210,10 @@ def _read_for(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> str
     objects = [ob for ob in map(context.view_layer.objects.get, names) if ob is not None]
     sources = [ob for ob in objects if ob.type in strokes.SOURCE_TYPES]
     reading = strokes.read_objects(context, sources)
-    reading.strokes = [stroke for stroke in reading.strokes if stroke.key in made]
+    # All strokes of their layers stay: some are holes.
+    layers = {key[:2] for key in made}
+    reading.strokes = [stroke for stroke in reading.strokes if stroke.key[:2] in layers]
+    reading.wanted = set(made)
     found = {stroke.key for stroke in reading.strokes}
     for key, body in made.items():
         if key not in found:
@@ -201,6 +222,21 @@ def _read_for(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> str
             reason = f"its stroke ({where}, stroke {index + 1}) is gone or hidden; select the drawing instead"
             reading.failures.append(api.Failure(f"'{body.name}'", reason))
     return reading
+
+
+def _only(
+    wanted: set[tuple[str, str, int]],
+    sketches: list[outlines.Sketch],
+    chosen: list[outlines.Stroke],
+    refused: list[api.Failure],
+) -> tuple[list[outlines.Sketch], list[api.Failure]]:
+    """Leave what concerns the wanted strokes, and name those of them that became holes."""
+    sketches = [sketch for sketch in sketches if sketch.stroke.key in wanted]
+    labels = {stroke.label for stroke in chosen if stroke.key in wanted}
+    refused = [failure for failure in refused if failure.label in labels]
+    labels -= {sketch.stroke.label for sketch in sketches} | {failure.label for failure in refused}
+    reason = "it lies inside another stroke and is a hole there; turn off Holes to make a body of it"
+    return sketches, refused + [api.Failure(label, reason) for label in sorted(labels)]
 
 
 _PLURALS = {"body": "bodies", "irregular vertex": "irregular vertices"}
@@ -240,6 +276,12 @@ def _warnings(bodies: list[api.Body], failures: list[api.Failure]) -> list[str]:
     if crossed:
         cut = "cuts through itself" if crossed == 1 else "cut through themselves"
         warnings.append(f"{_counted(crossed, 'body')} {cut}; use a smaller depth or more triangles")
+    painted = sum(body.sketch.stroke.painted for body in bodies)
+    if painted:
+        whose = "a stroke is" if painted == 1 else f"{painted} strokes are"
+        warnings.append(
+            f"{whose[0].upper()}{whose[1:]} painted; bodies have the colour of the material instead"
+        )
     if failures:
         warnings.append(f"{_counted(len(failures), 'stroke')} left out:\n{_listed(map(str, failures))}")
     return warnings

@@ -130,14 +130,14 @@ def world_vertices(ob):
     return vertices(ob.data) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def check_body(ob):
-    """One closed body of genus 0, wound outward, that Blender finds nothing to repair in."""
+def check_body(ob, genus=0):
+    """One closed body of a genus, wound outward, that Blender finds nothing to repair in."""
     tri, points = triangles(ob.data), vertices(ob.data)
     edges = np.concatenate([tri[:, [0, 1]], tri[:, [1, 2]], tri[:, [2, 0]]])
     directed = {tuple(edge) for edge in edges.tolist()}
     assert len(directed) == len(edges), "an edge is used twice in one direction"
     assert all((b, a) in directed for a, b in directed), "the mesh has a border"
-    assert len(points) - len(edges) // 2 + len(tri) == 2
+    assert len(points) - len(edges) // 2 + len(tri) == 2 - 2 * genus
     a, b, c = (points[tri[:, k]] for k in range(3))
     assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() > 0, "inside out"
     assert not ob.data.validate(verbose=True)

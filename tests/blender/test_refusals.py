@@ -210,11 +210,11 @@ def test_failure_while_objects_are_made_leaves_nothing(monkeypatch):
     before = fingerprint()
     fill, calls = meshes.fill, []
 
-    def failing(mesh, body):
+    def failing(mesh, body, angle):
         calls.append(body)
         if len(calls) == 2:
             raise MemoryError
-        fill(mesh, body)
+        fill(mesh, body, angle)
 
     monkeypatch.setattr(meshes, "fill", failing)
     with pytest.raises(RuntimeError, match="MemoryError"):
