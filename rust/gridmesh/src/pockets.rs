@@ -24,7 +24,7 @@ pub(crate) fn pockets(
     arcs: &[Vec<f64>],
     limit: f64,
 ) -> (Vec<Vec<DVec2>>, Vec<Stray>) {
-    let mut fans = None;
+    let mut fans: Option<Fans<'_>> = None;
     let n_boundary: usize = arcs.iter().map(Vec::len).sum();
     let (mut inlets, mut found) = (Vec::new(), Vec::new());
     let mut start = 0;
@@ -46,11 +46,15 @@ pub(crate) fn pockets(
             if doubled_area(&pocket) >= 0.0 {
                 continue;
             }
+            let low = pocket.iter().fold(a, |low, p| low.min(*p));
+            let high = pocket.iter().fold(a, |high, p| high.max(*p));
+            let in_box = |p: DVec2| p.cmpge(low).all() && p.cmple(high).all();
             let depth = fans
                 .get_or_insert_with(|| Fans::new(vertices.len(), triangles))
                 .around(ends, RINGS)
-                .into_iter()
-                .filter(|&v| v >= n_boundary && encloses(&pocket, vertices[v]))
+                .iter()
+                .map(|&v| v as usize)
+                .filter(|&v| v >= n_boundary && in_box(vertices[v]) && encloses(&pocket, vertices[v]))
                 .map(|v| distance_to(&pocket, vertices[v]))
                 .fold(0.0, f64::max);
             if depth > limit {
@@ -79,6 +83,10 @@ struct Fans<'a> {
     triangles: &'a [[u32; 3]],
     starts: Vec<u32>,
     items: Vec<u32>,
+    /// The search in which a vertex was found last.
+    seen: Vec<u32>,
+    searches: u32,
+    found: Vec<u32>,
 }
 
 impl<'a> Fans<'a> {
@@ -98,28 +106,33 @@ impl<'a> Fans<'a> {
                 next[v as usize] += 1;
             }
         }
-        Self { triangles, starts, items }
+        Self { triangles, starts, items, seen: vec![0; n_vertices], searches: 0, found: Vec::new() }
     }
 
     /// The vertices within `rings` edges of any of `seeds`.
-    fn around(&self, seeds: [usize; 2], rings: usize) -> Vec<usize> {
-        let mut found = seeds.to_vec();
+    fn around(&mut self, seeds: [usize; 2], rings: usize) -> &[u32] {
+        self.searches += 1;
+        self.found.clear();
+        self.found.extend(seeds.map(|v| v as u32));
+        for v in seeds {
+            self.seen[v] = self.searches;
+        }
         let mut from = 0;
         for _ in 0..rings {
-            let to = found.len();
+            let to = self.found.len();
             for i in from..to {
-                let v = found[i];
+                let v = self.found[i] as usize;
                 for &t in &self.items[self.starts[v] as usize..self.starts[v + 1] as usize] {
                     for w in self.triangles[t as usize] {
-                        if !found.contains(&(w as usize)) {
-                            found.push(w as usize);
+                        if std::mem::replace(&mut self.seen[w as usize], self.searches) != self.searches {
+                            self.found.push(w);
                         }
                     }
                 }
             }
             from = to;
         }
-        found
+        &self.found
     }
 }
 
