@@ -205,7 +205,12 @@ fn windows_give_the_same_as_the_whole() {
 
 /// The least cost of a symmetric closed path: half of it, through the band of the whole curve, on three
 /// sheets, from every way to begin on the axis.
-fn brute_force_symmetric(target: &Target, axis: Reflection, max_distance: f64, closeness: f64) -> Option<u32> {
+fn brute_force_symmetric(
+    target: &Target,
+    axis: Reflection,
+    max_distance: f64,
+    closeness: f64,
+) -> Option<u32> {
     let band = Band::new(target, max_distance);
     let (n, samples) = (band.nodes.len() as i64, band.n_samples() as i64);
     let cost = |node: usize| {
@@ -320,7 +325,8 @@ fn halves() -> Vec<(String, Vec<DVec2>)> {
         let half = (0..=24)
             .map(|i| {
                 let t = std::f64::consts::PI * f64::from(i) / 24.0;
-                let radius = size * (1.0 + 0.25 * (3.0 * t + phase[0]).cos() + 0.25 * (5.0 * t + phase[1]).cos());
+                let radius =
+                    size * (1.0 + 0.25 * (3.0 * t + phase[0]).cos() + 0.25 * (5.0 * t + phase[1]).cos());
                 radius * DVec2::new(t.sin(), -t.cos()) + DVec2::new(0.0, shift)
             })
             .map(|p| if p.x.abs() < 1e-9 { DVec2::new(0.0, p.y) } else { p })
