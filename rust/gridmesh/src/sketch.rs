@@ -188,7 +188,9 @@ impl Job<'_> {
         }
         outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
         self.lap("boundary", started);
-        let shifts = if effort == Effort::Full && self.symmetry.is_none() { SHIFTS.len() } else { 1 };
+        // Where no angle gives a boundary a shift does not either.
+        let shifted = effort == Effort::Full && self.symmetry.is_none() && !outlines.is_empty();
+        let shifts = if shifted { SHIFTS.len() } else { 1 };
         let mut shifts = SHIFTS[..shifts].iter().enumerate().skip(1);
         let mut outlines = outlines.into_iter();
         let mut best: Option<(f64, Outline, Placed, Option<f64>)> = None;

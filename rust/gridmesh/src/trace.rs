@@ -44,6 +44,9 @@ const SECOND_DISTANCE: f64 = 2.0;
 /// Greatest distance that is looked at.
 const MOST_DISTANCE: f64 = 4.0;
 
+/// A proof is tried unasked if there was at first at most one conflict for so many vertices.
+const QUICK_SHARE: usize = 10;
+
 /// What a boundary should be like.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TraceOptions {
@@ -204,14 +207,43 @@ pub fn trace(
 fn over_distances(
     max_distance: f64,
     progress: Progress<'_>,
-    mut attempt: impl FnMut(f64, Progress<'_>) -> Result<Traced, TraceFailure>,
+    mut attempt: impl FnMut(f64, Progress<'_>) -> Result<Traced, Refusal>,
 ) -> Result<Traced, TraceFailure> {
     let first = max_distance.min(MOST_DISTANCE);
-    match attempt(first, progress.part(0.0, 0.5)) {
-        Err(failure) if failure != TraceFailure::Cancelled && first < SECOND_DISTANCE => {
+    let result = match attempt(first, progress.part(0.0, 0.5)) {
+        Err(refusal) if !refusal.is_final && first < SECOND_DISTANCE => {
             attempt(SECOND_DISTANCE, progress.part(0.5, 1.0))
         }
         result => result,
+    };
+    result.map_err(|refusal| refusal.failure)
+}
+
+/// Why there is no boundary at one distance, and whether there is no use in trying a greater one.
+struct Refusal {
+    failure: TraceFailure,
+    is_final: bool,
+}
+
+impl Refusal {
+    /// Many conflicts at one distance are not solved at a greater one.
+    fn new(failure: TraceFailure, dive: &Dive, walks: &[Walk]) -> Self {
+        let vertices: usize = walks.iter().map(Walk::len).sum();
+        let is_final = dive::CROWDED * (dive.conflicts.len() + dive.wrong.len()) > vertices;
+        Self { failure, is_final }
+    }
+}
+
+impl From<TraceFailure> for Refusal {
+    fn from(failure: TraceFailure) -> Self {
+        let is_final = failure == TraceFailure::Cancelled;
+        Self { failure, is_final }
+    }
+}
+
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Self {
+        TraceFailure::from(error).into()
     }
 }
 
@@ -237,7 +269,7 @@ fn attempt(
     options: &TraceOptions,
     max_distance: f64,
     progress: Progress<'_>,
-) -> Result<Traced, TraceFailure> {
+) -> Result<Traced, Refusal> {
     let mut search = Search::new();
     let (contours, roots) = relaxed(targets, options, max_distance, &mut search, progress)?;
     let none = |contour: &Contour| Prices::none(contour.graph.n_nodes());
@@ -245,6 +277,7 @@ fn attempt(
     let mut walks = roots.clone();
     let share = progress.part(0.3, 0.7);
     let mut dive = dive::dive(&contours, &mut walks, &mut prices, &mut search, share)?;
+    let first_conflicts = dive.first;
     if failure(&dive, &contours, &walks).is_some() {
         dive::keep_apart(&contours, &mut walks, &mut prices, &mut search);
         let rounds = dive.rounds;
@@ -252,11 +285,14 @@ fn attempt(
         dive.rounds += rounds;
     }
     if let Some(failure) = failure(&dive, &contours, &walks) {
-        return Err(failure);
+        return Err(Refusal::new(failure, &dive, &walks));
     }
     let best = total(&walks);
-    let mut proof = Proof { bound: best, walks: None, optimal: true };
-    if dive.rounds > 0 {
+    let root = total(&roots);
+    let mut proof = Proof { bound: root, walks: None, optimal: root == best };
+    // Unasked only where it is not far.
+    let is_near = first_conflicts * QUICK_SHARE <= walks.iter().map(Walk::len).sum();
+    if dive.rounds > 0 && (options.proof_nodes > 0 || is_near) {
         let share = progress.part(0.7, 1.0);
         let nodes = options.proof_nodes;
         proof = proof::prove(&contours, &roots, best, nodes, &mut search, share)?;

@@ -19,7 +19,11 @@ pub(super) const ROUNDS: usize = 100;
 /// What it costs to be where another wall is nearer, in a second dive.
 pub(super) const APART: u32 = 2 * TURN;
 /// Rounds without fewer conflicts than ever before after which it is no use.
-pub(super) const PATIENCE: usize = 25;
+const PATIENCE: usize = 25;
+/// After so many rounds...
+const TRIAL: usize = 12;
+/// ... the conflicts must be less than half of what they were, or fewer than one in so many vertices.
+pub(super) const CROWDED: usize = 20;
 /// Vertices on each side of a conflict that are free to move when it is priced.
 const REACH: usize = 16;
 
@@ -32,6 +36,8 @@ pub(super) struct Contour {
 /// Where a dive ended.
 pub(super) struct Dive {
     pub rounds: usize,
+    /// The number of conflicts that it began with.
+    pub first: usize,
     /// The conflicts that are left.
     pub conflicts: Vec<Conflict>,
     /// The vertices left that have the patch on their wrong side.
@@ -64,7 +70,7 @@ pub(super) fn dive_from(
 ) -> Result<Dive> {
     let mut finder = Finder::default();
     let mut rounds = 0;
-    let (mut fewest, mut since) = (usize::MAX, 0);
+    let mut patience = Patience::new(walks);
     loop {
         let conflicts = finder.find(contours, walks);
         let repeated = conflicts.iter().any(|conflict| conflict.chord.is_none());
@@ -74,11 +80,8 @@ pub(super) fn dive_from(
             Vec::new()
         };
         let left = conflicts.len() + wrong.len();
-        if left < fewest {
-            (fewest, since) = (left, rounds);
-        }
-        if left == 0 || rounds == limit || rounds - since == PATIENCE {
-            return Ok(Dive { rounds, conflicts, wrong });
+        if patience.ends(rounds, left) || left == 0 || rounds == limit {
+            return Ok(Dive { rounds, first: patience.first, conflicts, wrong });
         }
         rounds += 1;
         progress.report(rounds as f64 / limit as f64)?;
@@ -100,6 +103,34 @@ pub(super) fn dive_from(
             let (contour, prices) = (&contours[c as usize], &prices[c as usize]);
             resolve(contour, walk, prices, search, &at, REACH);
         }
+    }
+}
+
+/// Whether more rounds of pricing are worth their time.
+pub(super) struct Patience {
+    /// Conflicts that are not too many.
+    few: usize,
+    pub first: usize,
+    fewest: usize,
+    since: usize,
+}
+
+impl Patience {
+    pub fn new(walks: &[Walk]) -> Self {
+        let vertices: usize = walks.iter().map(Walk::len).sum();
+        Self { few: vertices / CROWDED, first: usize::MAX, fewest: usize::MAX, since: 0 }
+    }
+
+    /// True once there is little hope, seeing how many conflicts are left after a round.
+    pub fn ends(&mut self, round: usize, left: usize) -> bool {
+        if round == 0 {
+            self.first = left;
+        }
+        if left < self.fewest {
+            (self.fewest, self.since) = (left, round);
+        }
+        let is_stuck = round >= TRIAL && self.fewest > self.few && 2 * self.fewest > self.first;
+        is_stuck || round - self.since >= PATIENCE
     }
 }
 

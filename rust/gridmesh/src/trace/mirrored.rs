@@ -7,7 +7,7 @@ use crate::reflection::Reflection;
 use crate::target::Target;
 
 use super::conflicts::{Conflict, Finder, Vertex};
-use super::dive::{self, Contour, Dive};
+use super::dive::{self, Contour, Dive, Patience};
 use super::graph::{BLOCKED, Graph};
 use super::half::{Half, Memory, symmetric};
 use super::parameters::parameters;
@@ -15,7 +15,8 @@ use super::prices::Prices;
 use super::search::{Potential, Search, Step, Walk, turned};
 use super::sides::wrong_sides;
 use super::{
-    Path, TraceFailure, TraceOptions, Traced, failure, over_distances, squared_distances, total, turns,
+    Path, Refusal, TraceFailure, TraceOptions, Traced, failure, over_distances, squared_distances, total,
+    turns,
 };
 
 /// A part of a mirror-symmetric drawing, in lattice units; the lattice is laid on the axis.
@@ -89,13 +90,13 @@ fn attempt(
     options: &TraceOptions,
     max_distance: f64,
     progress: Progress<'_>,
-) -> Result<Traced, TraceFailure> {
+) -> Result<Traced, Refusal> {
     let mut job = Job::new(parts, axis, options.closeness, max_distance);
-    for unit in 0..job.units.len() {
+    for (unit, part) in parts.iter().enumerate() {
         if !job.solve(unit) {
-            let (Part::Symmetric(target) | Part::Pair(target)) = &parts[unit];
+            let (Part::Symmetric(target) | Part::Pair(target)) = part;
             let some = target.points.first().copied().unwrap_or_default();
-            return Err(TraceFailure::NoPath { contour: job.firsts[unit], at: Lattice::nearest(some) });
+            return Err(TraceFailure::NoPath { contour: job.firsts[unit], at: Lattice::nearest(some) }.into());
         }
     }
     let root = total(&job.walks);
@@ -107,7 +108,7 @@ fn attempt(
         found.rounds += rounds;
     }
     if let Some(failure) = failure(&found, &job.contours, &job.walks) {
-        return Err(failure);
+        return Err(Refusal::new(failure, &found, &job.walks));
     }
     let turns = turns(&job.walks);
     let cost = turns as f64 + options.closeness * squared_distances(&job.contours, &job.walks);
@@ -178,7 +179,7 @@ impl Job {
     fn dive(&mut self, progress: Progress<'_>) -> Result<Dive, TraceFailure> {
         let mut finder = Finder::default();
         let mut rounds = 0;
-        let (mut fewest, mut since) = (usize::MAX, 0);
+        let mut patience = Patience::new(&self.walks);
         loop {
             let conflicts = finder.find(&self.contours, &self.walks);
             let repeated = conflicts.iter().any(|conflict| conflict.chord.is_none());
@@ -188,11 +189,8 @@ impl Job {
                 Vec::new()
             };
             let left = conflicts.len() + wrong.len();
-            if left < fewest {
-                (fewest, since) = (left, rounds);
-            }
-            if left == 0 || rounds == dive::ROUNDS || rounds - since == dive::PATIENCE {
-                return Ok(Dive { rounds, conflicts, wrong });
+            if patience.ends(rounds, left) || left == 0 || rounds == dive::ROUNDS {
+                return Ok(Dive { rounds, first: patience.first, conflicts, wrong });
             }
             rounds += 1;
             progress.report(rounds as f64 / dive::ROUNDS as f64)?;
@@ -204,11 +202,9 @@ impl Job {
             for vertex in wrong {
                 hot[self.raise(vertex, None)] = true;
             }
-            for unit in 0..hot.len() {
-                if hot[unit] {
-                    // Prices are never so high that there is no path left.
-                    self.solve(unit);
-                }
+            for (unit, _) in hot.into_iter().enumerate().filter(|&(_, is_hot)| is_hot) {
+                // Prices are never so high that there is no path left.
+                self.solve(unit);
             }
         }
     }
