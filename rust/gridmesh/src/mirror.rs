@@ -30,6 +30,8 @@ use crate::trace::{Part, TraceFailure, TraceOptions, trace_mirrored};
 /// The drawing may lie this far outside the mesh, and a vertex this far in an inlet: as placed.
 const STRAY: f64 = 2.0;
 const INLET: f64 = 0.05;
+/// Half the length over which a corner's turning angle is measured, in edges: as placed.
+const CORNER_WINDOW: f64 = 0.5;
 /// A corner of the drawing this near to where a vertex's image belongs gets it, in edges.
 const CORNER_REACH: f64 = 0.5;
 
@@ -80,7 +82,7 @@ pub(crate) fn traced(
     progress: Progress<'_>,
 ) -> Result<Result<Outline, Obstacle>> {
     let axis = reflection(symmetry, lattice);
-    let sides = Sides { contours, lattice, axis };
+    let sides = Sides { contours, lattice, axis, corner_angle: options.corner_angle };
     let parts: Vec<Part> = symmetry.pairings.iter().map(|pairing| sides.part(pairing)).collect();
     let wanted = TraceOptions {
         max_distance: options.max_distance,
@@ -156,12 +158,13 @@ struct Sides<'a> {
     contours: &'a [ClosedCurve],
     lattice: &'a Lattice,
     axis: Reflection,
+    corner_angle: f64,
 }
 
 impl Sides<'_> {
     fn part(&self, pairing: &Pairing) -> Part {
         match pairing {
-            Pairing::Own { contour, .. } => {
+            Pairing::Own { contour, start, left, .. } => {
                 let length = self.contours[*contour].length() / self.lattice.edge_length;
                 let n = ((0.5 * length / SPACING).ceil() as usize).max(6);
                 let mut samples: Vec<DVec2> =
@@ -173,7 +176,10 @@ impl Sides<'_> {
                 let images: Vec<DVec2> =
                     samples[1..n].iter().rev().map(|&p| Lattice::reflected(self.axis, p)).collect();
                 samples.extend(images);
-                Part::Symmetric(Target::faired(&samples, 0.5 * length / n as f64))
+                Part::Symmetric {
+                    target: Target::faired(&samples, 0.5 * length / n as f64),
+                    corners: [*start, start + left].map(|s| self.is_corner(&self.contours[*contour], s)),
+                }
             }
             Pairing::Two { contours, .. } => {
                 let length = self.contours[contours[0]].length() / self.lattice.edge_length;
@@ -182,6 +188,14 @@ impl Sides<'_> {
                 Part::Pair(Target::faired(&samples, length / n as f64))
             }
         }
+    }
+
+    /// True if a contour turns sharply at an arc length.
+    fn is_corner(&self, contour: &ClosedCurve, s: f64) -> bool {
+        let window = CORNER_WINDOW * self.lattice.edge_length;
+        let p = contour.point_at(s);
+        let (before, after) = (p - contour.point_at(s - window), contour.point_at(s + window) - p);
+        before.perp_dot(after).atan2(before.dot(after)).abs() > self.corner_angle
     }
 
     /// The point on the left and the image of its partner, halfway between.

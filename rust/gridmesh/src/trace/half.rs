@@ -67,12 +67,13 @@ impl Memory {
 
 impl Half {
     /// Prepares the search for a contour whose samples 0 and `n / 2` of `n` lie on the axis and whose
-    /// sample `n - i` is the mirror image of sample `i`, on the positive side where `i < n / 2`.
+    /// sample `n - i` is the mirror image of sample `i`, on the positive side where `i < n / 2`. Where
+    /// the two samples on the axis are corners no edge crosses there, unless nothing else is possible.
     pub fn new(
         target: &Target,
+        corners: [bool; 2],
         axis: Reflection,
-        max_distance: f64,
-        closeness: f64,
+        (max_distance, closeness): (f64, f64),
         memory: &mut Memory,
     ) -> (Self, Graph) {
         let points = &target.points[..=target.len() / 2];
@@ -97,6 +98,12 @@ impl Half {
             if of_band.last as usize + 1 == last && meets(last, last - 1) {
                 half.end_at(&graph, node);
             }
+        }
+        if corners[0] && half.starts.iter().any(|start| start.from.is_some()) {
+            half.starts.retain(|start| start.from.is_some());
+        }
+        if corners[1] && half.ends.iter().any(|end| end.to.is_some()) {
+            half.ends.retain(|end| end.to.is_some());
         }
         half.ends.sort_by_key(|end| end.state);
         half.find_bounds(&graph, memory);

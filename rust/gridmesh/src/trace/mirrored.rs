@@ -24,7 +24,13 @@ use super::{
 pub enum Part {
     /// A contour that is its own mirror image. Of its `n` samples `n - i` is the mirror image of `i`;
     /// those below `n / 2` are on the positive side, 0 and `n / 2` on the axis.
-    Symmetric(Target),
+    Symmetric {
+        /// The samples.
+        target: Target,
+        /// Whether the drawing has a corner at sample 0, and at `n / 2`: the path gets a vertex on the
+        /// axis there, not an edge across it, if it can.
+        corners: [bool; 2],
+    },
     /// A hole and its mirror image on the other side: the one on the positive side.
     Pair(Target),
 }
@@ -33,7 +39,7 @@ impl Part {
     /// The targets of its contours: a pair's second is the image of the first, run through backwards.
     pub fn targets(&self, axis: Reflection) -> Vec<Target> {
         match self {
-            Part::Symmetric(target) => vec![target.clone()],
+            Part::Symmetric { target, .. } => vec![target.clone()],
             Part::Pair(target) => {
                 let mut points: Vec<_> = target.points.iter().map(|&p| Lattice::reflected(axis, p)).collect();
                 points[1..].reverse();
@@ -94,7 +100,7 @@ fn attempt(
     let mut job = Job::new(parts, axis, options.closeness, max_distance);
     for (unit, part) in parts.iter().enumerate() {
         if !job.solve(unit) {
-            let (Part::Symmetric(target) | Part::Pair(target)) = part;
+            let (Part::Symmetric { target, .. } | Part::Pair(target)) = part;
             let some = target.points.first().copied().unwrap_or_default();
             return Err(TraceFailure::NoPath { contour: job.firsts[unit], at: Lattice::nearest(some) }.into());
         }
@@ -133,8 +139,9 @@ impl Job {
         for part in parts {
             firsts.push(contours.len());
             match part {
-                Part::Symmetric(target) => {
-                    let (half, graph) = Half::new(target, axis, max_distance, closeness, &mut memory);
+                Part::Symmetric { target, corners } => {
+                    let (half, graph) =
+                        Half::new(target, *corners, axis, (max_distance, closeness), &mut memory);
                     prices.push(Prices::none(graph.n_nodes()));
                     contours.push(Contour { graph, potential: Potential::default() });
                     units.push(Unit::Half(Box::new(half)));
