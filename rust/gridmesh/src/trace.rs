@@ -44,6 +44,8 @@ const SECOND_DISTANCE: f64 = 2.0;
 /// Greatest distance that is looked at.
 const MOST_DISTANCE: f64 = 4.0;
 
+/// With more conflicts left than one for so many vertices no greater distance is tried.
+const HOPELESS: usize = 4;
 /// A proof is tried unasked if there was at first at most one conflict for so many vertices.
 const QUICK_SHARE: usize = 10;
 
@@ -229,7 +231,7 @@ impl Refusal {
     /// Many conflicts at one distance are not solved at a greater one.
     fn new(failure: TraceFailure, dive: &Dive, walks: &[Walk]) -> Self {
         let vertices: usize = walks.iter().map(Walk::len).sum();
-        let is_final = dive::CROWDED * (dive.conflicts.len() + dive.wrong.len()) > vertices;
+        let is_final = HOPELESS * (dive.conflicts.len() + dive.wrong.len()) > vertices;
         Self { failure, is_final }
     }
 }

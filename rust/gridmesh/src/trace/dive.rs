@@ -23,7 +23,7 @@ const PATIENCE: usize = 25;
 /// After so many rounds...
 const TRIAL: usize = 12;
 /// ... the conflicts must be less than half of what they were, or fewer than one in so many vertices.
-pub(super) const CROWDED: usize = 20;
+const CROWDED: usize = 20;
 /// Vertices on each side of a conflict that are free to move when it is priced.
 const REACH: usize = 16;
 
