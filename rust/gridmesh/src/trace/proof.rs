@@ -24,6 +24,10 @@ const QUICK_STEPS: usize = 8;
 /// Rounds of conflict pricing from the prices of a proof on.
 const DIVE: usize = 20;
 
+/// States that a part may take from the queue on average, for each state there is: what follows from
+/// crowded conflicts would take hundreds.
+const EFFORT: u64 = 5;
+
 /// What is known after a proof was tried.
 pub(super) struct Proof {
     /// No valid walks cost less than this.
@@ -97,8 +101,8 @@ struct Ban {
 /// `roots` are the cheapest walks regardless of conflicts. Of a conflict's two uses every valid
 /// boundary leaves out at least one. So a price on both, taken off once from the sum, still gives a
 /// lower bound (Lagrange); and the search space splits into the part without the one and the part
-/// without the other (branch and bound), best bound first, until no part is left or `nodes` parts
-/// were looked at.
+/// without the other (branch and bound), best bound first, until no part is left, `nodes` parts
+/// were looked at, or the search has taken as many states as that many parts should need.
 pub(super) fn prove(
     contours: &[Contour],
     roots: &[Walk],
@@ -107,7 +111,10 @@ pub(super) fn prove(
     search: &mut Search,
     progress: Progress<'_>,
 ) -> Result<Proof> {
+    let states: usize = contours.iter().map(|contour| contour.graph.n_states()).sum();
+    let most_taken = search.taken + EFFORT * (nodes as u64 + 2) * states as u64;
     let mut tree = Tree {
+        most_taken,
         contours,
         roots,
         search,
@@ -126,7 +133,7 @@ pub(super) fn prove(
     let steps = if nodes > 0 { ROOT_STEPS } else { QUICK_STEPS };
     tree.look(None, Vec::new(), steps, progress)?;
     while let Some(&Reverse((bound, at))) = tree.open.peek() {
-        if bound >= tree.best || looked_at + 2 > nodes {
+        if bound >= tree.best || looked_at + 2 > nodes || tree.is_spent() {
             break;
         }
         tree.open.pop();
@@ -145,6 +152,8 @@ pub(super) fn prove(
 }
 
 struct Tree<'a> {
+    /// The search may take so many states in all.
+    most_taken: u64,
     contours: &'a [Contour],
     roots: &'a [Walk],
     search: &'a mut Search,
@@ -166,6 +175,10 @@ struct Tree<'a> {
 }
 
 impl Tree<'_> {
+    fn is_spent(&self) -> bool {
+        self.search.taken > self.most_taken
+    }
+
     /// Finds good prices for a part, and files it unless its bound rules it out.
     fn look(
         &mut self,
@@ -202,7 +215,10 @@ impl Tree<'_> {
                     (scale, stale) = (0.5 * scale, 0);
                 }
             }
-            if step == steps || !self.improve(&mut multipliers, &uses, &walks, bound, scale) {
+            if step == steps
+                || self.is_spent()
+                || !self.improve(&mut multipliers, &uses, &walks, bound, scale)
+            {
                 break;
             }
         }
