@@ -7,6 +7,7 @@
 mod arrays;
 mod batch;
 mod error;
+mod fill;
 mod input;
 mod options;
 mod patch;
@@ -404,6 +405,9 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(flat, module)?)?;
     module.add_function(wrap_pyfunction!(inflate, module)?)?;
     module.add_function(wrap_pyfunction!(map_sketches, module)?)?;
+    module.add_class::<fill::Fill>()?;
+    module.add_function(wrap_pyfunction!(fill::fill_hole, module)?)?;
+    module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;
     module.add_function(wrap_pyfunction!(patch::_patch, module)?)?;
     module.add_function(wrap_pyfunction!(surface::_surface, module)?)?;
     Ok(())

@@ -1,0 +1,535 @@
+//! Fills holes with grid patches whose boundary is the hole's, vertex for vertex.
+//!
+//! [`fill_hole`] fills one loop, [`fill_holes`] many; [`holes`] finds loops.
+
+mod check;
+mod fair;
+mod fit;
+pub mod holes;
+mod meet;
+mod mesh;
+mod patchwork;
+mod solver;
+mod standin;
+mod sweep;
+mod unroll;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use self::check::{Checked, check_loop};
+use self::meet::{Box3, count_meetings, near_boxes};
+use self::mesh::Rim;
+use self::patchwork::Patchwork;
+use self::standin as flat;
+pub use self::unroll::Unrolling;
+use crate::error::{Error, Result};
+use crate::metrics::min_angle;
+use crate::progress::Progress;
+
+/// Groups of loops filled between two reports of progress.
+const BATCH: usize = 64;
+
+/// How a patch continues the surface around its loop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Smooth {
+    /// Not at all: a soap film in the loop.
+    Flat,
+    /// With its slope.
+    #[default]
+    Tangent,
+    /// With its slope and curvature.
+    Curvature,
+}
+
+/// Options of [`fill_hole`] and [`fill_holes`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FillOptions {
+    /// How the patch continues the surface.
+    pub smooth: Smooth,
+    /// Refuse fills that meet themselves or the mesh, instead of counting that.
+    pub strict: bool,
+    /// Of [`fill_holes`] without given loops: leave holes with more edges open.
+    pub max_edges: Option<usize>,
+}
+
+/// A filled hole.
+#[derive(Clone, Debug)]
+pub struct Fill {
+    /// The loop as it was given.
+    pub loop_: Vec<u32>,
+    /// The new vertices.
+    pub vertices: Vec<DVec3>,
+    /// The new triangles: numbers below that of the mesh's vertices are those, the following ones the new
+    /// vertices in order. Wound against the triangles at the loop.
+    pub triangles: Vec<[u32; 3]>,
+    /// Numbers about it.
+    pub report: FillReport,
+    shape: Arc<Shape>,
+}
+
+/// Numbers about a [`Fill`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FillReport {
+    /// New triangles.
+    pub triangles: usize,
+    /// New vertices.
+    pub vertices: usize,
+    /// New vertices of valence other than six.
+    pub irregular: usize,
+    /// Loop vertices that have a valence other than six now, edges of the mesh counted.
+    pub irregular_loop: usize,
+    /// How the loop was laid out in the plane.
+    pub unrolling: Unrolling,
+    /// Largest relative change of a loop edge's length thereby.
+    pub distortion: f64,
+    /// Loop edges whose neighbour is wound against most others.
+    pub winding_conflicts: usize,
+    /// Loop edges without a neighbour.
+    pub wire_edges: usize,
+    /// Smallest angle of a new triangle, in radians.
+    pub min_angle: f64,
+    /// Inner edges of the patch with more than 120 degrees between the triangles.
+    pub folds: usize,
+    /// Pairs of triangles, at least one of them new, that meet where they should not.
+    pub self_intersections: usize,
+    /// Fallbacks: solves that failed and were replaced by simpler ones.
+    pub repaired: usize,
+    /// Seconds spent in each stage.
+    pub seconds: Vec<(&'static str, f64)>,
+}
+
+/// What is needed to solve the same patch again.
+#[derive(Debug)]
+struct Shape {
+    work: Patchwork,
+    loop_: Vec<u32>,
+    reversed: bool,
+    flat: Vec<glam::DVec2>,
+    smooth: Smooth,
+    vertices: usize,
+    positions: Vec<DVec3>,
+}
+
+/// Fills one hole of a mesh, or a loop of edges without a mesh.
+///
+/// `loop_` holds the vertices of the hole's boundary in order, either way round, each once, at least three.
+/// The result's boundary is exactly this loop: no vertex of it is moved and none is added, each of its
+/// edges gets one new triangle, wound against its neighbour (against most of the neighbours, where they
+/// disagree). The patch is a disk, and no new edge or face repeats one of the mesh. It may meet itself or
+/// the mesh, as any filling of a knotted loop has to; the report counts this and `strict` refuses it.
+///
+/// Work is local but for passes over the mesh that find the triangles near the loop. The same input
+/// gives the same output for any number of threads.
+///
+/// # Errors
+/// A loop that is not fit has its own variant for each reason: [`Error::IndexOutOfRange`],
+/// [`Error::TooFewPoints`], [`Error::RepeatedVertex`], [`Error::FigureEight`], [`Error::NotFinite`],
+/// [`Error::ExtremeSize`], [`Error::ZeroLengthEdge`], [`Error::SelfTouching`], [`Error::FacesOnBothSides`],
+/// [`Error::NonManifold`]. [`Error::FillIntersects`] if `strict`; [`Error::Cancelled`].
+///
+/// Source: Nealen et al. 2009, section V, for the patch. The paper leaves the positions of the inner
+/// vertices to its surroundings (FiberMesh); here they come from [`Smooth`].
+pub fn fill_hole(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    loop_: &[u32],
+    options: &FillOptions,
+    progress: Progress<'_>,
+) -> Result<Fill> {
+    let job = Job { vertices, triangles, options };
+    let mut fills = job.run(&[Ok(loop_.to_vec())], progress)?;
+    fills.pop().unwrap_or(Err(Error::Cancelled))
+}
+
+/// Fills the given loops, or all holes, as [`fill_hole`] does, in parallel.
+///
+/// Items come in the order of the loops. New vertices are numbered from the mesh's number of vertices
+/// on in every item. A loop that cannot be filled does not stop the others. No new edge repeats one of
+/// another fill.
+///
+/// # Errors
+/// [`Error::IndexOutOfRange`] if a triangle of the mesh names a vertex that does not exist,
+/// [`Error::Cancelled`]. Of an item: those of [`fill_hole`], and [`Error::SharedEdge`] if an earlier loop has
+/// used one of its edges.
+pub fn fill_holes(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    loops: Option<&[Vec<u32>]>,
+    options: &FillOptions,
+    progress: Progress<'_>,
+) -> Result<Vec<Result<Fill>>> {
+    let loops = match loops {
+        Some(loops) => loops.iter().map(|l| Ok(l.clone())).collect(),
+        None => {
+            let mut found = holes::boundary_loops(vertices.len(), triangles)?;
+            if let Some(most) = options.max_edges {
+                found.retain(|l| l.as_ref().map_or(true, |l| l.len() <= most));
+            }
+            found
+        }
+    };
+    Job { vertices, triangles, options }.run(&loops, progress)
+}
+
+struct Job<'a> {
+    vertices: &'a [DVec3],
+    triangles: &'a [[u32; 3]],
+    options: &'a FillOptions,
+}
+
+impl Job<'_> {
+    fn run(&self, loops: &[Result<Vec<u32>>], progress: Progress<'_>) -> Result<Vec<Result<Fill>>> {
+        progress.report(0.0)?;
+        let since = Instant::now();
+        let n_vertices = self.vertices.len();
+        let mut seeds = loops.iter().flatten().flatten().copied().collect::<Vec<_>>();
+        seeds.retain(|&v| (v as usize) < n_vertices);
+        let rings = match self.options.smooth {
+            Smooth::Curvature => 2,
+            _ => 1,
+        };
+        let rim = Rim::new(n_vertices, self.triangles, &seeds, rings)?;
+        let mut checked = loops
+            .iter()
+            .map(|l| l.as_ref().map_err(Clone::clone).and_then(|l| check_loop(l, self.vertices, &rim)))
+            .collect::<Vec<_>>();
+        refuse_shared_edges(&mut checked);
+        let search = since.elapsed().as_secs_f64();
+        progress.report(0.1)?;
+
+        let groups = groups(&checked);
+        let fill_group = |group: &Vec<usize>, progress: Progress<'_>| {
+            // Fills of one group could repeat each other's edges: one after the other, each knows the edges
+            // of those before.
+            let mut reserved = FxHashSet::default();
+            let fills = group.iter().map(|&k| {
+                let fill = checked[k].as_ref().map_err(Clone::clone).and_then(|checked| {
+                    let mut fill = self.one(checked, &rim, &reserved, progress)?;
+                    fill.report.seconds.insert(0, ("search", search));
+                    Ok(fill)
+                });
+                if let Ok(fill) = &fill {
+                    let old = |e: &[u32; 2]| e.iter().all(|&v| (v as usize) < n_vertices);
+                    reserved.extend(fill.triangles.iter().flat_map(edges).filter(old));
+                }
+                (k, fill)
+            });
+            fills.collect::<Vec<_>>()
+        };
+        let mut filled = vec![];
+        // Reports come from the calling thread alone, between batches.
+        for batch in groups.chunks(BATCH) {
+            let part = |k: usize| 0.1 + 0.7 * k as f64 / groups.len() as f64;
+            let here = progress.part(part(filled.len()), part(filled.len() + batch.len()));
+            match batch {
+                [single] => filled.push(fill_group(single, here)),
+                _ => filled.par_extend(batch.par_iter().map(|group| fill_group(group, Progress::NONE))),
+            }
+            here.report(1.0)?;
+        }
+        let mut fills = filled.into_iter().flatten().collect::<Vec<_>>();
+        fills.sort_unstable_by_key(|(k, _)| *k);
+        let mut fills = fills.into_iter().map(|(_, fill)| fill).collect::<Vec<_>>();
+        progress.report(0.8)?;
+        if fills.iter().any(|fill| fill == &Err(Error::Cancelled)) {
+            return Err(Error::Cancelled);
+        }
+        self.count_meetings(&mut fills);
+        progress.report(1.0)?;
+        Ok(fills)
+    }
+
+    /// Fills one loop; `reserved` edges are taken by earlier fills.
+    fn one(
+        &self,
+        checked: &Checked,
+        rim: &Rim,
+        reserved: &FxHashSet<[u32; 2]>,
+        progress: Progress<'_>,
+    ) -> Result<Fill> {
+        let mut clock = Clock::new();
+        progress.report(0.0)?;
+        let loop_ = &checked.vertices;
+        let n = loop_.len();
+        let around = loop_.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
+        let unrolled = unroll::unroll(&around);
+        clock.stage("unroll");
+
+        let taken = Taken::new(checked, rim, reserved);
+        let wanted = wanted(loop_, rim);
+        let is_taken = |i: usize, j: usize| taken.has(i, j);
+        let mut patch =
+            flat::fill_flat(&unrolled.points, &wanted, &is_taken, &flat::FlatOptions::default(), progress)?;
+        if n == 3 && patch.interior.is_empty() && taken.face {
+            // The mesh has this very triangle: fill with three others.
+            patch.interior = vec![unrolled.points.iter().sum::<glam::DVec2>() / 3.0];
+            patch.triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        }
+        clock.stage("grid");
+        progress.report(0.0)?;
+
+        let rings = if self.options.smooth == Smooth::Curvature { 2 } else { 1 };
+        let work = Patchwork::new(loop_, patch.interior.len(), &patch.triangles, rim, rings);
+        let mut flat = unrolled.points;
+        flat.extend(patch.interior);
+        let mut shape = Shape {
+            work,
+            loop_: loop_.clone(),
+            reversed: checked.reversed,
+            flat,
+            smooth: self.options.smooth,
+            vertices: self.vertices.len(),
+            positions: vec![],
+        };
+        let repaired;
+        (shape.positions, repaired) = shape.solve(self.vertices)?;
+        clock.stage("fair");
+
+        let first_new = self.vertices.len() as u32;
+        let name = |v: u32| if (v as usize) < n { loop_[v as usize] } else { first_new + v - n as u32 };
+        let work = &shape.work;
+        let own = &shape.work.triangles[..work.n_patch];
+        let valence = |v: usize| work.range(v).len();
+        let report = FillReport {
+            triangles: own.len(),
+            vertices: work.inner().len(),
+            irregular: work.inner().filter(|&v| valence(v) != 6).count(),
+            irregular_loop: (0..n).filter(|&v| valence(v) != 6).count(),
+            unrolling: unrolled.method,
+            distortion: unrolled.distortion,
+            winding_conflicts: checked.conflicts,
+            wire_edges: checked.wire,
+            min_angle: min_angle(&shape.positions, own),
+            folds: fit::folds(work, &shape.positions),
+            self_intersections: 0,
+            repaired,
+            seconds: clock.seconds,
+        };
+        Ok(Fill {
+            loop_: if checked.reversed { loop_.iter().rev().copied().collect() } else { loop_.clone() },
+            vertices: shape.positions[work.inner()].to_vec(),
+            triangles: own.iter().map(|t| t.map(name)).collect(),
+            report,
+            shape: Arc::new(shape),
+        })
+    }
+
+    /// Counts what new triangles meet: the mesh, themselves, and those of fills that come before.
+    fn count_meetings(&self, fills: &mut [Result<Fill>]) {
+        let since = Instant::now();
+        let n = self.vertices.len() as u32;
+        let done = fills.iter().flatten().map(|fill| {
+            // New vertices of all fills get numbers of their own here.
+            (fill.triangles.as_slice(), fill.vertices.as_slice())
+        });
+        let done = done.collect::<Vec<_>>();
+        let mut first = vec![n];
+        for (_, vertices) in &done {
+            first.push(first[first.len() - 1] + vertices.len() as u32);
+        }
+        let owner = |v: u32| first.partition_point(|&f| f <= v) - 1;
+        let position = |v: u32| {
+            if v < n {
+                self.vertices[v as usize]
+            } else {
+                let k = owner(v);
+                done[k].1[(v - first[k]) as usize]
+            }
+        };
+        let named = |k: usize| -> Vec<[u32; 3]> {
+            done[k].0.iter().map(|t| t.map(|v| if v < n { v } else { v - n + first[k] })).collect()
+        };
+        let boxes = (0..done.len())
+            .map(|k| Box3::around(named(k).iter().flatten().map(|&v| position(v))))
+            .collect::<Vec<_>>();
+        let near = near_boxes(&boxes, self.vertices, self.triangles);
+        let counts = (0..done.len())
+            .into_par_iter()
+            .map(|k| {
+                let mut others = near[k].iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
+                others.extend((0..k).filter(|&j| boxes[j].meets(&boxes[k])).flat_map(named));
+                count_meetings(position, &named(k), &others)
+            })
+            .collect::<Vec<_>>();
+        let seconds = since.elapsed().as_secs_f64();
+        for (item, (pairs, at)) in fills.iter_mut().filter(|fill| fill.is_ok()).zip(counts) {
+            if let Ok(fill) = item {
+                fill.report.self_intersections = pairs;
+                fill.report.seconds.push(("intersections", seconds));
+            }
+            if let (true, Some(at)) = (self.options.strict, at) {
+                *item = Err(Error::FillIntersects { pairs, at: at.into() });
+            }
+        }
+    }
+}
+
+impl Fill {
+    /// Extends data at the loop (`columns` values for each of its vertices, in the order of the loop as
+    /// given, row by row) to the new vertices: harmonically, one factorisation for all columns, each
+    /// value within the range of its column.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] if the number of values does not fit, [`Error::NotFinite`].
+    pub fn extend(&self, values: &[f64], columns: usize) -> Result<Vec<f64>> {
+        self.shape.extend(values, columns)
+    }
+
+    /// The new vertices if those of the mesh were at `vertices`: the same triangles, solved again. For
+    /// other poses of one mesh, such as shape keys; where the surroundings are equal, so is the result.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] if there are not as many vertices as before, [`Error::NotFinite`] for one near
+    /// the loop.
+    pub fn refit(&self, vertices: &[DVec3]) -> Result<Vec<DVec3>> {
+        if vertices.len() != self.shape.vertices {
+            return Err(Error::InvalidOption {
+                name: "vertices",
+                value: format!("of length {}", vertices.len()),
+                allowed: "as many vertices as the filled mesh has",
+            });
+        }
+        let near = self.shape.loop_.iter().chain(&self.shape.work.outer);
+        if let Some(&v) = near.into_iter().find(|&&v| !vertices[v as usize].is_finite()) {
+            return Err(Error::NotFinite { what: "mesh".into(), point: v as usize });
+        }
+        let (positions, _) = self.shape.solve(vertices)?;
+        Ok(positions[self.shape.work.inner()].to_vec())
+    }
+}
+
+impl PartialEq for Fill {
+    fn eq(&self, other: &Self) -> bool {
+        self.vertices == other.vertices && self.triangles == other.triangles && self.loop_ == other.loop_
+    }
+}
+
+/// The edges of a triangle, lower vertex first.
+fn edges(t: &[u32; 3]) -> [[u32; 2]; 3] {
+    [0, 1, 2].map(|k| [t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])])
+}
+
+/// The patch valence that makes each loop vertex regular.
+fn wanted(loop_: &[u32], rim: &Rim) -> Vec<i32> {
+    let n = loop_.len();
+    let outside = |k: usize| {
+        let Some(v) = rim.local(loop_[k]) else { return 4 };
+        let near = rim.neighbours(v);
+        // Loop edges that the mesh has not got count as well.
+        let missing = [loop_[(k + n - 1) % n], loop_[(k + 1) % n]].into_iter().filter(|&u| {
+            rim.local(u).is_none_or(|u| near.binary_search(&u).is_err())
+        });
+        8 - (near.len() + missing.count()) as i32
+    };
+    (0..n).map(outside).collect()
+}
+
+/// Edges between vertices of one loop that exist already.
+struct Taken {
+    pairs: FxHashSet<[u32; 2]>,
+    /// True if a triangle of the mesh joins three vertices of the loop.
+    face: bool,
+}
+
+impl Taken {
+    fn new(checked: &Checked, rim: &Rim, reserved: &FxHashSet<[u32; 2]>) -> Self {
+        let loop_ = &checked.vertices;
+        let places: FxHashMap<u32, u32> = loop_.iter().enumerate().map(|(k, &v)| (v, k as u32)).collect();
+        let mut pairs = FxHashSet::default();
+        let mut face = false;
+        for v in loop_.iter().filter_map(|&v| rim.local(v)) {
+            for &t in rim.around(v) {
+                let t = rim.triangles[t as usize].map(|v| rim.ids[v as usize]);
+                for [a, b] in edges(&t) {
+                    if let (Some(&a), Some(&b)) = (places.get(&a), places.get(&b)) {
+                        pairs.insert([a.min(b), a.max(b)]);
+                    }
+                }
+                face |= t.iter().all(|v| places.contains_key(v));
+            }
+        }
+        for [a, b] in reserved {
+            if let (Some(&a), Some(&b)) = (places.get(a), places.get(b)) {
+                pairs.insert([a.min(b), a.max(b)]);
+            }
+        }
+        Taken { pairs, face }
+    }
+
+    fn has(&self, i: usize, j: usize) -> bool {
+        self.pairs.contains(&[i.min(j) as u32, i.max(j) as u32])
+    }
+}
+
+/// Turns loops that use an edge of an earlier loop into errors.
+fn refuse_shared_edges(checked: &mut [Result<Checked>]) {
+    let mut used = vec![];
+    for (k, item) in checked.iter().enumerate() {
+        if let Ok(item) = item {
+            let n = item.vertices.len();
+            for i in 0..n {
+                let (a, b) = (item.vertices[i], item.vertices[(i + 1) % n]);
+                used.push(([a.min(b), a.max(b)], k));
+            }
+        }
+    }
+    used.sort_unstable();
+    for same in used.chunk_by(|a, b| a.0 == b.0) {
+        for &(edge, second) in &same[1..] {
+            checked[second] = Err(Error::SharedEdge { edge, first: same[0].1, second });
+        }
+    }
+}
+
+/// Numbers of the loops, ascending, those together that share two vertices or more.
+fn groups(checked: &[Result<Checked>]) -> Vec<Vec<usize>> {
+    let mut at = vec![];
+    for (k, item) in checked.iter().enumerate() {
+        at.extend(item.iter().flat_map(|item| item.vertices.iter().map(move |&v| (v, k))));
+    }
+    at.sort_unstable();
+    let mut pairs = vec![];
+    for same in at.chunk_by(|a, b| a.0 == b.0) {
+        for (i, a) in same.iter().enumerate() {
+            pairs.extend(same[i + 1..].iter().map(|b| (a.1, b.1)));
+        }
+    }
+    pairs.sort_unstable();
+    let mut root = (0..checked.len()).collect::<Vec<_>>();
+    fn find(root: &mut [usize], mut k: usize) -> usize {
+        while root[k] != k {
+            root[k] = root[root[k]];
+            k = root[k];
+        }
+        k
+    }
+    for same in pairs.chunk_by(|a, b| a == b).filter(|same| same.len() > 1) {
+        let (a, b) = (find(&mut root, same[0].0), find(&mut root, same[0].1));
+        root[a.max(b)] = a.min(b);
+    }
+    let mut members = (0..checked.len()).map(|k| (find(&mut root, k), k)).collect::<Vec<_>>();
+    members.sort_unstable();
+    members.chunk_by(|a, b| a.0 == b.0).map(|part| part.iter().map(|m| m.1).collect()).collect()
+}
+
+/// Seconds per stage.
+struct Clock {
+    since: Instant,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+impl Clock {
+    fn new() -> Self {
+        Clock { since: Instant::now(), seconds: vec![] }
+    }
+
+    fn stage(&mut self, name: &'static str) {
+        self.seconds.push((name, self.since.elapsed().as_secs_f64()));
+        self.since = Instant::now();
+    }
+}

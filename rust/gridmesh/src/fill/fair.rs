@@ -1,0 +1,169 @@
+//! Where the new vertices of a patch go: functionals made least with the loop held.
+
+use glam::DVec3;
+
+use super::patchwork::Patchwork;
+use super::solver::LeastSquares;
+use crate::error::Result;
+
+/// Equations of second order, one for each vertex at which a curvature can be read: the Laplacian there.
+pub(crate) struct Bending<'a> {
+    work: &'a Patchwork,
+    /// The vertex of each equation.
+    rows: Vec<u32>,
+    system: LeastSquares,
+}
+
+impl<'a> Bending<'a> {
+    pub fn new(work: &'a Patchwork) -> Result<Self> {
+        let rows = (0..work.end as u32).filter(|&v| {
+            let v = v as usize;
+            let own = work.unknown(v).is_some();
+            let near = work.near[work.range(v)].iter().any(|&u| work.unknown(u as usize).is_some());
+            own || (work.closed[v] && near)
+        });
+        let rows = rows.collect::<Vec<_>>();
+        let mut start = vec![0];
+        let mut columns = vec![];
+        for &v in &rows {
+            let v = v as usize;
+            columns.extend(work.unknown(v));
+            columns.extend(work.near[work.range(v)].iter().filter_map(|&u| work.unknown(u as usize)));
+            start.push(columns.len() as u32);
+        }
+        let system = LeastSquares::new(work.end - work.n, start, columns)?;
+        Ok(Bending { work, rows, system })
+    }
+
+    /// Minimises the squared Laplacians `sum w (x_j - x_i)` of the positions, one factorisation for the
+    /// three coordinates. `weights` parallel to `near`.
+    pub fn positions(&self, positions: &mut [DVec3], weights: &[f64], masses: &[f64]) -> Result<()> {
+        let work = self.work;
+        let mut coefficients = vec![];
+        let mut right = vec![];
+        let mut importance = vec![];
+        for &v in &self.rows {
+            let v = v as usize;
+            let mut sum = 0.0;
+            let mut known = DVec3::ZERO;
+            let own = coefficients.len();
+            if work.unknown(v).is_some() {
+                coefficients.push(0.0);
+            }
+            for slot in work.range(v) {
+                let u = work.near[slot] as usize;
+                sum += weights[slot];
+                if work.unknown(u).is_some() {
+                    coefficients.push(weights[slot]);
+                } else {
+                    known += weights[slot] * positions[u];
+                }
+            }
+            if work.unknown(v).is_some() {
+                coefficients[own] = -sum;
+            } else {
+                known -= sum * positions[v];
+            }
+            right.push((-known).to_array());
+            importance.push(1.0 / masses[v]);
+        }
+        let found = self.system.solve(&coefficients, &importance, &right, |_| 0.0)?;
+        for (v, x) in work.inner().zip(found) {
+            positions[v] = x.into();
+        }
+        Ok(())
+    }
+
+    /// Moves the new vertices along their normals so that the sum of squared mean curvatures, weighted by
+    /// area, is least (to first order).
+    pub fn normal_step(&self, positions: &mut [DVec3], target: Option<&[f64]>) -> Result<()> {
+        let work = self.work;
+        let weights = work.cotangents(positions);
+        let masses = work.areas(positions);
+        let normals = work.normals(positions);
+        let mut coefficients = vec![];
+        let mut right = vec![];
+        let mut importance = vec![];
+        for &v in &self.rows {
+            let v = v as usize;
+            let mut sum = 0.0;
+            let mut laplacian = DVec3::ZERO;
+            let own = coefficients.len();
+            if work.unknown(v).is_some() {
+                coefficients.push(0.0);
+            }
+            for slot in work.range(v) {
+                let u = work.near[slot] as usize;
+                sum += weights[slot];
+                laplacian += weights[slot] * (positions[u] - positions[v]);
+                if work.unknown(u).is_some() {
+                    coefficients.push(weights[slot] * normals[v].dot(normals[u]));
+                }
+            }
+            if work.unknown(v).is_some() {
+                coefficients[own] = -sum;
+            }
+            let wanted = target.map_or(0.0, |h| h[v] * masses[v]);
+            right.push([wanted - normals[v].dot(laplacian)]);
+            importance.push(1.0 / masses[v].max(f64::MIN_POSITIVE));
+        }
+        let found = self.system.solve(&coefficients, &importance, &right, |_| 0.0)?;
+        for (v, [x]) in work.inner().zip(found) {
+            positions[v] += x * normals[v];
+        }
+        Ok(())
+    }
+}
+
+/// Equations of first order, one for each edge at a new vertex.
+pub(crate) struct Membrane<'a> {
+    work: &'a Patchwork,
+    edges: Vec<[u32; 2]>,
+    system: LeastSquares,
+}
+
+impl<'a> Membrane<'a> {
+    pub fn new(work: &'a Patchwork) -> Result<Self> {
+        let mut edges = vec![];
+        let mut start = vec![0];
+        let mut columns = vec![];
+        for v in work.inner() {
+            for &u in &work.near[work.range(v)] {
+                // Once for each edge between new vertices.
+                if work.unknown(u as usize).is_none() || (u as usize) < v {
+                    edges.push([v as u32, u]);
+                    columns.extend(work.unknown(v));
+                    columns.extend(work.unknown(u as usize));
+                    start.push(columns.len() as u32);
+                }
+            }
+        }
+        let system = LeastSquares::new(work.end - work.n, start, columns)?;
+        Ok(Membrane { work, edges, system })
+    }
+
+    /// The weighted harmonic extension of `K` values per vertex from all other vertices to the new ones.
+    pub fn harmonic<const K: usize>(
+        &self,
+        weights: &[f64],
+        known: impl Fn(usize) -> [f64; K],
+    ) -> Result<Vec<[f64; K]>> {
+        let work = self.work;
+        let mut coefficients = vec![];
+        let mut importance = vec![];
+        let mut right = vec![];
+        for &[v, u] in &self.edges {
+            let range = work.range(v as usize);
+            let slot = work.near[range.clone()].partition_point(|&x| x < u);
+            importance.push(weights[range.start + slot]);
+            coefficients.push(1.0);
+            if work.unknown(u as usize).is_some() {
+                coefficients.push(-1.0);
+                right.push([0.0; K]);
+            } else {
+                right.push(known(u as usize));
+            }
+        }
+        self.system.solve(&coefficients, &importance, &right, |_| 0.0)
+    }
+}

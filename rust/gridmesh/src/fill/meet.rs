@@ -1,0 +1,197 @@
+//! Whether new triangles meet each other or the mesh.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+
+use crate::embed::triangles_meet;
+
+/// Triangles looked at by one thread at a time.
+const CHUNK: usize = 1 << 16;
+
+/// Cells along each axis of the grid that tells which boxes may be near.
+const CELLS: usize = 48;
+
+/// An axis-parallel box.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Box3 {
+    pub low: DVec3,
+    pub high: DVec3,
+}
+
+impl Box3 {
+    /// Around points.
+    pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
+        let none = Box3 { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+        points.into_iter().fold(none, |b, p| Box3 { low: b.low.min(p), high: b.high.max(p) })
+    }
+
+    /// True if they have a point in common.
+    pub fn meets(&self, other: &Box3) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+}
+
+/// For each box the triangles of a mesh whose own boxes meet it, ascending. One pass over the mesh.
+pub(crate) fn near_boxes(boxes: &[Box3], positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
+    let mut near = vec![vec![]; boxes.len()];
+    let all = Box3::around(boxes.iter().flat_map(|b| [b.low, b.high]));
+    // Cells that some box meets; a triangle that meets none of them is near no box.
+    let size = ((all.high - all.low) / CELLS as f64).max(DVec3::splat(f64::MIN_POSITIVE));
+    let cell = |p: DVec3| ((p - all.low) / size).clamp(DVec3::ZERO, DVec3::splat(CELLS as f64 - 1.0)).as_uvec3();
+    let several = boxes.len() > 1;
+    let mut taken = vec![false; if several { CELLS * CELLS * CELLS } else { 0 }];
+    let place = |x: u32, y: u32, z: u32| (z as usize * CELLS + y as usize) * CELLS + x as usize;
+    if several {
+        for b in boxes {
+            let (low, high) = (cell(b.low), cell(b.high));
+            for z in low.z..=high.z {
+                for y in low.y..=high.y {
+                    taken[place(low.x, y, z)..=place(high.x, y, z)].fill(true);
+                }
+            }
+        }
+    }
+    let scan = |(part, chunk): (usize, &[[u32; 3]])| {
+        let mut found = vec![];
+        for (k, t) in chunk.iter().enumerate() {
+            let own = Box3::around(t.map(|v| positions[v as usize]));
+            if !own.meets(&all) {
+                continue;
+            }
+            if several {
+                let (low, high) = (cell(own.low), cell(own.high));
+                let hit = (low.z..=high.z).any(|z| {
+                    (low.y..=high.y).any(|y| taken[place(low.x, y, z)..=place(high.x, y, z)].contains(&true))
+                });
+                if !hit {
+                    continue;
+                }
+            }
+            found.push((part * CHUNK + k) as u32);
+        }
+        found
+    };
+    let parts = triangles.par_chunks(CHUNK).enumerate().map(scan).collect::<Vec<_>>();
+    if !several {
+        if let Some(near) = near.first_mut() {
+            *near = parts.concat();
+        }
+        return near;
+    }
+    let tree: RTree<Boxed> =
+        RTree::bulk_load(boxes.iter().enumerate().map(|(i, b)| boxed(b, i as u32)).collect());
+    for t in parts.into_iter().flatten() {
+        let own = Box3::around(triangles[t as usize].map(|v| positions[v as usize]));
+        let envelope = AABB::from_corners(own.low.into(), own.high.into());
+        for hit in tree.locate_in_envelope_intersecting(&envelope) {
+            near[hit.data as usize].push(t);
+        }
+    }
+    near
+}
+
+type Boxed = GeomWithData<Rectangle<[f64; 3]>, u32>;
+
+fn boxed(b: &Box3, data: u32) -> Boxed {
+    Boxed::new(Rectangle::from_corners(b.low.into(), b.high.into()), data)
+}
+
+/// Pairs of triangles, at least one of them new, that meet elsewhere than in shared vertices and edges
+/// (exact predicates), and a corner of the first such new triangle.
+///
+/// Vertices on the same point count as one: a mesh along a seam of doubled vertices touches itself
+/// all along, and means nothing by it.
+pub(crate) fn count_meetings(
+    position: impl Fn(u32) -> DVec3,
+    new: &[[u32; 3]],
+    old: &[[u32; 3]],
+) -> (usize, Option<DVec3>) {
+    let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
+    let mut ids = new.iter().chain(old).flatten().copied().collect::<Vec<_>>();
+    ids.sort_unstable();
+    ids.dedup();
+    let mut points = ids.iter().map(|&v| (key(position(v)), v)).collect::<Vec<_>>();
+    points.sort_unstable();
+    let mut place = vec![0u32; ids.len()];
+    let mut vertices = vec![];
+    for same in points.chunk_by(|a, b| a.0 == b.0) {
+        for &(_, v) in same {
+            place[ids.binary_search(&v).unwrap_or_default()] = vertices.len() as u32;
+        }
+        vertices.push(position(same[0].1));
+    }
+    let renumber = |t: &[u32; 3]| t.map(|v| place[ids.binary_search(&v).unwrap_or_default()]);
+    let sound = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+    let new = new.iter().map(renumber).filter(sound).collect::<Vec<_>>();
+    let old = old.iter().map(renumber).filter(sound).collect::<Vec<_>>();
+    let around = |t: &[u32; 3]| Box3::around(t.map(|v| vertices[v as usize]));
+    let tree = |of: &[[u32; 3]]| -> RTree<Boxed> {
+        RTree::bulk_load(of.iter().enumerate().map(|(i, t)| boxed(&around(t), i as u32)).collect())
+    };
+    let (new_tree, old_tree) = (tree(&new), tree(&old));
+    let mut count = 0;
+    let mut first = None;
+    let mut note = |t: u32| {
+        count += 1;
+        first = Some(first.map_or(t, |f: u32| f.min(t)));
+    };
+    for (a, b) in new_tree.intersection_candidates_with_other_tree(&new_tree) {
+        if a.data < b.data && triangles_meet(&vertices, new[a.data as usize], new[b.data as usize]) {
+            note(a.data);
+        }
+    }
+    for (a, b) in new_tree.intersection_candidates_with_other_tree(&old_tree) {
+        if triangles_meet(&vertices, new[a.data as usize], old[b.data as usize]) {
+            note(a.data);
+        }
+    }
+    (count, first.map(|t| vertices[new[t as usize][0] as usize]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meetings_are_counted_once_and_seams_forgiven() {
+        let p = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [-1.0, 0.0, 0.0],
+            [0.2, 0.2, -1.0],
+            [0.2, 0.2, 1.0],
+            [0.3, 0.9, 1.0],
+        ]
+        .map(DVec3::from);
+        let at = |v: u32| p[v as usize];
+        assert_eq!(count_meetings(at, &[[0, 1, 2]], &[[3, 4, 5]]).0, 0);
+        assert_eq!(count_meetings(at, &[[0, 1, 2]], &[[6, 7, 8], [3, 4, 5]]).0, 1);
+        assert_eq!(count_meetings(at, &[[0, 1, 2], [6, 7, 8]], &[]).0, 1);
+        assert_eq!(count_meetings(at, &[[3, 4, 5]], &[[6, 7, 8], [0, 1, 2]]).0, 0);
+    }
+
+    #[test]
+    fn near_triangles_are_found_for_every_box() {
+        let mut positions = vec![];
+        let mut triangles = vec![];
+        for i in 0..30 {
+            for j in 0..30 {
+                let p = DVec3::new(f64::from(i), f64::from(j), 0.1 * f64::from((i * j) % 7));
+                triangles.push([0, 1, 2].map(|k| positions.len() as u32 + k));
+                positions.extend([p, p + DVec3::X, p + DVec3::Y + 0.4 * DVec3::Z]);
+            }
+        }
+        let boxes = [[1.0, 2.0, 0.0], [20.5, 3.2, 0.1], [29.0, 29.0, 0.9], [8.0, 8.0, 5.0]]
+            .map(|p| Box3 { low: DVec3::from(p), high: DVec3::from(p) + 1.3 });
+        let own = |t: [u32; 3]| Box3::around(t.map(|v| positions[v as usize]));
+        let wanted = boxes.map(|b| (0..900u32).filter(|&t| own(triangles[t as usize]).meets(&b)).collect::<Vec<_>>());
+        assert_eq!(near_boxes(&boxes, &positions, &triangles), wanted);
+        assert_eq!(near_boxes(&boxes[1..2], &positions, &triangles), wanted[1..2]);
+        assert!(near_boxes(&[], &positions, &triangles).is_empty());
+    }
+}
