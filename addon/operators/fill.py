@@ -130,11 +130,14 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         )
         self.report({"INFO"}, self.result)
         left = _left_open(jobs, self.max_edges)
-        torn = sum(job.torn for job in jobs)
+        torn = sum(job.added.torn for job in jobs)
         if torn:
             left.append(
                 f"{counted(torn, 'map')} of UVs or colours torn at a hole: continued on one side alone"
             )
+        broken = sum(job.added.broken for job in jobs)
+        if broken:
+            left.append(f"{counted(broken, 'layer')} of data not continued: a value at a hole is not finite")
         if left:
             self.report({"INFO"}, listed(left))
         for warning in _warnings(reports):
