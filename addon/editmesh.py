@@ -13,6 +13,7 @@ import numpy as np
 
 from . import attributes, holes
 from .holes import Found, OpenEdge, Problem
+from .outlines import LARGEST
 
 _FLAT = 1e-9
 """An object scaled to less than this part of its largest scale along some direction has no thickness there."""
@@ -111,6 +112,11 @@ class EditMesh:
             vertex = int(loop[bad[0]])
             reason = f"vertex {vertex} has a coordinate that is not a finite number; move or delete it"
             return Problem(reason, tuple(int(v) for v in loop[bad]))
+        far = np.flatnonzero(np.abs(points).max(axis=1) > LARGEST)
+        if len(far):
+            vertex, reach = int(loop[far[0]]), np.abs(points[far[0]]).max()
+            reason = f"vertex {vertex} is {reach:.3g} away, up to {LARGEST:g} is supported; move or delete it"
+            return Problem(reason, tuple(int(v) for v in loop[far]))
         steps = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
         none = np.flatnonzero(steps == 0)
         if len(none):
@@ -217,7 +223,8 @@ class EditMesh:
         by_edge = [edge for edge in bm.edges if frozenset(vertex.index for vertex in edge.verts) in pairs]
         if "VERT" not in bm.select_mode:
             # A vertex alone is not seen in this mode: its selected edges stand for it.
-            around = {edge for index in vertices for edge in bm.verts[index].link_edges if edge.select}
+            alone = vertices - {index for pair in pairs for index in pair}
+            around = {edge for index in alone for edge in bm.verts[index].link_edges if edge.select}
             by_edge += [edge for edge in around if edge not in by_edge]
         shown = [bm.verts[index] for index in vertices] + by_edge
         self.deselect()
