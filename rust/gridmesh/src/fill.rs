@@ -1,0 +1,10 @@
+//! Filling holes with grid patches.
+
+mod develop;
+mod exact;
+mod flat;
+mod flips;
+mod graded;
+mod quality;
+mod settle;
+mod small;
