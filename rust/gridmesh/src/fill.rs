@@ -3,14 +3,21 @@
 //! [`fill_hole`] fills one loop, [`fill_holes`] many; [`holes`] finds loops.
 
 mod check;
+mod develop;
+mod exact;
 mod fair;
 mod fit;
+mod flat;
+mod flips;
+mod graded;
 pub mod holes;
 mod meet;
 mod mesh;
 mod patchwork;
+mod quality;
+mod settle;
+mod small;
 mod solver;
-mod standin;
 mod sweep;
 mod unroll;
 
@@ -22,10 +29,10 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use self::check::{Checked, check_loop};
+use self::flat::{FlatOptions, Method, fill_flat};
 use self::meet::{Box3, count_meetings, near_boxes};
 use self::mesh::Rim;
 use self::patchwork::Patchwork;
-use self::standin as flat;
 pub use self::unroll::Unrolling;
 use crate::error::{Error, Result};
 use crate::metrics::min_angle;
@@ -263,13 +270,9 @@ impl Job<'_> {
         let taken = Taken::new(checked, rim, reserved);
         let wanted = wanted(loop_, rim);
         let is_taken = |i: usize, j: usize| taken.has(i, j);
-        let mut patch =
-            flat::fill_flat(&unrolled.points, &wanted, &is_taken, &flat::FlatOptions::default(), progress)?;
-        if n == 3 && patch.interior.is_empty() && taken.face {
-            // The mesh has this very triangle: fill with three others.
-            patch.interior = vec![unrolled.points.iter().sum::<glam::DVec2>() / 3.0];
-            patch.triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]];
-        }
+        // A triangle that the mesh has already is filled with three others.
+        let flat_options = FlatOptions { single: !taken.face };
+        let patch = fill_flat(&unrolled.points, &wanted, &is_taken, &flat_options, progress)?;
         clock.stage("grid");
         progress.report(0.0)?;
 

@@ -11,6 +11,7 @@ pub(crate) struct Bending<'a> {
     work: &'a Patchwork,
     /// The vertex of each equation.
     rows: Vec<u32>,
+    seams: Vec<[u32; 4]>,
     system: LeastSquares,
 }
 
@@ -31,8 +32,24 @@ impl<'a> Bending<'a> {
             columns.extend(work.near[work.range(v)].iter().filter_map(|&u| work.unknown(u as usize)));
             start.push(columns.len() as u32);
         }
+        let mut seams = vec![];
+        for t in &work.triangles[..work.n_patch] {
+            for k in 0..3 {
+                let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
+                if (a as usize + 1) % work.n == b as usize && (a as usize) < work.n && work.unknown(c as usize).is_some() {
+                    let d = work.fan(a as usize).iter().find_map(|&[_, p, q]| {
+                        if p == b && q != c { Some(q) } else if q == b && p != c { Some(p) } else { None }
+                    });
+                    if let Some(d) = d {
+                        seams.push([a, b, c, d]);
+                        columns.extend(work.unknown(c as usize));
+                        start.push(columns.len() as u32);
+                    }
+                }
+            }
+        }
         let system = LeastSquares::new(work.end - work.n, start, columns)?;
-        Ok(Bending { work, rows, system })
+        Ok(Bending { work, rows, seams, system })
     }
 
     /// Minimises the squared Laplacians `sum w (x_j - x_i)` of the positions, one factorisation for the
@@ -67,6 +84,7 @@ impl<'a> Bending<'a> {
             right.push((-known).to_array());
             importance.push(1.0 / masses[v]);
         }
+        for _ in &self.seams { coefficients.push(0.0); right.push([0.0; 3]); importance.push(0.0); }
         let found = self.system.solve(&coefficients, &importance, &right, |_| 0.0)?;
         for (v, x) in work.inner().zip(found) {
             positions[v] = x.into();
@@ -105,7 +123,23 @@ impl<'a> Bending<'a> {
             }
             let wanted = target.map_or(0.0, |h| h[v] * masses[v]);
             right.push([wanted - normals[v].dot(laplacian)]);
-            importance.push(1.0 / masses[v].max(f64::MIN_POSITIVE));
+            let extra = if v < work.n { super::fit::env("WL", 1.0) } else { 1.0 };
+            importance.push(extra / masses[v].max(f64::MIN_POSITIVE));
+        }
+        let ws = super::fit::env("WS", 0.0);
+        for &[a, b, c, d] in &self.seams {
+            let [pa, pb, pc, pd] = [a, b, c, d].map(|v| positions[v as usize]);
+            let e = pb - pa;
+            let (n1, n2) = (e.cross(pc - pa), (pd - pa).cross(e));
+            let h = n1.length() / e.length();
+            let area = 0.5 * (n1.length() + n2.length());
+            let (m1, m2) = (n1.normalize_or_zero(), n2.normalize_or_zero());
+            // Positive where the patch's triangle bends down (against its normal).
+            let angle = m1.cross(m2).dot(e.normalize_or_zero()).atan2(m1.dot(m2));
+            coefficients.push(-m1.dot(normals[c as usize]) / h);
+            right.push([-angle]);
+            importance.push(ws * e.length_squared() / area);
+            if std::env::var("DBG").is_ok() { eprintln!("{angle:.3} {h:.4}"); }
         }
         let found = self.system.solve(&coefficients, &importance, &right, |_| 0.0)?;
         for (v, [x]) in work.inner().zip(found) {

@@ -54,7 +54,9 @@ impl Shape {
             for _ in 0..env("SWEEPS", 2.0) as i32 {
                 sweep(work, &mut positions);
             }
-            bending.normal_step(&mut positions, None)?;
+            let tgt = env("TGT", 0.0) as i32;
+            let target = if tgt > 0 { Some(target(work, &membrane, &positions, tgt)?) } else { None };
+            bending.normal_step(&mut positions, target.as_deref())?;
         }
         Ok((positions, 0))
     }
@@ -108,6 +110,35 @@ impl Shape {
         }
         Ok(all)
     }
+}
+
+fn target(work: &Patchwork, membrane: &Membrane<'_>, positions: &[DVec3], kind: i32) -> Result<Vec<f64>> {
+    let weights = work.cotangents(positions);
+    let areas = work.areas(positions);
+    let normals = work.normals(positions);
+    let mut h = (0..work.len()).map(|v| {
+        let l: DVec3 = work.range(v).map(|s| weights[s] * (positions[work.near[s] as usize] - positions[v])).sum();
+        if work.closed[v] { normals[v].dot(l) / areas[v] } else { 0.0 }
+    }).collect::<Vec<_>>();
+    if kind >= 2 {
+        let old = h.clone();
+        for v in 0..work.n {
+            let near = work.near[work.range(v)].iter().filter(|&&u| u as usize >= work.end && work.closed[u as usize]);
+            let (mut s, mut c) = (0.0, 0.0);
+            for &u in near { s += old[u as usize] * areas[u as usize]; c += areas[u as usize]; }
+            if c > 0.0 { h[v] = s / c; }
+        }
+    }
+    for _ in 0..env("AVG", 2.0) as i32 {
+        let old = h.clone();
+        for v in 0..work.n { h[v] = 0.5 * old[v] + 0.25 * (old[(v + 1) % work.n] + old[(v + work.n - 1) % work.n]); }
+    }
+    let damp = env("HD", 1.0);
+    let w = weights.iter().map(|w| w.max(1e-3)).collect::<Vec<_>>();
+    let x = membrane.harmonic(&w, |v| [h[v]])?;
+    for (v, [x]) in work.inner().zip(x) { h[v] = x; }
+    for x in &mut h { *x *= damp; }
+    Ok(h)
 }
 
 /// Inner edges of a patch whose triangles are more than 120 degrees apart.

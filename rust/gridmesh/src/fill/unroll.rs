@@ -10,7 +10,7 @@ use crate::segments::{SegmentGrid, segments_meet};
 const FORESHORTENED: f64 = 0.8;
 
 /// Vertices of the coarse surface at most: it takes the cube of their number.
-const COARSE: usize = 48;
+const COARSE: usize = 120;
 
 /// How a loop was laid out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub(crate) struct Unrolled {
 /// Lays a loop out as a simple polygon, counter-clockwise.
 ///
 /// Nearly planar loops are projected. Others are spanned by the triangulation of least area over (up
-/// to 48 of) their vertices; it has no inner vertex, so it unfolds into the plane without distortion.
+/// to 120 of) their vertices; it has no inner vertex, so it unfolds into the plane without distortion.
 /// Should that meet itself, the turning at the vertices is blended with that of a circle. Nothing is
 /// left to chance: the inscribed polygon with the loop's edge lengths is simple.
 pub(crate) fn unroll(positions: &[DVec3]) -> Unrolled {

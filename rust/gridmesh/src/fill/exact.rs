@@ -1,0 +1,353 @@
+//! The closed lattice path of exactly n steps that follows n target points at least cost.
+//!
+//! Step k of the path belongs to loop vertex k from the start, so that what a vertex wants of the
+//! patch (its valence, its angle) can be priced vertex by vertex. The search is a shortest path
+//! through n layers: layer k holds the lattice points near target k, each with the direction in
+//! which it is entered. A sweep backwards bounds the cost to go from every state; then each start
+//! that can still win is tried forwards, pruned by that bound. Costs are integers.
+//!
+//! Paths that meet themselves, and edges across the patch that the mesh already has, are priced
+//! away: both ends become dearer and the search runs again.
+
+use glam::DVec2;
+use rustc_hash::FxHashMap;
+
+use crate::axial::Axial;
+use crate::dir::Dir;
+use crate::lattice::Lattice;
+
+/// Integer cost of one turn.
+pub(super) const TURN: u32 = 64;
+
+const NEVER: u32 = u32::MAX / 4;
+
+/// What a path should follow, and at what price.
+pub(super) struct Wishes<'a> {
+    /// Position of each vertex, in lattice units.
+    pub target: &'a [DVec2],
+    /// Cost of turning by -2 to 2 at each vertex.
+    pub turns: &'a [[u32; 5]],
+    /// Cost of a squared distance of one from the target.
+    pub closeness: f64,
+    /// Lattice steps from the target's nearest lattice point that a vertex may be off.
+    pub reach: i32,
+}
+
+/// A closed path, counter-clockwise, vertex k for target k.
+#[derive(Clone, Debug)]
+pub(super) struct Route {
+    pub points: Vec<Axial>,
+    /// Without what pricing added.
+    pub cost: u64,
+    /// Times the search ran again with prices.
+    pub rounds: usize,
+}
+
+/// The layers with the bounds and prices on them.
+pub(super) struct Layers<'a> {
+    wishes: &'a Wishes<'a>,
+    /// Offsets of the cells of a layer from its centre.
+    stencil: Vec<Axial>,
+    centres: Vec<Axial>,
+    /// Cost of each cell of each layer, prices included.
+    nodes: Vec<u32>,
+    /// Least cost from a state of a layer to any state of the last.
+    to_go: Vec<u32>,
+}
+
+impl<'a> Layers<'a> {
+    pub fn new(wishes: &'a Wishes<'a>) -> Layers<'a> {
+        let reach = wishes.reach;
+        let stencil: Vec<Axial> = (-reach..=reach)
+            .flat_map(|r| (-reach..=reach).map(move |q| Axial::new(q, r)))
+            .filter(|o| (o.q + o.r).abs() <= reach)
+            .collect();
+        let centres: Vec<Axial> = wishes.target.iter().map(|&t| Lattice::nearest(t)).collect();
+        let mut nodes = Vec::with_capacity(centres.len() * stencil.len());
+        for (&centre, &target) in centres.iter().zip(wishes.target) {
+            for &offset in &stencil {
+                let d = Lattice::units(centre + offset).distance_squared(target);
+                nodes.push((f64::from(TURN) * wishes.closeness * d).min(1e6).round() as u32);
+            }
+        }
+        let to_go = vec![0; (centres.len() + 1) * stencil.len() * 6];
+        let mut layers = Layers { wishes, stencil, centres, nodes, to_go };
+        layers.bound();
+        layers
+    }
+
+    fn len(&self) -> usize {
+        self.centres.len()
+    }
+
+    /// For each cell of a layer and each direction, the cell of the next layer that it leads to.
+    fn steps(&self, layer: usize) -> Vec<[u16; 6]> {
+        let next = (layer + 1) % self.len();
+        let shift = self.centres[layer] - self.centres[next];
+        self.stencil.iter().map(|&o| Dir::ALL.map(|d| self.cell(o + shift + d))).collect()
+    }
+
+    /// Number of the cell at an offset from the centre; `u16::MAX` outside.
+    fn cell(&self, offset: Axial) -> u16 {
+        let reach = self.wishes.reach;
+        if offset.distance(Axial::default()) > reach {
+            return u16::MAX;
+        }
+        // Cells before this row: the rows of a hexagon, of 2 reach + 1 - |r| cells each.
+        let below = offset.r + reach;
+        let full = |rows: i32| rows * (2 * reach + 1);
+        let cut: i32 =
+            if offset.r <= 0 { below * (2 * reach + 1 - below) / 2 } else { hexagon_cut(reach, offset.r) };
+        let first = (-reach).max(-reach - offset.r);
+        (full(below) - cut + offset.q - first) as u16
+    }
+
+    /// The sweep backwards.
+    fn bound(&mut self) {
+        let states = self.stencil.len() * 6;
+        let n = self.len();
+        for layer in (0..n).rev() {
+            let next = (layer + 1) % n;
+            let steps = self.steps(layer);
+            let nodes = &self.nodes[next * self.stencil.len()..(next + 1) * self.stencil.len()];
+            let (before, after) = self.to_go.split_at_mut((layer + 1) * states);
+            let here = &mut before[layer * states..];
+            let turns = &self.wishes.turns[layer];
+            for (cell, ways) in steps.iter().enumerate() {
+                // Twice round, so that a turn needs no modulo.
+                let mut ahead = [NEVER; 12];
+                for (d, &to) in ways.iter().enumerate() {
+                    if to != u16::MAX {
+                        let to = to as usize;
+                        ahead[d] = nodes[to] + after[to * 6 + d];
+                        ahead[d + 6] = ahead[d];
+                    }
+                }
+                for d in 0..6 {
+                    let from = d + 4;
+                    let mut least = NEVER;
+                    for (t, &cost) in turns.iter().enumerate() {
+                        least = least.min(ahead[(from + t) % 12].saturating_add(cost));
+                    }
+                    here[cell * 6 + d] = least.min(NEVER);
+                }
+            }
+        }
+    }
+
+    /// The cheapest closed path, if there is one; with `starts` the number of starts tried at most.
+    pub fn solve(&self, starts: usize) -> Option<(Vec<Axial>, u32)> {
+        let states = self.stencil.len() * 6;
+        let mut order: Vec<usize> = (0..states).filter(|&s| self.to_go[s] < NEVER).collect();
+        order.sort_by_key(|&s| (self.to_go[s], s));
+        let steps: Vec<Vec<[u16; 6]>> = (0..self.len()).map(|layer| self.steps(layer)).collect();
+        let mut best: Option<(Vec<Axial>, u32)> = None;
+        let mut limit = NEVER;
+        for &start in order.iter().take(starts) {
+            if self.to_go[start] >= limit {
+                break;
+            }
+            if let Some((points, cost)) = self.closed_from(start, limit, &steps) {
+                limit = cost;
+                best = Some((points, cost));
+            }
+        }
+        best
+    }
+
+    /// The cheapest path from a state of layer 0 back to it that costs less than `limit`.
+    fn closed_from(&self, start: usize, limit: u32, steps: &[Vec<[u16; 6]>]) -> Option<(Vec<Axial>, u32)> {
+        let cells = self.stencil.len();
+        let states = cells * 6;
+        let n = self.len();
+        let mut came = vec![u8::MAX; (n + 1) * states];
+        let mut here = vec![NEVER; states];
+        let mut there = vec![NEVER; states];
+        let mut active = vec![start];
+        let mut reached = Vec::new();
+        here[start] = 0;
+        for layer in 0..n {
+            let next = (layer + 1) % n;
+            let to_go = &self.to_go[(layer + 1) * states..(layer + 2) * states];
+            for &state in &active {
+                let (cell, d) = (state / 6, state % 6);
+                let so_far = std::mem::replace(&mut here[state], NEVER);
+                for (t, &turn) in self.wishes.turns[layer].iter().enumerate() {
+                    let out = (d + 4 + t) % 6;
+                    let to = steps[layer][cell][out];
+                    if to == u16::MAX {
+                        continue;
+                    }
+                    let cost = so_far + turn + self.nodes[next * cells + to as usize];
+                    let to = to as usize * 6 + out;
+                    if cost < there[to] && cost + to_go[to] < limit {
+                        if there[to] == NEVER {
+                            reached.push(to);
+                        }
+                        there[to] = cost;
+                        came[(layer + 1) * states + to] = d as u8;
+                    }
+                }
+            }
+            std::mem::swap(&mut here, &mut there);
+            std::mem::swap(&mut active, &mut reached);
+            reached.clear();
+        }
+        let cost = here[start];
+        if cost >= limit {
+            return None;
+        }
+        let mut points = vec![Axial::default(); n];
+        let (mut at, mut d) = (self.centres[0] + self.stencil[start / 6], start % 6);
+        for layer in (1..=n).rev() {
+            let cell = self.cell(at - self.centres[layer % n]);
+            let before = came[layer * states + cell as usize * 6 + d];
+            at = at - Dir::ALL[d];
+            points[layer - 1] = at;
+            d = usize::from(before);
+        }
+        Some((points, cost))
+    }
+
+    fn raise(&mut self, layer: usize, point: Axial, price: u32) -> u64 {
+        let cell = self.cell(point - self.centres[layer]);
+        match self.nodes.get_mut(layer * self.stencil.len() + usize::from(cell)) {
+            Some(node) if cell != u16::MAX => {
+                *node = (*node + price).min(1 << 24);
+                u64::from(price)
+            }
+            _ => 0,
+        }
+    }
+}
+
+/// Cells that the rows of a hexagon up to row r > 0 lack against full ones.
+fn hexagon_cut(reach: i32, r: i32) -> i32 {
+    // Rows -reach..=0 lack reach, ..., 0; rows 1..r lack 1, ..., r - 1.
+    reach * (reach + 1) / 2 + (r - 1) * r / 2
+}
+
+/// The cheapest closed path that does not meet itself, and across whose inside no edge runs that
+/// the mesh has already (`taken`). `None` if prices did not lead to one within `rounds`.
+pub(super) fn route(
+    wishes: &Wishes<'_>,
+    taken: &dyn Fn(usize, usize) -> bool,
+    starts: usize,
+    rounds: usize,
+) -> Option<Route> {
+    let mut layers = Layers::new(wishes);
+    for round in 0..=rounds {
+        let (points, cost) = layers.solve(starts)?;
+        let conflicts = conflicts(&points, taken);
+        if conflicts.is_empty() && turning(&points) == 6 {
+            let cost = cost_of(wishes, &points).unwrap_or(u64::from(cost));
+            return Some(Route { points, cost, rounds: round });
+        }
+        for &(i, j) in &conflicts {
+            layers.raise(i, points[i], TURN / 2);
+            layers.raise(j, points[j], TURN / 2);
+        }
+        if conflicts.is_empty() {
+            return None;
+        }
+        layers.bound();
+    }
+    None
+}
+
+fn cost_of(wishes: &Wishes<'_>, points: &[Axial]) -> Option<u64> {
+    let n = points.len();
+    let mut sum = 0;
+    for k in 0..n {
+        let enter = points[(k + n - 1) % n].step_to(points[k])?;
+        let leave = points[k].step_to(points[(k + 1) % n])?;
+        let turn = wishes.turns[k].get((enter.turn_to(leave) + 2) as usize)?;
+        let d = Lattice::units(points[k]).distance_squared(wishes.target[k]);
+        sum += u64::from(*turn) + (f64::from(TURN) * wishes.closeness * d).round() as u64;
+    }
+    Some(sum)
+}
+
+/// The sum of turns of a closed path; 3 stands for a step that is none.
+pub(super) fn turning(points: &[Axial]) -> i32 {
+    let n = points.len();
+    (0..n)
+        .map(|k| {
+            let enter = points[(k + n - 1) % n].step_to(points[k]);
+            let leave = points[k].step_to(points[(k + 1) % n]);
+            enter.zip(leave).map_or(100, |(enter, leave)| enter.turn_to(leave))
+        })
+        .sum()
+}
+
+/// Pairs of vertices that share a point, or are joined by an edge inside the patch that is taken.
+pub(super) fn conflicts(points: &[Axial], taken: &dyn Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
+    let n = points.len();
+    let mut at: FxHashMap<Axial, usize> = FxHashMap::default();
+    let mut found = Vec::new();
+    for (i, &p) in points.iter().enumerate() {
+        if let Some(j) = at.insert(p, i) {
+            found.push((j, i));
+        }
+    }
+    for (i, &p) in points.iter().enumerate() {
+        let (Some(enter), Some(leave)) = (points[(i + n - 1) % n].step_to(p), p.step_to(points[(i + 1) % n]))
+        else {
+            continue;
+        };
+        for inner in 1..=2 - enter.turn_to(leave) {
+            match at.get(&(p + leave.rotate(inner))) {
+                Some(&j) if i < j && taken(i, j) => found.push((i, j)),
+                _ => {}
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fill::develop::Loop;
+
+    fn plain(n: usize) -> Vec<[u32; 5]> {
+        vec![[2 * TURN, TURN, 0, TURN, 4 * TURN]; n]
+    }
+
+    fn circle(n: usize) -> Vec<DVec2> {
+        let circle: Vec<DVec2> =
+            (0..n).map(|k| DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect();
+        Loop::new(&circle).developed(1.0, 0.2)
+    }
+
+    #[test]
+    fn cells_are_numbered_as_in_the_stencil() {
+        for reach in 1..5 {
+            let target = [DVec2::ZERO];
+            let turns = plain(1);
+            let wishes = Wishes { target: &target, turns: &turns, closeness: 1.0, reach };
+            let layers = Layers::new(&wishes);
+            for (i, &o) in layers.stencil.iter().enumerate() {
+                assert_eq!(layers.cell(o) as usize, i);
+            }
+            assert_eq!(layers.cell(Axial::new(reach, 1)), u16::MAX);
+        }
+    }
+
+    #[test]
+    fn a_circle_of_any_length_has_a_path_of_that_length() {
+        for n in (8..120).chain([6, 300]) {
+            let (target, turns) = (circle(n), plain(n));
+            let wishes = Wishes { target: &target, turns: &turns, closeness: 0.1, reach: 2 };
+            let route = route(&wishes, &|_, _| true, 1000, 60);
+            let Some(route) = route else { panic!("no path for {n}") };
+            assert_eq!(route.points.len(), n);
+            assert_eq!(turning(&route.points), 6);
+            for k in 0..n {
+                assert_eq!(route.points[k].distance(route.points[(k + 1) % n]), 1);
+            }
+            // All pairs count as taken: no edge joins two vertices of the path.
+            assert!(conflicts(&route.points, &|_, _| true).is_empty());
+        }
+    }
+}

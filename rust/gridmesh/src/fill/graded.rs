@@ -1,0 +1,202 @@
+//! Patches for loops that no single lattice fits: points of nested lattices, as fine as the loop is
+//! near by, joined by a constrained Delaunay triangulation. Works for every simple polygon.
+
+use glam::DVec2;
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+
+use super::flips::improve_valences;
+use super::settle::{Rings, even_out, untangle};
+use crate::axial::Axial;
+use crate::error::{Error, Result};
+use crate::lattice::Lattice;
+use crate::progress::Progress;
+
+/// How much the size of the triangles grows per length, away from the loop.
+const GROWTH: f64 = 0.35;
+
+/// Interior vertices and triangles of a simple counter-clockwise polygon.
+pub(super) fn graded(
+    polygon: &[DVec2],
+    wanted: &[i32],
+    taken: &dyn Fn(usize, usize) -> bool,
+    progress: Progress<'_>,
+) -> Result<(Vec<DVec2>, Vec<[u32; 3]>)> {
+    let n = polygon.len();
+    let field = SizeField::new(polygon);
+    let mut positions = polygon.to_vec();
+    positions.extend(field.points(polygon));
+    let mut triangles = triangulate(&positions, n)?;
+    // An edge that the mesh has already is split, and whatever edges that brings.
+    for _ in 0..16 {
+        let repeated = repeated_edges(&triangles, n, taken);
+        if repeated.is_empty() {
+            break;
+        }
+        for (i, j) in repeated {
+            positions.push(0.5 * (positions[i] + positions[j]));
+        }
+        triangles = triangulate(&positions, n)?;
+    }
+    let mut settled = positions.clone();
+    for _ in 0..3 {
+        improve_valences(&settled, &mut triangles, wanted, taken);
+        if let Some(rings) = Rings::new(&triangles, n, settled.len()) {
+            if !untangle(&rings, &mut settled, 4, Progress::NONE)? {
+                break;
+            }
+            even_out(&rings, &mut settled, 8, 0.02, progress)?;
+        }
+    }
+    Ok((settled.split_off(n), triangles))
+}
+
+/// Edges across the patch between loop vertices that are taken, each once, in order.
+pub(super) fn repeated_edges(
+    triangles: &[[u32; 3]],
+    n: usize,
+    taken: &dyn Fn(usize, usize) -> bool,
+) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    for t in triangles {
+        for k in 0..3 {
+            let (i, j) = (t[k] as usize, t[(k + 1) % 3] as usize);
+            if i < j && j < n && j - i > 1 && j - i < n - 1 && taken(i, j) {
+                found.push((i, j));
+            }
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+/// The constrained Delaunay triangles inside the polygon of the first `n` positions.
+pub(super) fn triangulate(positions: &[DVec2], n: usize) -> Result<Vec<[u32; 3]>> {
+    let failed = |reason: String| Error::Solver { stage: "triangulation of the hole", reason };
+    let mut mesh: ConstrainedDelaunayTriangulation<Point2<f64>> = ConstrainedDelaunayTriangulation::new();
+    let mut number = Vec::with_capacity(positions.len());
+    let mut vertex = Vec::with_capacity(n);
+    for (i, p) in positions.iter().enumerate() {
+        let handle = mesh.insert(Point2::new(p.x, p.y)).map_err(|e| failed(e.to_string()))?;
+        if handle.index() == number.len() {
+            number.push(i as u32);
+        } else if i < n {
+            return Err(failed(format!("vertices {} and {i} of the loop coincide", number[handle.index()])));
+        }
+        if i < n {
+            vertex.push(handle);
+        }
+    }
+    for i in 0..n {
+        if mesh.try_add_constraint(vertex[i], vertex[(i + 1) % n]).is_empty() {
+            return Err(failed(format!("the loop meets itself at edge {i}")));
+        }
+    }
+    // A triangle is inside if the loop winds around it: its faces are found by flooding from the
+    // left sides of the loop's edges.
+    let mut inside = vec![false; mesh.num_all_faces()];
+    let mut stack = Vec::new();
+    for i in 0..n {
+        match mesh.get_edge_from_neighbors(vertex[i], vertex[(i + 1) % n]) {
+            Some(edge) => stack.push(edge.face().fix()),
+            None => return Err(failed(format!("edge {i} of the loop passes through another vertex"))),
+        }
+    }
+    let mut triangles = Vec::new();
+    while let Some(face) = stack.pop() {
+        if std::mem::replace(&mut inside[face.index()], true) {
+            continue;
+        }
+        let Some(face) = mesh.face(face).as_inner() else {
+            return Err(failed("the loop is not counter-clockwise".into()));
+        };
+        triangles.push(face.vertices().map(|v| number[v.index()]));
+        for edge in face.adjacent_edges() {
+            if !edge.is_constraint_edge() {
+                stack.push(edge.rev().face().fix());
+            }
+        }
+    }
+    Ok(triangles)
+}
+
+/// How long edges should be at a point: as the loop's edges near by, growing with the distance.
+struct SizeField {
+    places: Vec<(DVec2, f64)>,
+    least: f64,
+    most: f64,
+}
+
+impl SizeField {
+    fn new(polygon: &[DVec2]) -> SizeField {
+        let n = polygon.len();
+        let places: Vec<(DVec2, f64)> = (0..n)
+            .map(|k| {
+                let (a, b) = (polygon[k], polygon[(k + 1) % n]);
+                (0.5 * (a + b), a.distance(b))
+            })
+            .collect();
+        let least = places.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
+        let most = places.iter().map(|p| p.1).fold(0.0, f64::max);
+        SizeField { places, least, most }
+    }
+
+    fn at(&self, x: DVec2) -> f64 {
+        // Within half its length of the middle of an edge, its size holds.
+        let size = |&(p, length): &(DVec2, f64)| length + GROWTH * (x.distance(p) - 0.5 * length).max(0.0);
+        self.places.iter().map(size).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Vertices of a triangular lattice that is halved until it is as fine as wished, inside the
+    /// polygon and not too near its edges.
+    fn points(&self, polygon: &[DVec2]) -> Vec<DVec2> {
+        let low = polygon.iter().fold(DVec2::INFINITY, |a, &b| a.min(b));
+        let high = polygon.iter().fold(DVec2::NEG_INFINITY, |a, &b| a.max(b));
+        let across = (high - low).max_element();
+        // The finest lattice has edges of the least size; one coarse triangle covers all.
+        let fine = self.least.max(across * 1e-5).max(f64::MIN_POSITIVE);
+        let levels = (4.0 * across / fine).log2().ceil().clamp(1.0, 24.0) as u32;
+        let origin = low - DVec2::new(across, 0.5 * across);
+        let place = |p: Axial| origin + fine * Lattice::units(p);
+        let mut stack = vec![(Axial::default(), 1i32 << levels, 1i32)];
+        let mut points = Vec::new();
+        while let Some((corner, edge, up)) = stack.pop() {
+            let (a, b) = (Axial::new(edge * up, 0), Axial::new(0, edge * up));
+            let corners = [corner, corner + a, corner + b].map(place);
+            let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let length = f64::from(edge) * fine;
+            let outside = (centre.clamp(low, high) - centre).length() > 0.6 * length;
+            if outside {
+                continue;
+            }
+            let wished = self.at(centre).min(self.most * 4.0);
+            if edge > 1 && length > 1.3 * wished {
+                let half = edge / 2;
+                let (a, b) = (Axial::new(half * up, 0), Axial::new(0, half * up));
+                stack.push((corner, half, up));
+                stack.push((corner + a, half, up));
+                stack.push((corner + b, half, up));
+                stack.push((corner + a + b, half, -up));
+            } else {
+                points.extend([corner, corner + Axial::new(edge * up, 0), corner + Axial::new(0, edge * up)]);
+            }
+        }
+        points.sort_unstable();
+        points.dedup();
+        let clear = |x: &DVec2| {
+            let size = self.at(*x);
+            let mut inside = false;
+            for (i, &a) in polygon.iter().enumerate() {
+                let b = polygon[(i + 1) % polygon.len()];
+                if (a.y > x.y) != (b.y > x.y) && x.x < a.x + (x.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+                    inside = !inside;
+                }
+                let t = ((*x - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+                if a.lerp(b, t).distance(*x) < 0.6 * size {
+                    return false;
+                }
+            }
+            inside
+        };
+        points.into_iter().map(place).filter(clear).collect()
+    }
+}
