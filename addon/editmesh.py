@@ -140,7 +140,7 @@ class EditMesh:
                     for face in faces:
                         face[face_set[0]] = face_set[1]
                 added.faces += faces
-                added.torn += around.torn
+                added.torn += around.torn > 0
                 added.broken += around.broken
         except BaseException:
             self._take_back(made)
@@ -278,7 +278,7 @@ class Added:
 
     faces: list[Any] = field(default_factory=list)
     torn: int = 0
-    """Layers of corner data that do not agree along a loop."""
+    """Loops along which corner data does not agree."""
     broken: int = 0
     """Layers with values that are not finite."""
 

@@ -133,7 +133,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         torn = sum(job.added.torn for job in jobs)
         if torn:
             left.append(
-                f"{counted(torn, 'map')} of UVs or colours torn at a hole: continued on one side alone"
+                f"UVs or colours are torn at {counted(torn, 'hole')}: continued from the longest stretch of each"
             )
         broken = sum(job.added.broken for job in jobs)
         if broken:
