@@ -40,15 +40,16 @@ class EditMesh:
 
     def open_edges(self) -> list[OpenEdge]:
         """All edges with one face or none."""
-        rims = [edge for edge in self.bm.edges if edge.is_boundary]
+        unusual = [edge for edge in self.bm.edges if not edge.is_manifold]  # the one pass over all of them
         found = [
             OpenEdge((corner.link_loop_next.vert.index, corner.vert.index), False, edge.select, edge.hide)
-            for edge in rims
+            for edge in unusual
+            if edge.is_boundary
             for corner in edge.link_loops
         ]
         found += [
             OpenEdge((edge.verts[0].index, edge.verts[1].index), True, edge.select, edge.hide)
-            for edge in self.bm.edges
+            for edge in unusual
             if edge.is_wire
         ]
         return found
@@ -207,8 +208,12 @@ class EditMesh:
 
     def deselect(self) -> None:
         """Select nothing."""
-        for elements in (self.bm.faces, self.bm.edges, self.bm.verts):
-            for element in elements:
+        for elements, count in (
+            (self.bm.faces, self.mesh.total_face_sel),
+            (self.bm.edges, self.mesh.total_edge_sel),
+            (self.bm.verts, self.mesh.total_vert_sel),
+        ):
+            for element in elements if count else ():
                 if element.select:
                     element.select = False
         self.bm.select_history.clear()

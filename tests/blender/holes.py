@@ -113,7 +113,8 @@ class Before:
             assert {len(face) for face in patch} == {3}
         inner = {frozenset(pair) for face in patch for pair in directed([face])}
         old = {pair for pair in inner if max(pair) < n}
-        rims = {frozenset(p) for p in directed(self.faces) if p[::-1] not in directed(self.faces)}
+        before = directed(self.faces)
+        rims = {frozenset(pair) for pair in before if pair[::-1] not in before}
         assert old - rims <= {frozenset(edge.vertices) for edge in mesh.edges} - self.edges, (
             "an old edge is reused"
         )
