@@ -80,7 +80,7 @@ class EditMesh:
 
     def has_selection(self) -> bool:
         """Whether anything is selected."""
-        return any(vertex.select for vertex in self.bm.verts)
+        return self.mesh.total_vert_sel > 0
 
     def snapshot(self) -> Snapshot:
         """Positions and triangles, as edited until now.

@@ -35,6 +35,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
             ("ALL", "All", "All holes that are not hidden, up to a number of edges"),
         ],
         default="SELECTED",
+        options={"SKIP_SAVE"},
     )
     max_edges: IntProperty(
         name="Max Edges",
@@ -57,6 +58,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         name="Close Chains",
         description="Close selected chains of edges by a straight edge",
         default=False,
+        options={"SKIP_SAVE"},
     )
     use_quads: BoolProperty(
         name="Quads",
