@@ -8,7 +8,7 @@ import re
 import gridmesh
 import numpy as np
 import pytest
-from checks import check_patch
+from checks import check_patch, valences
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from sketches import DRAWINGS, SHAPES, blob, circle
@@ -49,6 +49,15 @@ def test_shapes_are_meshed_or_the_least_count_works(name, triangles, boundary):
     points = SHAPES[name]["points"]
     patch = mesh_or_least(points, triangles, boundary=boundary)
     check_patch(patch, [points])
+
+
+def test_straightening_lowers_the_turns_by_a_third_in_the_median():
+    kept = []
+    for drawing in DRAWINGS.values():
+        report = gridmesh.mesh_sketch(drawing["points"], triangles=3000, boundary="grown").report
+        assert report["turns"] <= report["turns_before"]
+        kept.append(report["turns"] / report["turns_before"])
+    assert np.median(kept) <= 2 / 3
 
 
 @SLOW
@@ -108,6 +117,33 @@ def test_scaling_by_a_power_of_two_scales_the_mesh(name):
     small, large = (gridmesh.mesh_sketch(points * k, triangles=1500) for k in (1, 1024))
     assert (small.vertices * 1024).tobytes() == large.vertices.tobytes()
     assert small.triangles.tobytes() == large.triangles.tobytes()
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_moving_turning_and_scaling_keeps_the_topology(name):
+    points = DRAWINGS[name]["points"]
+    size = np.ptp(points)
+    expected = gridmesh.mesh_sketch(points, triangles=2500)
+    for angle, scale, shift in [(0.7, 3.3, (2, -1)), (2.9, 0.021, (-0.4, 7))]:
+        turned = points @ np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        patch = gridmesh.mesh_sketch(scale * turned + np.array(shift) * size, triangles=2500)
+        assert patch.report["cost"] == pytest.approx(expected.report["cost"], rel=1e-6)
+        # The lattice may be named by another of its directions, which numbers the vertices differently.
+        before, after = (
+            valences(p.triangles, len(p.vertices))[p.loops[0]].tolist() for p in (expected, patch)
+        )
+        assert len(patch.vertices) == len(expected.vertices)
+        assert any(before[k:] + before[:k] == after for k in range(len(before)))
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_any_number_of_threads_gives_the_same_bytes(threads):
+    outlines = [drawing["points"] for drawing in DRAWINGS.values()]
+    bodies = gridmesh.map_sketches(outlines, triangles=2500, threads=threads)
+    for points, body in zip(outlines, bodies, strict=True):
+        alone = gridmesh.inflate(gridmesh.mesh_sketch(points, triangles=2500))
+        assert body.vertices.tobytes() == alone.vertices.tobytes()
+        assert body.triangles.tobytes() == alone.triangles.tobytes()
 
 
 def test_the_same_input_gives_the_same_bytes():

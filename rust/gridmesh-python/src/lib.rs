@@ -77,9 +77,9 @@ use crate::watch::Watch;
 ///     interior vertex has six triangles, no triangle is inverted (also in float32), and the topology
 ///     is that of the outline minus its holes. The same input gives the same bytes, for any number of
 ///     threads. `report` has "triangles", "irregular" (irregular vertices after stitching),
-///     "minimum_irregular" (the least that any such body has), "turns", "turns_bound", "cost",
-///     "cost_bound" (bounds are None where none was computed), "optimal", "max_distance_used",
-///     "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
+///     "minimum_irregular" (the least that any such body has), "turns", "turns_before" (a grown
+///     boundary's, before it is straightened), "turns_bound", "cost", "cost_bound" (None where none
+///     was computed), "optimal", "max_distance_used", "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
 ///     (radians), "corners" (drawn ones), "released_corners" (those without a vertex of their own),
 ///     "repaired" (repeated points dropped), "placements" (of the lattice, tried) and "seconds" (per
 ///     stage).

@@ -12,6 +12,7 @@ pub fn sketch(py: Python<'_>, report: &SketchReport) -> PyResult<Py<PyDict>> {
     dict.set_item("irregular", report.irregular)?;
     dict.set_item("minimum_irregular", report.minimum_irregular)?;
     dict.set_item("turns", report.turns)?;
+    dict.set_item("turns_before", report.turns_before)?;
     dict.set_item("turns_bound", report.turns_bound)?;
     dict.set_item("cost", report.cost)?;
     dict.set_item("cost_bound", report.cost_bound)?;

@@ -1,9 +1,11 @@
-//! Growth of a boundary (section IV-B): time for each triangle.
+//! Growth of a boundary from its seed, and the search for the seed (section IV-B): time for each
+//! triangle.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec2;
+use gridmesh::boundary::{Boundary, Expansion};
 use gridmesh::curve::{ClosedCurve, Winding};
-use gridmesh::growth::grow_inside;
+use gridmesh::growth::{Watch, grow};
 use gridmesh::lattice::Lattice;
 use gridmesh::progress::Progress;
 use gridmesh::raster::Raster;
@@ -26,9 +28,17 @@ fn growth(criterion: &mut Criterion) {
         let edge_length = Lattice::edge_length_for(curve.area(), triangles);
         let lattice = Lattice { origin: DVec2::ZERO, angle: 0.2, edge_length };
         let raster = Raster::new(&Target::new(&curve, &lattice), 5);
-        let Ok(Some(boundary)) = grow_inside(&raster, Progress::NONE) else { return };
+        let within = |_: &Boundary, expansion: &Expansion| raster.is_free(expansion.point, expansion.beside);
+        let from = |seed| {
+            let mut boundary = Boundary::hexagon(raster.layout().clone(), seed)?;
+            grow(&mut boundary, Watch::Point, within, Progress::NONE).ok()?;
+            Some(boundary)
+        };
+        let Some(seed) = raster.seed() else { return };
+        let Some(boundary) = from(seed) else { return };
         group.throughput(Throughput::Elements(boundary.triangles() as u64));
-        group.bench_function(format!("{triangles}"), |b| b.iter(|| grow_inside(&raster, Progress::NONE)));
+        group.bench_function(format!("grow {triangles}"), |b| b.iter(|| from(seed)));
+        group.bench_function(format!("seed {triangles}"), |b| b.iter(|| raster.seed()));
     }
     group.finish();
 }

@@ -94,6 +94,8 @@ pub struct Expansion {
     pub first: Dir,
     /// Bit `d` is set if the neighbour in direction `d` is a boundary vertex.
     pub beside: u8,
+    /// Cell numbers of the neighbours.
+    around: [usize; 6],
 }
 
 impl Expansion {
@@ -154,9 +156,19 @@ impl Boundary {
     }
 
     /// Calls `visit` with the neighbours of a point that lie outside the patch, and their cells.
-    pub(crate) fn outside_around(&self, point: Axial, mut visit: impl FnMut(Axial, usize)) {
+    pub(crate) fn outside_around(&self, point: Axial, visit: impl FnMut(Axial, usize)) {
+        if let Some(around) = self.layout().neighbours(point) {
+            self.outside_of(point, &around, visit);
+        }
+    }
+
+    /// As [`Boundary::outside_around`], for the point of an expansion.
+    pub(crate) fn outside_beside(&self, expansion: &Expansion, visit: impl FnMut(Axial, usize)) {
+        self.outside_of(expansion.point, &expansion.around, visit);
+    }
+
+    fn outside_of(&self, point: Axial, around: &[usize; 6], mut visit: impl FnMut(Axial, usize)) {
         let values = self.cells.values();
-        let Some(around) = self.layout().neighbours(point) else { return };
         for (i, dir) in Dir::ALL.into_iter().enumerate() {
             if values[around[i]] == OUTSIDE {
                 visit(point + dir, around[i]);
@@ -213,7 +225,8 @@ impl Boundary {
             return None;
         }
         let values = self.cells.values();
-        let codes = self.cells.layout().neighbours(point)?.map(|i| values[i]);
+        let around = self.cells.layout().neighbours(point)?;
+        let codes = around.map(|i| values[i]);
         let (mut beside, mut along) = (0u8, 0u8);
         for (i, &code) in codes.iter().enumerate() {
             if code > INTERIOR {
@@ -229,7 +242,7 @@ impl Boundary {
         // The arc begins where an edge leaves along the link and none arrives.
         let arrived = (along >> 1) | ((along & 1) << 5);
         let first = Dir::ALL[wrap((along & !arrived).trailing_zeros() as usize)];
-        Some(Expansion { point, edges: edges as i32, first, beside })
+        Some(Expansion { point, edges: edges as i32, first, beside, around })
     }
 
     /// How an expansion changes [`Boundary::bend`].
@@ -245,8 +258,9 @@ impl Boundary {
     /// the boundary as it is.
     pub fn expand(&mut self, expansion: &Expansion) {
         let p = expansion.point;
-        let layout = self.cells.layout();
-        let (Some(here), Some(around)) = (layout.index(p), layout.neighbours(p)) else { return };
+        let around = &expansion.around;
+        // Cells of a row are numbered from west to east.
+        let here = around[3] + 1;
         let values = self.cells.values_mut();
         let edges = expansion.edges;
         let (first, last) = (expansion.arc(0).index(), expansion.arc(edges).index());

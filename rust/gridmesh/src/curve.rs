@@ -17,8 +17,9 @@ pub enum Winding {
 /// A simple closed polyline, closed implicitly, with its arc length.
 ///
 /// The same drawing gives the same curve, bit for bit, whichever point it starts at and in
-/// whichever direction it runs: the first point is the one with the least x (then y), the
-/// direction follows from the winding. [`ClosedCurve::source`] leads back to the input.
+/// whichever direction it runs: the first point is the one farthest from the line's centroid, also of
+/// a drawing that has been moved, turned or scaled, and the direction follows from the winding.
+/// [`ClosedCurve::source`] leads back to the input.
 #[derive(Clone, Debug)]
 pub struct ClosedCurve {
     points: Vec<DVec2>,
@@ -50,6 +51,7 @@ impl ClosedCurve {
         let mut order: Vec<usize> =
             (0..n_input).filter(|&i| input[i] != input[(i + n_input - 1) % n_input]).collect();
         let few = |distinct: usize| Error::TooFewPoints { what: what.to_owned(), distinct };
+        // Sums come out the same, bit for bit, if they begin at the same point.
         let Some(start) = (0..order.len()).min_by(|&i, &j| {
             let (a, b) = (input[order[i]], input[order[j]]);
             a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
@@ -81,6 +83,8 @@ impl ClosedCurve {
             return Err(few(kept.len()));
         }
         let area = 0.5 * doubled_area(&kept, input).abs();
+        let start = farthest_from_centroid(&kept, input);
+        kept.rotate_left(start);
         let points: Vec<DVec2> = kept.iter().map(|&i| input[i]).collect();
         let mut arc = Vec::with_capacity(points.len() + 1);
         let mut s = 0.0;
@@ -259,6 +263,21 @@ fn doubled_area(order: &[usize], input: &[DVec2]) -> f64 {
     };
     let origin = input[first];
     (1..order.len()).map(|k| (input[order[k - 1]] - origin).perp_dot(input[order[k]] - origin)).sum()
+}
+
+/// Which point is farthest from the centroid of the closed line.
+fn farthest_from_centroid(order: &[usize], input: &[DVec2]) -> usize {
+    let origin = input[order[0]];
+    let from_origin = |k: usize| input[order[k % order.len()]] - origin;
+    let (mut sum, mut length) = (DVec2::ZERO, 0.0);
+    for k in 0..order.len() {
+        let (a, b) = (from_origin(k), from_origin(k + 1));
+        sum += a.distance(b) * 0.5 * (a + b);
+        length += a.distance(b);
+    }
+    let centroid = sum / length;
+    let away = |k: &usize| from_origin(*k).distance_squared(centroid);
+    (0..order.len()).rev().max_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
 }
 
 fn input_segments(kept: &[usize], reversed: bool, input: &[DVec2]) -> Vec<u32> {

@@ -20,36 +20,71 @@ pub(crate) struct Stray {
     pub(crate) distance: f64,
 }
 
+/// A drawn point and the boundary edge beside it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Beside {
+    pub(crate) point: DVec2,
+    /// The edge starts at this vertex of the contour's loop.
+    pub(crate) edge: usize,
+    /// Arc length of the point, between those of the edge's ends.
+    pub(crate) arc: f64,
+    /// Squared distance from the edge.
+    pub(crate) squared: f64,
+}
+
+/// For each contour its points in order, beginning with the first on the loop's first edge.
+///
+/// `vertices` are numbered loop by loop, `arcs` are their arc lengths: strictly increasing,
+/// unwrapped. Linear.
+pub(crate) fn beside(contours: &[ClosedCurve], vertices: &[DVec2], arcs: &[Vec<f64>]) -> Vec<Vec<Beside>> {
+    let mut start = 0;
+    let of = |(contour, arcs): (&ClosedCurve, &Vec<f64>)| {
+        let n = arcs.len();
+        let vertices = &vertices[start..start + n];
+        start += n;
+        let points = contour.points();
+        let wrapped = contour.wrap(arcs[0]);
+        let lap = arcs[0] - wrapped;
+        let first = contour.arc()[..points.len()].partition_point(|&s| s < wrapped);
+        let ahead = (first..points.len()).map(|i| (i, lap));
+        let round = (0..first).map(|i| (i, lap + contour.length()));
+        let mut edge = 0;
+        let mut place = |(i, lap): (usize, f64)| {
+            let (point, arc) = (points[i], contour.arc()[i] + lap);
+            while edge + 1 < n && arcs[edge + 1] <= arc {
+                edge += 1;
+            }
+            let squared = nearest_on_segment(point, vertices[edge], vertices[(edge + 1) % n]).1;
+            Beside { point, edge, arc, squared }
+        };
+        ahead.chain(round).map(&mut place).collect()
+    };
+    contours.iter().zip(arcs).map(of).collect()
+}
+
 /// The greatest distance from the drawn points to the mesh boundary, and the strays: the farthest
 /// point beside each edge from which the drawing is more than `limit` away.
 ///
-/// `vertices` are numbered loop by loop, `arcs` are their arc lengths: strictly increasing,
-/// unwrapped. Each point is measured against the edge beside it, which bounds the distance of all
-/// the curve between the points; only where that exceeds `limit`, against all edges nearby.
+/// Each point is measured against the edge [`beside`] it, which bounds the distance of all the
+/// curve between the points; only where that exceeds `limit`, against all edges nearby.
 pub(crate) fn deviation(
-    contours: &[ClosedCurve],
+    beside: &[Vec<Beside>],
     vertices: &[DVec2],
     arcs: &[Vec<f64>],
     limit: f64,
 ) -> (f64, Vec<Stray>) {
     let mut worst = 0.0f64;
     let mut far: Vec<Stray> = Vec::new();
-    let mut start = 0;
-    for (k, (contour, arcs)) in contours.iter().zip(arcs).enumerate() {
-        let n = arcs.len();
-        let vertices = &vertices[start..start + n];
-        for (&point, &s) in contour.points().iter().zip(contour.arc()) {
-            let arc = arcs[0] + (s - arcs[0]).rem_euclid(contour.length());
-            let edge = arcs.partition_point(|&a| a <= arc).max(1) - 1;
-            let squared = nearest_on_segment(point, vertices[edge], vertices[(edge + 1) % n]).1;
+    for (contour, points) in beside.iter().enumerate() {
+        for &Beside { point, edge, arc, squared } in points {
             if squared > limit * limit {
-                far.push(Stray { contour: k, edge, arc, point, distance: squared.sqrt() });
+                far.push(Stray { contour, edge, arc, point, distance: squared.sqrt() });
             } else {
-                worst = worst.max(squared.sqrt());
+                worst = worst.max(squared);
             }
         }
-        start += n;
     }
+    worst = worst.sqrt();
     if !far.is_empty() {
         measure_all_round(&mut far, vertices, arcs, limit);
     }
@@ -100,11 +135,11 @@ mod tests {
         let vertices: Vec<DVec2> = kept.iter().map(|&i| drawn[i]).collect();
         let arcs = vec![kept.iter().map(|&i| contour.arc()[i]).collect::<Vec<f64>>()];
         let contours = [contour];
-        let (worst, strays) = deviation(&contours, &vertices, &arcs, 2.0);
+        let (worst, strays) = deviation(&beside(&contours, &vertices, &arcs), &vertices, &arcs, 2.0);
         assert_eq!(worst, 5.0);
         assert_eq!(strays.len(), 1);
         assert_eq!((strays[0].edge, strays[0].point), (3, drawn[4]));
-        let (worst, strays) = deviation(&contours, &vertices, &arcs, 6.0);
+        let (worst, strays) = deviation(&beside(&contours, &vertices, &arcs), &vertices, &arcs, 6.0);
         assert_eq!((worst, strays.len()), (5.0, 0));
         Ok(())
     }
@@ -117,7 +152,7 @@ mod tests {
         let contour = ClosedCurve::new(&drawn, Winding::CounterClockwise, "outline")?;
         let vertices: Vec<DVec2> = (2..6).map(|i| drawn[i]).collect();
         let arcs = vec![contour.arc()[2..6].to_vec()];
-        let (worst, strays) = deviation(&[contour], &vertices, &arcs, 2.0);
+        let (worst, strays) = deviation(&beside(&[contour], &vertices, &arcs), &vertices, &arcs, 2.0);
         assert_eq!(worst, 5.0);
         assert_eq!(strays.len(), 1);
         assert_eq!((strays[0].edge, strays[0].point), (3, drawn[0]));

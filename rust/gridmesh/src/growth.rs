@@ -35,16 +35,13 @@ pub fn grow(
 ) -> Result<usize> {
     let mut queue: VecDeque<(Axial, usize)> = VecDeque::new();
     let mut waiting = vec![false; boundary.layout().len()];
-    let enqueue_around = |boundary: &Boundary, waiting: &mut [bool], vertex, queue: &mut VecDeque<_>| {
-        boundary.outside_around(vertex, |point, cell| {
-            if !waiting[cell] {
-                waiting[cell] = true;
-                queue.push_back((point, cell));
-            }
-        });
+    let enqueue = |point, cell: usize, waiting: &mut [bool], queue: &mut VecDeque<_>| {
+        if !std::mem::replace(&mut waiting[cell], true) {
+            queue.push_back((point, cell));
+        }
     };
     for vertex in boundary.path() {
-        enqueue_around(boundary, &mut waiting, vertex, &mut queue);
+        boundary.outside_around(vertex, |point, cell| enqueue(point, cell, &mut waiting, &mut queue));
     }
     let mut added = 0;
     while let Some((point, cell)) = queue.pop_front() {
@@ -58,10 +55,12 @@ pub fn grow(
         if added % (1 << 16) == 0 {
             progress.report(0.5)?;
         }
-        enqueue_around(boundary, &mut waiting, point, &mut queue);
+        boundary.outside_beside(&expansion, |point, cell| enqueue(point, cell, &mut waiting, &mut queue));
         if watch == Watch::Ends {
             for end in [expansion.first, expansion.first.rotate(-expansion.edges)] {
-                enqueue_around(boundary, &mut waiting, point + end, &mut queue);
+                boundary.outside_around(point + end, |point, cell| {
+                    enqueue(point, cell, &mut waiting, &mut queue)
+                });
             }
         }
     }

@@ -156,6 +156,8 @@ pub struct SketchReport {
     pub minimum_irregular: usize,
     /// Sum of absolute turns along the boundary (the paper's `err_dc`).
     pub turns: usize,
+    /// `turns` before the grown boundary was straightened (section IV-D); they only fall.
+    pub turns_before: Option<usize>,
     /// Lower bound of `turns` for this lattice and distance, if it was computed.
     pub turns_bound: Option<usize>,
     /// Turns plus `closeness` times the squared distances of the path, in edges.

@@ -28,6 +28,8 @@ pub(crate) struct Outline {
     pub(crate) paths: Vec<Vec<Axial>>,
     /// Arc length of each vertex on its contour in lattice units: strictly increasing, unwrapped.
     pub(crate) arcs: Vec<Vec<f64>>,
+    /// Turns of the grown path before it was straightened.
+    pub(crate) turns_before: Option<usize>,
     pub(crate) turns_bound: Option<usize>,
     pub(crate) cost: f64,
     pub(crate) cost_bound: Option<f64>,
@@ -110,6 +112,7 @@ pub(crate) fn grown(
     if let Err(vertex) = clear_chords(&mut boundary, |p| within(p, reach)) {
         return obstacle("two parts of the boundary stay one edge apart", Lattice::units(vertex));
     }
+    let turns_before = Some(boundary.bend().unsigned_abs() as usize);
     let admit = |p: Axial| within(p, options.max_distance);
     straighten(&mut boundary, admit, progress.part(0.6, 0.9))?;
     let path = boundary.path();
@@ -123,6 +126,7 @@ pub(crate) fn grown(
         cost: boundary.bend() as f64 + options.closeness * squared,
         paths: vec![path],
         arcs: vec![arcs],
+        turns_before,
         max_distance_used: options.max_distance,
         ..Outline::default()
     }))
@@ -156,6 +160,7 @@ pub(crate) fn traced(
         .map(|(path, target)| path.parameters.iter().map(|parameter| parameter * target.step).collect());
     Ok(Ok(Outline {
         arcs: arcs.collect(),
+        turns_before: None,
         turns_bound: Some(traced.turns_bound),
         cost: traced.cost,
         cost_bound: Some(traced.cost_bound),

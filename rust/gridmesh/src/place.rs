@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::assemble::assemble;
 use crate::curve::ClosedCurve;
-use crate::deviation::{Stray, deviation};
+use crate::deviation::{Stray, beside, deviation};
 use crate::error::Result;
 use crate::lattice::Lattice;
 use crate::mapping::{Corner, corners, snap};
@@ -13,7 +13,7 @@ use crate::outline::{Obstacle, Outline};
 use crate::patch::{Loop, Patch};
 use crate::pockets::pockets;
 use crate::progress::Progress;
-use crate::relax::{Contour, RelaxOptions, Rim, first_inverted, relax, settle_corners};
+use crate::relax::{Contour, RelaxOptions, Relaxation, Rim, first_inverted, settle_corners};
 
 /// Half the length over which a corner's turning angle is measured, in edges.
 const CORNER_WINDOW: f64 = 0.5;
@@ -77,18 +77,24 @@ pub(crate) fn place(
         settle_corners(&region.triangles, &lines, &mut rims, &mut angles);
     }
     let lengths: Vec<f64> = contours.iter().map(|contour| contour.length() / h).collect();
+    let relaxed = RelaxOptions::default();
+    let mut relaxation = Relaxation::new(&region.triangles, &lattice_positions, &lines, &rims, &relaxed)?;
     // A valid patch that bridges an inlet serves if following the inlet leads to none.
     let mut valid: Option<Placed> = None;
     let mut obstacle =
         Obstacle { reason: "a part of the drawing is lost".to_owned(), at: contours[0].points()[0] };
+    let mut held: Vec<(usize, f64)> = Vec::new();
     for round in 0..ROUNDS {
-        let part = |i: usize| i as f64 / ROUNDS as f64;
-        let mut positions = lattice_positions.clone();
+        let progress = progress.part(round as f64 / ROUNDS as f64, (round + 1) as f64 / ROUNDS as f64);
         if options.relax {
-            let progress = progress.part(part(round), part(round + 1));
-            relax(&region.triangles, &mut positions, &lines, &mut rims, &RelaxOptions::default(), progress)?;
+            if round == 0 {
+                relaxation.run(progress)?;
+            } else {
+                relaxation.hold(&held, progress)?;
+            }
+            relaxation.store(&mut rims);
         }
-        let mut vertices: Vec<DVec2> = positions.iter().map(|&p| lattice.from_units(p)).collect();
+        let mut vertices: Vec<DVec2> = relaxation.positions.iter().map(|&p| lattice.from_units(p)).collect();
         let (loops, arcs) = loops(contours, &rims, &angles, h, &mut vertices);
         let inverted = first_inverted(&vertices, &region.triangles, lattice.origin);
         if let Some(triangle) = inverted.filter(|_| options.relax) {
@@ -96,16 +102,18 @@ pub(crate) fn place(
             obstacle = Obstacle { reason: "a triangle stays inverted".to_owned(), at };
             break;
         }
-        let (farthest, mut strays) = deviation(contours, &vertices, &arcs, CLOSE * h);
+        let beside = beside(contours, &vertices, &arcs);
+        let (farthest, mut strays) = deviation(&beside, &vertices, &arcs, CLOSE * h);
         if farthest > STRAY * h {
             strays.retain(|stray| stray.distance > STRAY * h);
             obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
-            if !hold(&strays, &mut rims, &lengths, h) {
+            held = to_hold(&strays, &rims, &mut angles, &lengths, h);
+            if held.is_empty() || !options.relax {
                 break;
             }
             continue;
         }
-        let (inlets, occupied) = pockets(contours, &vertices, &region.triangles, &arcs, INLET * h);
+        let (inlets, occupied) = pockets(&beside, &vertices, &region.triangles, &arcs, INLET * h);
         let kept = rims.iter().zip(&angles).flat_map(|(rim, angle)| rim.pinned.iter().zip(angle));
         let kept = kept.filter(|(pinned, angle)| **pinned && **angle != 0.0).count();
         let placed = Placed {
@@ -119,16 +127,15 @@ pub(crate) fn place(
         if valid.as_ref().is_none_or(|best| better(&placed, best)) {
             valid = Some(placed);
         }
-        if !options.relax {
+        // Following the drawing more closely is worth one more round.
+        if !options.relax || !first && valid.as_ref().is_some_and(|best| best.bridged_inlets == 0) {
             break;
         }
-        // Following the drawing more closely is worth one more round.
         strays.extend(occupied);
         strays.sort_by_key(|stray| (stray.contour, stray.edge));
         strays.dedup_by_key(|stray| (stray.contour, stray.edge));
-        if !first && valid.as_ref().is_some_and(|best| best.bridged_inlets == 0)
-            || !hold(&strays, &mut rims, &lengths, h)
-        {
+        held = to_hold(&strays, &rims, &mut angles, &lengths, h);
+        if held.is_empty() {
             break;
         }
     }
@@ -192,11 +199,18 @@ fn loops(
     (loops, arcs)
 }
 
-/// Pins the nearer end of each strayed edge to the farthest point. False if no end is free.
-fn hold(strays: &[Stray], rims: &mut [Rim], lengths: &[f64], h: f64) -> bool {
-    let mut changed = false;
+/// The nearer end of each strayed edge and the arc position of the farthest point, in edges, where it
+/// is to be held; ends that hold a corner of the drawing only if no other is free.
+fn to_hold(
+    strays: &[Stray],
+    rims: &[Rim],
+    angles: &mut [Vec<f64>],
+    lengths: &[f64],
+    h: f64,
+) -> Vec<(usize, f64)> {
+    let mut chosen: Vec<(usize, f64)> = Vec::new();
     for stray in strays {
-        let rim = &mut rims[stray.contour];
+        let rim = &rims[stray.contour];
         let n = rim.s.len();
         let to = stray.arc / h;
         let after = (stray.edge + 1) % n;
@@ -208,13 +222,12 @@ fn hold(strays: &[Stray], rims: &mut [Rim], lengths: &[f64], h: f64) -> bool {
             let (a, b) = (key(a), key(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
-        let Some(&(end, lap)) = ends.iter().find(|(i, _)| !rim.held[*i]) else { continue };
-        rim.s[end] = to - lap;
-        rim.pinned[end] = true;
-        rim.held[end] = true;
-        changed = true;
+        let is_free = |end: usize| !rim.held[end] && chosen.iter().all(|&(v, _)| v != rim.start + end);
+        let Some(&(end, lap)) = ends.iter().find(|(end, _)| is_free(*end)) else { continue };
+        angles[stray.contour][end] = 0.0;
+        chosen.push((rim.start + end, to - lap));
     }
-    changed
+    chosen
 }
 
 /// The corners of a contour, with arc lengths in edges.
@@ -232,13 +245,30 @@ fn nearest_drawn(contour: &ClosedCurve, s: f64) -> f64 {
 
 /// Smallest angle of any triangle, in radians.
 pub(crate) fn min_angle(patch: &Patch) -> f64 {
-    let mut least = f64::INFINITY;
-    for t in &patch.triangles {
+    sharpest(patch, |_| true)
+}
+
+/// Smallest angle of the triangles that have no vertex on a corner of the drawing, in radians: what
+/// the placement answers for.
+pub(crate) fn min_angle_off_corners(patch: &Patch) -> f64 {
+    let mut on_corner = vec![false; patch.vertices.len()];
+    for l in &patch.loops {
+        for (flag, &turning) in on_corner[l.start as usize..].iter_mut().zip(&l.corner) {
+            *flag = turning != 0.0;
+        }
+    }
+    sharpest(patch, |t| t.iter().all(|&v| !on_corner[v as usize]))
+}
+
+fn sharpest(patch: &Patch, counts: impl Fn(&[u32; 3]) -> bool) -> f64 {
+    // The cotangent of the least angle.
+    let mut most = -f64::INFINITY;
+    for t in patch.triangles.iter().filter(|t| counts(t)) {
         let p = t.map(|v| patch.vertices[v as usize]);
         for i in 0..3 {
             let (a, b) = (p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
-            least = least.min(a.perp_dot(b).atan2(a.dot(b)));
+            most = most.max(a.dot(b) / a.perp_dot(b));
         }
     }
-    least
+    1f64.atan2(most)
 }

@@ -3,8 +3,7 @@
 use glam::DVec2;
 
 use crate::contours::encloses;
-use crate::curve::ClosedCurve;
-use crate::deviation::Stray;
+use crate::deviation::{Beside, Stray};
 use crate::segments::nearest_on_segment;
 
 /// Rings of vertices behind a boundary edge that are looked at.
@@ -19,54 +18,48 @@ const RINGS: usize = 3;
 /// `limit` off the drawing. `distance` of a stray is the greatest such distance. `vertices` are
 /// numbered loop by loop, then the interior; `arcs` are the loops' arc lengths, unwrapped. Linear.
 pub(crate) fn pockets(
-    contours: &[ClosedCurve],
+    beside: &[Vec<Beside>],
     vertices: &[DVec2],
     triangles: &[[u32; 3]],
     arcs: &[Vec<f64>],
     limit: f64,
 ) -> (Vec<Vec<DVec2>>, Vec<Stray>) {
-    let fans = Fans::new(vertices.len(), triangles);
+    let mut fans: Option<Fans<'_>> = None;
     let n_boundary: usize = arcs.iter().map(Vec::len).sum();
     let (mut inlets, mut found) = (Vec::new(), Vec::new());
     let mut start = 0;
-    for (k, (contour, arcs)) in contours.iter().zip(arcs).enumerate() {
+    for (contour, (beside, arcs)) in beside.iter().zip(arcs).enumerate() {
         let n = arcs.len();
-        let points = contour.points();
-        let edge_of = |s: f64| {
-            let arc = arcs[0] + (s - arcs[0]).rem_euclid(contour.length());
-            (arcs.partition_point(|&a| a <= arc).max(1) - 1, arc)
-        };
-        // The points in order, beginning with the first on the first edge.
-        let first = contour.arc()[..points.len()].partition_point(|&s| s < contour.wrap(arcs[0]));
-        let mut i = 0;
-        while i < points.len() {
-            let at = |i: usize| (first + i) % points.len();
-            let edge = edge_of(contour.arc()[at(i)]).0;
-            let mut end = i + 1;
-            while end < points.len() && edge_of(contour.arc()[at(end)]).0 == edge {
-                end += 1;
+        for stretch in beside.chunk_by(|a, b| a.edge == b.edge) {
+            let Some(deepest) = stretch.iter().max_by(|a, b| a.squared.total_cmp(&b.squared)) else {
+                continue;
+            };
+            if deepest.squared <= limit * limit {
+                continue;
             }
-            let (a, b) = (vertices[start + edge], vertices[start + (edge + 1) % n]);
-            let off = |p: DVec2| nearest_on_segment(p, a, b).1;
-            let deepest = (i..end).max_by(|&x, &y| off(points[at(x)]).total_cmp(&off(points[at(y)])));
-            let stretch = (i..end).map(|x| points[at(x)]);
-            i = end;
-            let Some(deepest) = deepest.filter(|&x| off(points[at(x)]) > limit * limit) else { continue };
-            let pocket: Vec<DVec2> = [a].into_iter().chain(stretch).chain([b]).collect();
+            let edge = deepest.edge;
+            let ends = [start + edge, start + (edge + 1) % n];
+            let [a, b] = ends.map(|v| vertices[v]);
+            let pocket: Vec<DVec2> =
+                [a].into_iter().chain(stretch.iter().map(|p| p.point)).chain([b]).collect();
             // The mesh lies left of the edge; a stretch right of it bulges outwards.
             if doubled_area(&pocket) >= 0.0 {
                 continue;
             }
+            let low = pocket.iter().fold(a, |low, p| low.min(*p));
+            let high = pocket.iter().fold(a, |high, p| high.max(*p));
+            let in_box = |p: DVec2| p.cmpge(low).all() && p.cmple(high).all();
             let depth = fans
-                .around([start + edge, start + (edge + 1) % n], RINGS)
-                .into_iter()
-                .filter(|&v| v >= n_boundary && encloses(&pocket, vertices[v]))
+                .get_or_insert_with(|| Fans::new(vertices.len(), triangles))
+                .around(ends, RINGS)
+                .iter()
+                .map(|&v| v as usize)
+                .filter(|&v| v >= n_boundary && in_box(vertices[v]) && encloses(&pocket, vertices[v]))
                 .map(|v| distance_to(&pocket, vertices[v]))
                 .fold(0.0, f64::max);
             if depth > limit {
-                let point = points[at(deepest)];
-                let arc = edge_of(contour.arc()[at(deepest)]).1;
-                found.push(Stray { contour: k, edge, arc, point, distance: depth });
+                let Beside { point, arc, .. } = *deepest;
+                found.push(Stray { contour, edge, arc, point, distance: depth });
             }
             inlets.push(pocket);
         }
@@ -90,6 +83,10 @@ struct Fans<'a> {
     triangles: &'a [[u32; 3]],
     starts: Vec<u32>,
     items: Vec<u32>,
+    /// The search in which a vertex was found last.
+    seen: Vec<u32>,
+    searches: u32,
+    found: Vec<u32>,
 }
 
 impl<'a> Fans<'a> {
@@ -109,35 +106,41 @@ impl<'a> Fans<'a> {
                 next[v as usize] += 1;
             }
         }
-        Self { triangles, starts, items }
+        Self { triangles, starts, items, seen: vec![0; n_vertices], searches: 0, found: Vec::new() }
     }
 
     /// The vertices within `rings` edges of any of `seeds`.
-    fn around(&self, seeds: [usize; 2], rings: usize) -> Vec<usize> {
-        let mut found = seeds.to_vec();
+    fn around(&mut self, seeds: [usize; 2], rings: usize) -> &[u32] {
+        self.searches += 1;
+        self.found.clear();
+        self.found.extend(seeds.map(|v| v as u32));
+        for v in seeds {
+            self.seen[v] = self.searches;
+        }
         let mut from = 0;
         for _ in 0..rings {
-            let to = found.len();
+            let to = self.found.len();
             for i in from..to {
-                let v = found[i];
+                let v = self.found[i] as usize;
                 for &t in &self.items[self.starts[v] as usize..self.starts[v + 1] as usize] {
                     for w in self.triangles[t as usize] {
-                        if !found.contains(&(w as usize)) {
-                            found.push(w as usize);
+                        if std::mem::replace(&mut self.seen[w as usize], self.searches) != self.searches {
+                            self.found.push(w);
                         }
                     }
                 }
             }
             from = to;
         }
-        found
+        &self.found
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::Winding;
+    use crate::curve::{ClosedCurve, Winding};
+    use crate::deviation::beside;
     use crate::error::Result;
 
     #[test]
@@ -151,14 +154,17 @@ mod tests {
         vertices.push(DVec2::new(5.0, 5.0));
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
         let contours = [contour];
-        let (inlets, found) = pockets(&contours, &vertices, &triangles, &arcs, 0.1);
+        let (inlets, found) =
+            pockets(&beside(&contours, &vertices, &arcs), &vertices, &triangles, &arcs, 0.1);
         assert_eq!(inlets.len(), 1);
         assert!(inlets[0].contains(&drawn[4]));
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].edge, found[0].point), (3, drawn[4]));
         assert!((found[0].distance - 0.392).abs() < 1e-3, "{}", found[0].distance);
         vertices[6] = DVec2::new(5.0, 2.0);
-        assert!(pockets(&contours, &vertices, &triangles, &arcs, 0.1).1.is_empty());
+        assert!(
+            pockets(&beside(&contours, &vertices, &arcs), &vertices, &triangles, &arcs, 0.1).1.is_empty()
+        );
         Ok(())
     }
 }

@@ -6,11 +6,12 @@
 //! Newton steps with exact derivatives, and the boundary vertices slide along the curve.
 //!
 //! Stages: even spacing along the curve; harmonic extension of the boundary's displacement;
-//! a regularised energy around inverted triangles until there is none; the barrier energy; its
+//! a regularised energy around inverted triangles until there is none; a barrier energy to the
 //! fourth power, in which the worse triangles count; its sixteenth power around the worst; corners
-//! that starve a triangle let go; exact check. Where triangles stay inverted, boundary vertices are spaced evenly around them, more
-//! rings may move, and corners next to them are released. Everything is in lattice units and
-//! visits vertices in the order of their numbers: the same input gives the same bits.
+//! that starve a triangle let go; exact check. Where triangles stay inverted, boundary vertices are
+//! spaced evenly around them, more rings may move, and corners next to them are released.
+//! Everything is in lattice units and visits vertices in the order of their numbers: the same input
+//! gives the same bits.
 //!
 //! The regularised energy is that of Garanzha, Kaporin, Kudryavtseva, Protais, Ray and Sokolov,
 //! Foldover-free maps in 50 lines of code, 2021. The paper (section IV-C) only smooths.
@@ -44,7 +45,7 @@ pub struct RelaxOptions {
     pub rings: usize,
     /// Whether boundary vertices slide along their contours.
     pub slide: bool,
-    /// Sliding by d edges costs this times d squared; the energy of a triangle is 3 or more.
+    /// Sliding by d edges costs this times d squared; the energy of a triangle is one or more.
     pub stiffness: f64,
     /// Vertices that move by less than this (edges) in a sweep are done.
     pub tolerance: f64,
@@ -52,7 +53,7 @@ pub struct RelaxOptions {
 
 impl Default for RelaxOptions {
     fn default() -> Self {
-        RelaxOptions { rings: 3, slide: true, stiffness: 0.25, tolerance: 0.015 }
+        RelaxOptions { rings: 3, slide: true, stiffness: 0.25, tolerance: 0.03 }
     }
 }
 
@@ -100,71 +101,152 @@ pub fn relax(
     options: &RelaxOptions,
     progress: Progress<'_>,
 ) -> Result<RelaxReport> {
-    check_rims(positions.len(), contours, rims)?;
-    let mut slide = Slide::new(contours, rims);
-    if options.slide {
-        slide.even_out();
-    }
-    let band = movable(triangles, positions, slide.len(), options.rings)?;
-    let mut motion = Motion { band, slide, sliding: options.slide, stiffness: options.stiffness };
-    motion.place_boundary(3);
-    let mut report = RelaxReport { rings: options.rings, ..RelaxReport::default() };
-    let valid = ladder(triangles, positions, &mut motion, &mut report, progress.part(0.0, 0.4))?;
-    if valid {
-        report.sweeps += motion.improve(options.tolerance, progress.part(0.4, 0.8))?;
-        report.sweeps += motion.sharpen(options.tolerance, progress.part(0.8, 0.9))?;
-        report.released.extend(motion.release_starved(options.tolerance, progress.part(0.9, 1.0))?);
-        report.released.sort_unstable();
-    }
-    report.min_angle = motion.least_angle();
-    // The rest of the patch is the lattice itself, whose triangles are as they should be.
-    let inverted = first_inverted(&motion.band.positions, &motion.band.triangles, DVec2::ZERO);
-    store(&motion, positions);
-    motion.slide.store(rims);
-    if inverted.is_some() {
-        report.inverted = first_inverted(positions, triangles, DVec2::ZERO);
-    }
+    let mut relaxation = Relaxation::new(triangles, positions, contours, rims, options)?;
+    let report = relaxation.run(progress)?;
+    positions.copy_from_slice(&relaxation.positions);
+    relaxation.store(rims);
     Ok(report)
 }
 
-/// Untangles with ever stronger means; false if triangles stay inverted.
-fn ladder(
-    triangles: &[[u32; 3]],
-    positions: &mut [DVec2],
-    motion: &mut Motion<'_>,
-    report: &mut RelaxReport,
-    progress: Progress<'_>,
-) -> Result<bool> {
-    struct Step {
-        spread: usize,
-        release: bool,
-        rings: usize,
-        sweeps: usize,
+/// A placement that can be continued: see [`relax`], which makes one and runs it.
+#[derive(Debug)]
+pub struct Relaxation<'a> {
+    triangles: &'a [[u32; 3]],
+    options: RelaxOptions,
+    motion: Motion<'a>,
+    rings: usize,
+    /// Where the vertices are, in lattice units.
+    pub positions: Vec<DVec2>,
+}
+
+impl<'a> Relaxation<'a> {
+    /// Prepares the placement of a patch; nothing is moved yet.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] if `rims` or `triangles` are not as described at [`relax`].
+    pub fn new(
+        triangles: &'a [[u32; 3]],
+        lattice_positions: &[DVec2],
+        contours: &'a [Contour<'a>],
+        rims: &[Rim],
+        options: &RelaxOptions,
+    ) -> Result<Relaxation<'a>> {
+        check_rims(lattice_positions.len(), contours, rims)?;
+        let mut slide = Slide::new(contours, rims);
+        if options.slide {
+            slide.even_out();
+        }
+        let band = movable(triangles, lattice_positions, slide.len(), options.rings)?;
+        let motion = Motion { band, slide, sliding: options.slide, stiffness: options.stiffness };
+        let positions = lattice_positions.to_vec();
+        Ok(Relaxation { triangles, options: options.clone(), motion, rings: options.rings, positions })
     }
-    let first = report.rings;
-    let steps = [
-        Step { spread: 0, release: false, rings: first, sweeps: 25 },
-        Step { spread: 3, release: false, rings: first, sweeps: 25 },
-        Step { spread: 2, release: true, rings: 2 * first, sweeps: 40 },
-        Step { spread: 5, release: true, rings: 4 * first, sweeps: 40 },
-        Step { spread: 8, release: true, rings: usize::MAX, sweeps: 80 },
-    ];
-    let n = steps.len() as f64;
-    for (i, step) in steps.iter().enumerate() {
-        if step.rings > report.rings {
-            store(motion, positions);
-            motion.band = movable(triangles, positions, motion.band.n_rim, step.rings)?;
-            report.rings = step.rings;
+
+    /// Places all vertices, from the lattice on.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn run(&mut self, progress: Progress<'_>) -> Result<RelaxReport> {
+        self.motion.place_boundary(3);
+        let mut report = RelaxReport::default();
+        let tolerance = self.options.tolerance;
+        if self.ladder(&mut report, progress.part(0.0, 0.4))? {
+            report.sweeps += self.motion.improve(tolerance, progress.part(0.4, 0.8))?;
+            self.finish(&mut report, progress.part(0.8, 1.0))?;
         }
-        if motion.sliding && step.spread > 0 {
-            report.released.extend(motion.spread_tangled(step.spread, step.release));
+        Ok(self.conclude(report))
+    }
+
+    /// Holds boundary vertices, given by number and arc position between their neighbours', and
+    /// places what lies around them anew; the rest stays.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn hold(&mut self, vertices: &[(usize, f64)], progress: Progress<'_>) -> Result<RelaxReport> {
+        const REACH: usize = 3;
+        for &(v, s) in vertices {
+            self.motion.slide.hold(v, s);
         }
-        let part = progress.part(i as f64 / n, (i + 1) as f64 / n);
-        if motion.untangle(step.sweeps, &mut report.untangling, part)? {
-            return Ok(true);
+        if self.motion.sliding {
+            for &(v, _) in vertices {
+                self.motion.slide.spread(v, REACH);
+            }
+        }
+        self.motion.place_boundary(3);
+        let mut report = RelaxReport::default();
+        if self.ladder(&mut report, progress.part(0.0, 0.4))? {
+            let around = vertices.iter().map(|&(v, _)| v as u32);
+            report.sweeps += self.motion.mend(around, self.options.tolerance, progress.part(0.4, 0.8))?;
+            self.finish(&mut report, progress.part(0.8, 1.0))?;
+        }
+        Ok(self.conclude(report))
+    }
+
+    /// Copies arc positions and pins back.
+    pub fn store(&self, rims: &mut [Rim]) {
+        self.motion.slide.store(rims);
+    }
+
+    fn finish(&mut self, report: &mut RelaxReport, progress: Progress<'_>) -> Result<()> {
+        let tolerance = self.options.tolerance;
+        report.sweeps += self.motion.sharpen(tolerance, progress.part(0.0, 0.5))?;
+        report.released.extend(self.motion.release_starved(tolerance, progress.part(0.5, 1.0))?);
+        report.released.sort_unstable();
+        Ok(())
+    }
+
+    fn conclude(&mut self, mut report: RelaxReport) -> RelaxReport {
+        report.rings = self.rings;
+        report.min_angle = self.motion.least_angle();
+        // The rest of the patch is the lattice itself, whose triangles are as they should be.
+        let inverted = first_inverted(&self.motion.band.positions, &self.motion.band.triangles, DVec2::ZERO);
+        self.write();
+        if inverted.is_some() {
+            report.inverted = first_inverted(&self.positions, self.triangles, DVec2::ZERO);
+        }
+        report
+    }
+
+    /// Untangles with ever stronger means; false if triangles stay inverted.
+    fn ladder(&mut self, report: &mut RelaxReport, progress: Progress<'_>) -> Result<bool> {
+        struct Step {
+            spread: usize,
+            release: bool,
+            rings: usize,
+            sweeps: usize,
+        }
+        let first = self.options.rings;
+        let steps = [
+            Step { spread: 0, release: false, rings: first, sweeps: 25 },
+            Step { spread: 3, release: false, rings: first, sweeps: 25 },
+            Step { spread: 2, release: true, rings: 2 * first, sweeps: 40 },
+            Step { spread: 5, release: true, rings: 4 * first, sweeps: 40 },
+            Step { spread: 8, release: true, rings: usize::MAX, sweeps: 80 },
+        ];
+        let n = steps.len() as f64;
+        for (i, step) in steps.iter().enumerate() {
+            if step.rings > self.rings {
+                self.write();
+                self.motion.band =
+                    movable(self.triangles, &self.positions, self.motion.band.n_rim, step.rings)?;
+                self.rings = step.rings;
+            }
+            if self.motion.sliding && step.spread > 0 {
+                report.released.extend(self.motion.spread_tangled(step.spread, step.release));
+            }
+            let part = progress.part(i as f64 / n, (i + 1) as f64 / n);
+            if self.motion.untangle(step.sweeps, &mut report.untangling, part)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn write(&mut self) {
+        for (&v, &x) in self.motion.band.global.iter().zip(&self.motion.band.positions) {
+            self.positions[v as usize] = x;
         }
     }
-    Ok(false)
 }
 
 fn movable(triangles: &[[u32; 3]], positions: &[DVec2], n_rim: usize, rings: usize) -> Result<Band> {
@@ -173,12 +255,6 @@ fn movable(triangles: &[[u32; 3]], positions: &[DVec2], n_rim: usize, rings: usi
         value: format!("not a patch at vertex {vertex}"),
         allowed: "one counter-clockwise fan of triangles around each vertex",
     })
-}
-
-fn store(motion: &Motion<'_>, positions: &mut [DVec2]) {
-    for (&v, &x) in motion.band.global.iter().zip(&motion.band.positions) {
-        positions[v as usize] = x;
-    }
 }
 
 fn check_rims(n_vertices: usize, contours: &[Contour<'_>], rims: &[Rim]) -> Result<()> {

@@ -16,7 +16,7 @@ use crate::options::{
 use crate::orient::predicted_angles;
 use crate::outline::{Obstacle, Outline, grown, traced};
 use crate::patch::Patch;
-use crate::place::{Placed, min_angle, place};
+use crate::place::{Placed, min_angle, min_angle_off_corners, place};
 use crate::progress::Progress;
 use crate::target::Target;
 use crate::union::{nearest_source, outer_outline};
@@ -25,6 +25,10 @@ use crate::union::{nearest_source, outer_outline};
 /// the origin in edges.
 const SHIFTS: [[f64; 2]; 6] =
     [[0.0, 0.0], [0.5, 0.29], [0.5, -0.29], [0.25, 0.43], [0.25, -0.14], [0.75, 0.14]];
+
+/// With triangles of this angle, away from drawn corners, a placement is good enough not to try
+/// another lattice angle; 14 degrees.
+const ENOUGH: f64 = 14.0 * std::f64::consts::PI / 180.0;
 
 /// A flat patch with the numbers of its making.
 #[derive(Clone, Debug)]
@@ -153,7 +157,8 @@ impl Job<'_> {
     }
 
     /// Tries lattice placements until one gives a valid patch of the size asked for: the angles
-    /// first, cheapest boundary first, then shifts of the lattice.
+    /// first, cheapest boundary first, then shifts of the lattice. Where the cheapest boundary
+    /// starves triangles, the other angles are tried too, and the best is taken.
     fn attempt(
         &mut self,
         asked: Asked,
@@ -179,9 +184,11 @@ impl Job<'_> {
         let shifts = if effort == Effort::Full { SHIFTS.len() } else { 1 };
         let mut shifts = SHIFTS[..shifts].iter().enumerate().skip(1);
         let mut outlines = outlines.into_iter();
+        let mut best: Option<(f64, Outline, Placed)> = None;
         loop {
             let (lattice, outline) = match outlines.next() {
                 Some(next) => next,
+                None if best.is_some() => break,
                 None => {
                     let Some((k, shift)) = shifts.next() else { break };
                     let started = Instant::now();
@@ -202,9 +209,20 @@ impl Job<'_> {
             let placed = place(&self.contours, &lattice, &outline, self.options, progress.part(0.3, 0.9))?;
             self.lap("placement", started);
             match placed {
-                Ok(placed) => return Ok(Ok(self.report(&outline, placed))),
+                Ok(placed) => {
+                    let angle = min_angle_off_corners(&placed.patch);
+                    if best.as_ref().is_none_or(|(least, ..)| angle > *least) {
+                        best = Some((angle, outline, placed));
+                    }
+                    if angle >= ENOUGH {
+                        break;
+                    }
+                }
                 Err(found) => obstacle = Some(found),
             }
+        }
+        if let Some((_, outline, placed)) = best {
+            return Ok(Ok(self.report(&outline, placed)));
         }
         let none = || Obstacle { reason: "no lattice was tried".to_owned(), at: DVec2::ZERO };
         Ok(Err(obstacle.unwrap_or_else(none)))
@@ -375,6 +393,7 @@ impl Job<'_> {
             irregular: outline.irregular(),
             minimum_irregular: 6 + 3 * (self.contours.len() - 1),
             turns: outline.turns(),
+            turns_before: outline.turns_before,
             turns_bound: outline.turns_bound,
             cost: outline.cost,
             cost_bound: outline.cost_bound,

@@ -7,7 +7,7 @@ use crate::lattice::Lattice;
 use crate::segments::SegmentGrid;
 
 /// Spacing of the samples in lattice edges.
-const SPACING: f64 = 0.25;
+const SPACING: f64 = 0.4;
 /// Standard deviation of the smoothing in lattice edges.
 const SIGMA: f64 = 0.5;
 
@@ -25,7 +25,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// Samples the curve every quarter edge and smooths it by a Gaussian of half an edge.
+    /// Samples the curve every 0.4 edges and smooths it by a Gaussian of half an edge.
     ///
     /// Features smaller than the lattice can show vanish, so that the path does not zigzag after
     /// them. O(length of the curve in edges + number of its points).

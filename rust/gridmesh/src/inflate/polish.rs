@@ -11,11 +11,14 @@ use crate::patch::Loop;
 /// Sum of the squared sides over twice the area of an equilateral triangle.
 const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
 
-/// Cotangent of the angle, 27 degrees, below which [`sharpen`] acts.
-const SHARP: f64 = 1.962_610_505_505_15;
+/// Cotangent of the angle, 30 degrees, below which [`sharpen`] acts.
+const SHARP: f64 = 1.732_050_807_568_877_2;
+
+/// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
+const LEVEL: f64 = 0.7;
 
 /// Rounds of [`sharpen`] at most.
-const ROUNDS: u32 = 24;
+const ROUNDS: u32 = 32;
 
 /// Rounds that a vertex may fail in a row, see [`sharpen`].
 const PATIENCE: u8 = 6;
@@ -55,7 +58,7 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>) {
     for v in front.first..front.flat.len() {
         let slot = v - front.first;
         let (_, gradient) = field.at(front.flat[v], front.place[slot]);
-        let normal = (-gradient).extend(2.0 * front.height[v]).normalize_or(DVec3::Z);
+        let normal = surface_normal(gradient, front.height[v]);
         let (e, f) = normal.any_orthonormal_pair();
         let here = front.position(v);
         let fan = field.topology.fan(v);
@@ -107,14 +110,19 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>) {
             continue;
         };
         let before = worst(front, fan, here);
+        let fidelity = facing(front, fan, here, normal).min(LEVEL);
         let mut share = 1.0;
         for _ in 0..4 {
             let point = front.flat[v].lerp(target, share);
             if front.may_move(guide, v, front.flat[v], point) {
                 let Some(place) = field.locate(point, front.place[slot].triangle) else { break };
-                let height = field.at(point, place).0.sqrt();
-                let after = worst(front, fan, point.extend(height));
-                if after >= before || after > 0.2 {
+                let (value, gradient) = field.at(point, place);
+                let height = value.sqrt();
+                let there = point.extend(height);
+                let after = worst(front, fan, there);
+                if (after >= before || after > 0.2)
+                    && facing(front, fan, there, surface_normal(gradient, height)) >= fidelity
+                {
                     front.flat[v] = point;
                     front.place[slot] = place;
                     front.height[v] = height;
@@ -175,10 +183,11 @@ fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reac
     let fan = field.topology.fan(v);
     let (here, start) = (front.position(v), front.flat[v]);
     let (_, gradient) = field.at(start, front.place[slot]);
-    let normal = (-gradient).extend(2.0 * front.height[v]).normalize_or(DVec3::Z);
+    let normal = surface_normal(gradient, front.height[v]);
     let (e, f) = normal.any_orthonormal_pair();
     let mean =
         fan.iter().map(|&[a, _]| here.distance(front.position(a as usize))).sum::<f64>() / fan.len() as f64;
+    let fidelity = facing(front, fan, here, normal).min(LEVEL);
     let mut best = present;
     let mut moved = false;
     for k in 0..8 {
@@ -192,9 +201,11 @@ fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reac
         if !front.may_move(guide, v, start, point) {
             continue;
         }
-        let height = field.at(point, place).0.sqrt();
-        let now = sharpest(front, fan, point.extend(height));
-        if now < best {
+        let (value, gradient) = field.at(point, place);
+        let height = value.sqrt();
+        let there = point.extend(height);
+        let now = sharpest(front, fan, there);
+        if now < best && facing(front, fan, there, surface_normal(gradient, height)) >= fidelity {
             best = now;
             moved = true;
             front.flat[v] = point;
@@ -203,6 +214,21 @@ fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reac
         }
     }
     moved
+}
+
+/// Unit normal of the surface `z^2 = f` where it has this height, from the gradient of `f`.
+fn surface_normal(gradient: DVec2, height: f64) -> DVec3 {
+    (-gradient).extend(2.0 * height).normalize_or(DVec3::Z)
+}
+
+/// Least cosine between the surface's normal at a vertex at `point` and the triangles around it: how
+/// well they stand for the surface. A vertex that leaves a narrow ridge cuts it off.
+fn facing(front: &Front, fan: &[[u32; 2]], point: DVec3, normal: DVec3) -> f64 {
+    let cosine = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
+        a.cross(b).normalize_or_zero().dot(normal)
+    };
+    fan.iter().map(cosine).fold(f64::INFINITY, f64::min)
 }
 
 /// Largest cotangent of the triangles around a vertex at `point`.

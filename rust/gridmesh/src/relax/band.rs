@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 /// The rings next to the boundary as a mesh of their own, numbered from the boundary inwards.
+#[derive(Debug)]
 pub(super) struct Band {
     /// Vertex numbers in the patch; the boundary vertices keep theirs.
     pub global: Vec<u32>,

@@ -5,6 +5,7 @@ use glam::DVec2;
 use super::contour::{Contour, Rim};
 
 /// The boundary vertices of all contours in one list.
+#[derive(Debug)]
 pub(super) struct Slide<'a> {
     contours: &'a [Contour<'a>],
     /// Arc position of each boundary vertex; neighbours are in order up to the lap.
@@ -61,6 +62,14 @@ impl<'a> Slide<'a> {
 
     pub fn len(&self) -> usize {
         self.s.len()
+    }
+
+    /// Holds a vertex at arc position `s`, between its neighbours.
+    pub fn hold(&mut self, vertex: usize, s: f64) {
+        self.s[vertex] = s;
+        self.home[vertex] = s;
+        self.pinned[vertex] = true;
+        self.held[vertex] = true;
     }
 
     /// The point at arc position `s` of the contour of `vertex`, near which it is.
@@ -160,6 +169,7 @@ impl<'a> Slide<'a> {
             let end = start + rim.s.len();
             rim.s.copy_from_slice(&self.s[start..end]);
             rim.pinned.copy_from_slice(&self.pinned[start..end]);
+            rim.held.copy_from_slice(&self.held[start..end]);
             start = end;
         }
     }

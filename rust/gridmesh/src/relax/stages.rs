@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::check::first_inverted;
-use super::energy::{Barrier, Energy, Power, Regularised, det};
+use super::energy::{Energy, Power, Regularised, det};
 use super::sweep::{Active, Motion};
 use crate::error::Result;
 use crate::progress::Progress;
@@ -97,36 +97,45 @@ impl Motion<'_> {
         Ok(sweeps)
     }
 
-    /// Evens out the valid triangulation, then gives the worst triangles the say.
+    /// Moves every vertex to where its triangles are best, the worse ones counting more.
     pub fn improve(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<usize> {
-        let n = self.band.n_free;
-        let even = self.settle(&Barrier, &mut Active::all(n), 8, tolerance, progress.part(0.0, 0.4))?;
-        let all = &mut Active::all(n);
-        Ok(even + self.settle(&Power::<2>, all, 12, 0.5 * tolerance, progress.part(0.4, 1.0))?)
+        let all = &mut Active::all(self.band.n_free);
+        self.settle(&Power::<2>, all, 12, tolerance, progress)
+    }
+
+    /// Lets the surroundings of some boundary vertices settle.
+    pub fn mend(
+        &mut self,
+        vertices: impl IntoIterator<Item = u32>,
+        tolerance: f64,
+        progress: Progress<'_>,
+    ) -> Result<usize> {
+        let active = &mut Active::near(&self.band, vertices, 2);
+        self.settle(&Power::<2>, active, 12, tolerance, progress)
     }
 
     /// Gives the worst triangles and their neighbours the say. What is worst is measured away from
     /// pinned vertices, at which the drawing rules.
     pub fn sharpen(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<usize> {
-        let margin = 6f64.to_radians();
-        let (most, cornered) = (45f64.to_radians(), 30f64.to_radians());
-        let angles: Vec<(f64, bool)> = self
+        const MARGIN: f64 = 6.0;
+        let (most, cornered) = (cotangent(45.0), cotangent(30.0));
+        let sharpness: Vec<(f64, bool)> = self
             .band
             .triangles
             .iter()
             .map(|t| {
                 let at_corner = t.iter().any(|&v| self.slide.pinned.get(v as usize) == Some(&true));
-                (least_angle(t.map(|v| self.band.positions[v as usize])), at_corner)
+                (sharpness(t.map(|v| self.band.positions[v as usize])), at_corner)
             })
             .collect();
-        let least = angles.iter().filter(|a| !a.1).map(|a| a.0).fold(most, f64::min);
-        let limit = most.min(least + margin);
-        let worst: Vec<u32> = std::iter::zip(&self.band.triangles, &angles)
-            .filter(|(_, (angle, at_corner))| *angle < if *at_corner { cornered } else { limit })
+        let sharpest = sharpness.iter().filter(|s| !s.1).map(|s| s.0).fold(most, f64::max);
+        let limit = most.max(cotangent((1.0 / sharpest).atan().to_degrees() + MARGIN));
+        let worst: Vec<u32> = std::iter::zip(&self.band.triangles, &sharpness)
+            .filter(|(_, (sharpness, at_corner))| *sharpness > if *at_corner { cornered } else { limit })
             .flat_map(|(t, _)| *t)
             .collect();
         let mut active = Active::near(&self.band, worst, 1);
-        self.settle(&Power::<4>, &mut active, 10, 0.5 * tolerance, progress)
+        self.settle(&Power::<4>, &mut active, 10, tolerance, progress)
     }
 
     /// Frees the pinned vertices at which a triangle starves, and lets their surroundings settle.
@@ -149,7 +158,7 @@ impl Motion<'_> {
                 self.slide.home[v as usize] = self.slide.s[v as usize];
             }
             let mut active = Active::near(&self.band, starved.iter().copied(), 2);
-            self.settle(&Power::<2>, &mut active, 30, 0.25 * tolerance, progress)?;
+            self.settle(&Power::<2>, &mut active, 10, tolerance, progress)?;
             released.extend(starved);
         }
         released.sort_unstable();
@@ -157,31 +166,36 @@ impl Motion<'_> {
     }
 
     fn starves(&self, v: usize) -> bool {
-        let enough = 14f64.to_radians();
         let x = self.band.positions[v];
         let mut interior = 0.0;
-        let mut least = f64::INFINITY;
+        let mut sharpest = 0.0f64;
         for pair in self.band.around(v).windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|w| self.band.positions[w as usize]);
             interior += (a - x).angle_to(b - x);
-            least = least.min(least_angle([x, a, b]));
+            sharpest = sharpest.max(sharpness([x, a, b]));
         }
-        least < enough.min(0.45 * interior)
+        sharpest > cotangent(f64::min(14.0, 0.45 * interior.to_degrees()))
     }
 
     /// Least angle of the triangles of the band, in radians.
     pub fn least_angle(&self) -> f64 {
-        let angles =
-            self.band.triangles.iter().map(|t| least_angle(t.map(|v| self.band.positions[v as usize])));
-        angles.fold(std::f64::consts::FRAC_PI_3, f64::min)
+        let all = self.band.triangles.iter().map(|t| sharpness(t.map(|v| self.band.positions[v as usize])));
+        let equilateral = cotangent(60.0);
+        1f64.atan2(all.fold(equilateral, f64::max))
     }
 }
 
-fn least_angle(p: [DVec2; 3]) -> f64 {
+/// Cotangent of an angle in degrees.
+fn cotangent(degrees: f64) -> f64 {
+    1.0 / degrees.to_radians().tan()
+}
+
+/// Cotangent of the least angle of a triangle.
+fn sharpness(p: [DVec2; 3]) -> f64 {
     // The least angle lies opposite the shortest edge.
     let edges = [p[2] - p[1], p[0] - p[2], p[1] - p[0]];
     let lengths = edges.map(|e| e.length_squared());
     let i = (0..3).min_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
     let (a, b) = (edges[(i + 1) % 3], edges[(i + 2) % 3]);
-    (-a).perp_dot(b).atan2((-a).dot(b)).abs()
+    -a.dot(b) / a.perp_dot(b).abs()
 }

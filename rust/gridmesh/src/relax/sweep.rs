@@ -7,6 +7,7 @@ use super::energy::{Energy, local, value};
 use super::slide::Slide;
 
 /// What is moved, and how.
+#[derive(Debug)]
 pub(super) struct Motion<'a> {
     pub band: Band,
     pub slide: Slide<'a>,

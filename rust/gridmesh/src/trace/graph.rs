@@ -9,7 +9,7 @@ pub(super) const TURN: u32 = 1024;
 /// Transitions that cost this much or more are forbidden.
 pub(super) const BLOCKED: u32 = 1 << 26;
 /// How far past the cut and the runs across it a path may go before it comes back, in samples.
-const OVERHANG: u32 = 64;
+const OVERHANG: u32 = 40;
 
 /// A node on one sheet of the band, which is unrolled at the cut: `node + sheet * n_nodes`.
 pub(super) type Place = u32;

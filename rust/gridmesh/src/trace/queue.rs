@@ -37,8 +37,12 @@ impl Queue {
     /// Empties the queue; the next keys are at least `now`.
     pub fn clear(&mut self, now: u32) {
         if self.in_window > 0 {
-            self.heads.fill(NONE);
-            self.filled.fill(0);
+            for (word, heads) in self.filled.iter_mut().zip(self.heads.chunks_exact_mut(64)) {
+                while *word != 0 {
+                    heads[word.trailing_zeros() as usize] = NONE;
+                    *word &= *word - 1;
+                }
+            }
             self.in_window = 0;
         }
         self.arena.clear();
