@@ -92,16 +92,40 @@ impl<'a> Bending<'a> {
         Ok(())
     }
 
-    /// Moves the new vertices along their normals so that the sum of squared mean curvatures, weighted by
-    /// area, is least (to first order).
-    pub fn normal_step(&self, positions: &mut [DVec3], target: Option<&[f64]>) -> Result<()> {
+    /// Moves the new vertices along their normals so that the bending is least (to first order). The step
+    /// is halved until it lowers the true bending; the energy before and after, for the caller to judge.
+    pub fn normal_step(&self, positions: &mut [DVec3], seam: f64, target: Option<&[f64]>) -> Result<[f64; 2]> {
+        const HALVINGS: usize = 4;
         let work = self.work;
-        let weights = work.cotangents(positions);
+        let state = self.state(positions, seam, target);
+        let found = self.system.solve(&state.coefficients, &state.weights, &state.right, |_| 0.0)?;
+        let start = positions[work.inner()].to_vec();
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            for (k, v) in work.inner().enumerate() {
+                positions[v] = start[k] + share * found[k][0] * state.normals[v];
+            }
+            let energy = self.state(positions, seam, target).energy();
+            if energy < state.energy() {
+                return Ok([state.energy(), energy]);
+            }
+            share *= 0.5;
+        }
+        positions[work.inner()].copy_from_slice(&start);
+        Ok([state.energy(); 2])
+    }
+
+    /// The equations of [`Bending::normal_step`] at the present positions: for each vertex the mean
+    /// curvature, weighted by area; for each edge of the loop the angle across it.
+    fn state(&self, positions: &[DVec3], seam: f64, target: Option<&[f64]>) -> State {
+        let work = self.work;
+        let cotangents = work.cotangents(positions);
         let masses = work.areas(positions);
         let normals = work.normals(positions);
-        let mut coefficients = vec![];
-        let mut right = vec![];
-        let mut importance = vec![];
+        let n_rows = self.rows.len() + self.seams.len();
+        let mut coefficients = Vec::with_capacity(7 * n_rows);
+        let mut right = Vec::with_capacity(n_rows);
+        let mut weights = Vec::with_capacity(n_rows);
         for &v in &self.rows {
             let v = v as usize;
             let mut sum = 0.0;
@@ -112,10 +136,10 @@ impl<'a> Bending<'a> {
             }
             for slot in work.range(v) {
                 let u = work.near[slot] as usize;
-                sum += weights[slot];
-                laplacian += weights[slot] * (positions[u] - positions[v]);
+                sum += cotangents[slot];
+                laplacian += cotangents[slot] * (positions[u] - positions[v]);
                 if work.unknown(u).is_some() {
-                    coefficients.push(weights[slot] * normals[v].dot(normals[u]));
+                    coefficients.push(cotangents[slot] * normals[v].dot(normals[u]));
                 }
             }
             if work.unknown(v).is_some() {
@@ -123,29 +147,36 @@ impl<'a> Bending<'a> {
             }
             let wanted = target.map_or(0.0, |h| h[v] * masses[v]);
             right.push([wanted - normals[v].dot(laplacian)]);
-            let extra = if v < work.n { super::fit::env("WL", 1.0) } else { 1.0 };
-            importance.push(extra / masses[v].max(f64::MIN_POSITIVE));
+            weights.push(1.0 / masses[v].max(f64::MIN_POSITIVE));
         }
-        let ws = super::fit::env("WS", 0.0);
         for &[a, b, c, d] in &self.seams {
             let [pa, pb, pc, pd] = [a, b, c, d].map(|v| positions[v as usize]);
-            let e = pb - pa;
-            let (n1, n2) = (e.cross(pc - pa), (pd - pa).cross(e));
-            let h = n1.length() / e.length();
-            let area = 0.5 * (n1.length() + n2.length());
-            let (m1, m2) = (n1.normalize_or_zero(), n2.normalize_or_zero());
-            // Positive where the patch's triangle bends down (against its normal).
-            let angle = m1.cross(m2).dot(e.normalize_or_zero()).atan2(m1.dot(m2));
-            coefficients.push(-m1.dot(normals[c as usize]) / h);
+            let edge = pb - pa;
+            let (inner, outer) = (edge.cross(pc - pa), (pd - pa).cross(edge));
+            let height = inner.length() / edge.length();
+            let area = 0.5 * (inner.length() + outer.length());
+            let (m, o) = (inner.normalize_or_zero(), outer.normalize_or_zero());
+            // Raising the apex of the patch's triangle turns its normal away from the apex.
+            let angle = m.cross(o).dot(edge.normalize_or_zero()).atan2(m.dot(o));
+            coefficients.push(-m.dot(normals[c as usize]) / height.max(f64::MIN_POSITIVE));
             right.push([-angle]);
-            importance.push(ws * e.length_squared() / area);
-            if std::env::var("DBG").is_ok() { eprintln!("{angle:.3} {h:.4}"); }
+            weights.push(seam * edge.length_squared() / area.max(f64::MIN_POSITIVE));
         }
-        let found = self.system.solve(&coefficients, &importance, &right, |_| 0.0)?;
-        for (v, [x]) in work.inner().zip(found) {
-            positions[v] += x * normals[v];
-        }
-        Ok(())
+        State { coefficients, right, weights, normals }
+    }
+}
+
+/// See [`Bending::state`].
+struct State {
+    coefficients: Vec<f64>,
+    right: Vec<[f64; 1]>,
+    weights: Vec<f64>,
+    normals: Vec<DVec3>,
+}
+
+impl State {
+    fn energy(&self) -> f64 {
+        self.right.iter().zip(&self.weights).map(|([x], w)| w * x * x).sum()
     }
 }
 

@@ -56,8 +56,10 @@ impl Shape {
             }
             let tgt = env("TGT", 0.0) as i32;
             let target = if tgt > 0 { Some(target(work, &membrane, &positions, tgt)?) } else { None };
-            bending.normal_step(&mut positions, target.as_deref())?;
+            let e = bending.normal_step(&mut positions, env("WS", 0.0), target.as_deref())?;
+            if std::env::var("DBG").is_ok() { eprintln!("{e:?} folds {}", folds(work, &positions)); }
         }
+        for _ in 0..env("END", 0.0) as i32 { sweep(work, &mut positions); }
         Ok((positions, 0))
     }
 
