@@ -30,7 +30,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use self::check::{Checked, check_loop};
 use self::flat::{FlatOptions, Method, fill_flat};
-use self::meet::{Box3, count_meetings, near_boxes};
+use self::meet::{Box3, count_meetings, is_graph, near_boxes};
 use self::mesh::Rim;
 use self::patchwork::Patchwork;
 pub use self::unroll::Unrolling;
@@ -328,11 +328,11 @@ impl Job<'_> {
         let n = self.vertices.len() as u32;
         let done = fills.iter().flatten().map(|fill| {
             // New vertices of all fills get numbers of their own here.
-            (fill.triangles.as_slice(), fill.vertices.as_slice())
+            (fill.triangles.as_slice(), fill.vertices.as_slice(), fill.shape.as_ref())
         });
         let done = done.collect::<Vec<_>>();
         let mut first = vec![n];
-        for (_, vertices) in &done {
+        for (_, vertices, _) in &done {
             first.push(first[first.len() - 1] + vertices.len() as u32);
         }
         let owner = |v: u32| first.partition_point(|&f| f <= v) - 1;
@@ -356,7 +356,9 @@ impl Job<'_> {
             .map(|k| {
                 let mut others = near[k].iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
                 others.extend((0..k).filter(|&j| boxes[j].meets(&boxes[k])).flat_map(named));
-                count_meetings(position, &named(k), &others)
+                let (around, positions, own) = done[k].2.graph();
+                let apart = is_graph(around, positions, own);
+                count_meetings(position, &named(k), &others, apart)
             })
             .collect::<Vec<_>>();
         let seconds = since.elapsed().as_secs_f64();

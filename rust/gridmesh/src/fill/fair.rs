@@ -11,6 +11,7 @@ pub(crate) struct Bending<'a> {
     work: &'a Patchwork,
     /// The vertex of each equation.
     rows: Vec<u32>,
+    /// See [`seams`]; an equation for each follows those of the vertices.
     seams: Vec<[u32; 4]>,
     system: LeastSquares,
 }
@@ -32,33 +33,25 @@ impl<'a> Bending<'a> {
             columns.extend(work.near[work.range(v)].iter().filter_map(|&u| work.unknown(u as usize)));
             start.push(columns.len() as u32);
         }
-        let mut seams = vec![];
-        for t in &work.triangles[..work.n_patch] {
-            for k in 0..3 {
-                let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
-                if (a as usize + 1) % work.n == b as usize && (a as usize) < work.n && work.unknown(c as usize).is_some() {
-                    let d = work.fan(a as usize).iter().find_map(|&[_, p, q]| {
-                        if p == b && q != c { Some(q) } else if q == b && p != c { Some(p) } else { None }
-                    });
-                    if let Some(d) = d {
-                        seams.push([a, b, c, d]);
-                        columns.extend(work.unknown(c as usize));
-                        start.push(columns.len() as u32);
-                    }
-                }
-            }
+        let seams = seams(work);
+        for &[.., apex, _] in &seams {
+            columns.extend(work.unknown(apex as usize));
+            start.push(columns.len() as u32);
         }
         let system = LeastSquares::new(work.end - work.n, start, columns)?;
         Ok(Bending { work, rows, seams, system })
     }
 
-    /// Minimises the squared Laplacians `sum w (x_j - x_i)` of the positions, one factorisation for the
-    /// three coordinates. `weights` parallel to `near`.
-    pub fn positions(&self, positions: &mut [DVec3], weights: &[f64], masses: &[f64]) -> Result<()> {
+    /// The thin plate: minimises the squared Laplacians of the positions on the present metric, one
+    /// factorisation for the three coordinates.
+    pub fn positions(&self, positions: &mut [DVec3]) -> Result<()> {
         let work = self.work;
-        let mut coefficients = vec![];
-        let mut right = vec![];
-        let mut importance = vec![];
+        let cotangents = work.cotangents(positions);
+        let masses = bounded_masses(work, positions);
+        let n_rows = self.rows.len() + self.seams.len();
+        let mut coefficients = Vec::with_capacity(7 * n_rows);
+        let mut right = Vec::with_capacity(n_rows);
+        let mut weights = Vec::with_capacity(n_rows);
         for &v in &self.rows {
             let v = v as usize;
             let mut sum = 0.0;
@@ -69,11 +62,11 @@ impl<'a> Bending<'a> {
             }
             for slot in work.range(v) {
                 let u = work.near[slot] as usize;
-                sum += weights[slot];
+                sum += cotangents[slot];
                 if work.unknown(u).is_some() {
-                    coefficients.push(weights[slot]);
+                    coefficients.push(cotangents[slot]);
                 } else {
-                    known += weights[slot] * positions[u];
+                    known += cotangents[slot] * positions[u];
                 }
             }
             if work.unknown(v).is_some() {
@@ -82,10 +75,13 @@ impl<'a> Bending<'a> {
                 known -= sum * positions[v];
             }
             right.push((-known).to_array());
-            importance.push(1.0 / masses[v]);
+            weights.push(1.0 / masses[v]);
         }
-        for _ in &self.seams { coefficients.push(0.0); right.push([0.0; 3]); importance.push(0.0); }
-        let found = self.system.solve(&coefficients, &importance, &right, |_| 0.0)?;
+        // The angles across the loop are not linear in the positions.
+        coefficients.resize(coefficients.len() + self.seams.len(), 0.0);
+        right.resize(n_rows, [0.0; 3]);
+        weights.resize(n_rows, 0.0);
+        let found = self.system.solve(&coefficients, &weights, &right)?;
         for (v, x) in work.inner().zip(found) {
             positions[v] = x.into();
         }
@@ -98,7 +94,7 @@ impl<'a> Bending<'a> {
         const HALVINGS: usize = 4;
         let work = self.work;
         let state = self.state(positions, seam, target);
-        let found = self.system.solve(&state.coefficients, &state.weights, &state.right, |_| 0.0)?;
+        let found = self.system.solve(&state.coefficients, &state.weights, &state.right)?;
         let start = positions[work.inner()].to_vec();
         let mut share = 1.0;
         for _ in 0..HALVINGS {
@@ -120,7 +116,7 @@ impl<'a> Bending<'a> {
     fn state(&self, positions: &[DVec3], seam: f64, target: Option<&[f64]>) -> State {
         let work = self.work;
         let cotangents = work.cotangents(positions);
-        let masses = work.areas(positions);
+        let masses = bounded_masses(work, positions);
         let normals = work.normals(positions);
         let n_rows = self.rows.len() + self.seams.len();
         let mut coefficients = Vec::with_capacity(7 * n_rows);
@@ -147,7 +143,7 @@ impl<'a> Bending<'a> {
             }
             let wanted = target.map_or(0.0, |h| h[v] * masses[v]);
             right.push([wanted - normals[v].dot(laplacian)]);
-            weights.push(1.0 / masses[v].max(f64::MIN_POSITIVE));
+            weights.push(1.0 / masses[v]);
         }
         for &[a, b, c, d] in &self.seams {
             let [pa, pb, pc, pd] = [a, b, c, d].map(|v| positions[v as usize]);
@@ -178,6 +174,32 @@ impl State {
     fn energy(&self) -> f64 {
         self.right.iter().zip(&self.weights).map(|([x], w)| w * x * x).sum()
     }
+}
+
+/// For each edge of the loop with a free triangle on the patch's side and a triangle outside: its two
+/// vertices, the apex inside and the one outside.
+fn seams(work: &Patchwork) -> Vec<[u32; 4]> {
+    let across = |a: u32, b: u32| {
+        let apex = |test: &dyn Fn(usize) -> bool| {
+            work.fan(a as usize).iter().find_map(|&[t, p, q]| match test(t as usize) {
+                true if p == b => Some(q),
+                true if q == b => Some(p),
+                _ => None,
+            })
+        };
+        let (inner, outer) = (apex(&|t| t < work.n_patch)?, apex(&|t| t >= work.n_patch)?);
+        work.unknown(inner as usize).map(|_| [a, b, inner, outer])
+    };
+    let n = work.n as u32;
+    (0..n).filter_map(|a| across(a, (a + 1) % n)).collect()
+}
+
+/// Areas at the vertices, kept away from zero.
+fn bounded_masses(work: &Patchwork, positions: &[DVec3]) -> Vec<f64> {
+    let mut masses = work.areas(positions);
+    let mean = masses.iter().sum::<f64>() / masses.len() as f64;
+    masses.iter_mut().for_each(|m| *m = m.max(1e-6 * mean).max(f64::MIN_POSITIVE));
+    masses
 }
 
 /// Equations of first order, one for each edge at a new vertex.
@@ -229,6 +251,6 @@ impl<'a> Membrane<'a> {
                 right.push(known(u as usize));
             }
         }
-        self.system.solve(&coefficients, &importance, &right, |_| 0.0)
+        self.system.solve(&coefficients, &importance, &right)
     }
 }
