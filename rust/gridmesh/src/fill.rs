@@ -351,16 +351,17 @@ impl Job<'_> {
             .map(|k| Box3::around(named(k).iter().flatten().map(|&v| position(v))))
             .collect::<Vec<_>>();
         let near = near_boxes(&boxes, self.vertices, self.triangles);
-        let counts = (0..done.len())
-            .into_par_iter()
-            .map(|k| {
-                let mut others = near[k].iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
-                others.extend((0..k).filter(|&j| boxes[j].meets(&boxes[k])).flat_map(named));
-                let (around, positions, own) = done[k].2.graph();
-                let apart = is_graph(around, positions, own);
-                count_meetings(position, &named(k), &others, apart)
-            })
-            .collect::<Vec<_>>();
+        let count = |k: usize| {
+            let mut others = near[k].iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
+            others.extend((0..k).filter(|&j| boxes[j].meets(&boxes[k])).flat_map(named));
+            let (around, positions, own) = done[k].2.graph();
+            let apart = is_graph(around, positions, own);
+            count_meetings(position, &named(k), &others, apart)
+        };
+        let counts: Vec<_> = match done.len() {
+            0 | 1 => (0..done.len()).map(count).collect(),
+            several => (0..several).into_par_iter().map(count).collect(),
+        };
         let seconds = since.elapsed().as_secs_f64();
         for (item, (pairs, at)) in fills.iter_mut().filter(|fill| fill.is_ok()).zip(counts) {
             if let Ok(fill) = item {

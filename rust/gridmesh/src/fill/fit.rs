@@ -53,17 +53,28 @@ impl Shape {
             return Ok((positions, 0));
         }
         let film = positions.clone();
-        match self.bend(&mut positions, membrane) {
+        let mut stages = vec![film];
+        match self.bend(&mut positions, membrane, &mut stages) {
             Ok(()) => {}
-            // Triangles without area can spoil the equations.
-            Err(Error::Solver { .. }) => return Ok((film, 1)),
+            // Triangles without area can spoil the equations: what was reached before has to do.
+            Err(Error::Solver { .. }) => {
+                positions = stages.pop().unwrap_or(positions);
+                return Ok((positions, 1));
+            }
             Err(other) => return Err(other),
         }
-        let folded = folds(work, &positions);
-        if folded > 0 && folds(work, &film) < folded {
-            return Ok((film, 1));
+        let mut least = folds(work, &positions);
+        let mut repaired = 0;
+        for stage in stages.into_iter().rev() {
+            if least == 0 {
+                break;
+            }
+            let folded = folds(work, &stage);
+            if folded < least {
+                (positions, least, repaired) = (stage, folded, 1);
+            }
         }
-        Ok((positions, 0))
+        Ok((positions, repaired))
     }
 
     /// Places the new vertices on a film in the loop.
@@ -85,7 +96,13 @@ impl Shape {
         Ok(Some(membrane))
     }
 
-    fn bend(&self, positions: &mut [DVec3], membrane: Option<Membrane<'_>>) -> Result<()> {
+    /// Bends the film; `stages` gets what lies between, to fall back on.
+    fn bend(
+        &self,
+        positions: &mut [DVec3],
+        membrane: Option<Membrane<'_>>,
+        stages: &mut Vec<Vec<DVec3>>,
+    ) -> Result<()> {
         let work = &self.work;
         let bending = Bending::new(work)?;
         bending.positions(positions)?;
@@ -100,6 +117,7 @@ impl Shape {
             _ => 0,
         };
         for _ in 0..rounds {
+            stages.push(positions.to_vec());
             for _ in 0..SWEEPS {
                 sweep(work, positions);
             }

@@ -5,15 +5,16 @@ use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
+use super::mesh::{CHUNK, in_chunks};
 use super::unroll::{area_vector, is_simple};
 use crate::embed::triangles_meet;
 use crate::segments::orientation;
 
-/// Triangles looked at by one thread at a time.
-const CHUNK: usize = 1 << 16;
-
 /// Cells along each axis of the grid that tells which boxes may be near.
 const CELLS: usize = 48;
+
+/// From this number of triangles on the work is shared among threads.
+const MANY: usize = 4096;
 
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +28,12 @@ impl Box3 {
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
         let none = Box3 { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
         points.into_iter().fold(none, |b, p| Box3 { low: b.low.min(p), high: b.high.max(p) })
+    }
+
+    /// A bit for each face of the box beyond which a point lies: a triangle whose corners share one is
+    /// outside.
+    fn side(&self, p: DVec3) -> u8 {
+        (p.cmplt(self.low).bitmask() | p.cmpgt(self.high).bitmask() << 3) as u8
     }
 
     /// True if they have a point in common.
@@ -55,14 +62,19 @@ pub(crate) fn near_boxes(boxes: &[Box3], positions: &[DVec3], triangles: &[[u32;
             }
         }
     }
+    let sides: Vec<u8> = if positions.len() <= CHUNK {
+        positions.iter().map(|&p| all.side(p)).collect()
+    } else {
+        positions.par_iter().with_min_len(CHUNK).map(|&p| all.side(p)).collect()
+    };
     let scan = |(part, chunk): (usize, &[[u32; 3]])| {
         let mut found = vec![];
         for (k, t) in chunk.iter().enumerate() {
-            let own = Box3::around(t.map(|v| positions[v as usize]));
-            if !own.meets(&all) {
+            if t.iter().fold(u8::MAX, |side, &v| side & sides[v as usize]) != 0 {
                 continue;
             }
             if several {
+                let own = Box3::around(t.map(|v| positions[v as usize]));
                 let (low, high) = (cell(own.low), cell(own.high));
                 let hit = (low.z..=high.z).any(|z| {
                     (low.y..=high.y).any(|y| taken[place(low.x, y, z)..=place(high.x, y, z)].contains(&true))
@@ -75,7 +87,7 @@ pub(crate) fn near_boxes(boxes: &[Box3], positions: &[DVec3], triangles: &[[u32;
         }
         found
     };
-    let parts = triangles.par_chunks(CHUNK).enumerate().map(scan).collect::<Vec<_>>();
+    let parts = in_chunks(triangles, scan);
     if !several {
         if let Some(near) = near.first_mut() {
             *near = parts.concat();
@@ -153,7 +165,11 @@ pub(crate) fn count_meetings(
         });
         hits.count()
     };
-    let counts = (0..new.len()).into_par_iter().with_min_len(1024).map(meets).collect::<Vec<_>>();
+    let counts: Vec<usize> = if new.len() < MANY {
+        (0..new.len()).map(meets).collect()
+    } else {
+        (0..new.len()).into_par_iter().map(meets).collect()
+    };
     let first = counts.iter().position(|&count| count > 0);
     (counts.iter().sum(), first.map(|i| vertices[new[i][0] as usize]))
 }
