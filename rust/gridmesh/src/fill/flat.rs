@@ -172,8 +172,10 @@ impl Contest<'_> {
     fn lattice(&mut self, options: &FlatOptions, progress: Progress<'_>) -> Result<()> {
         let shape = Loop::new(self.points);
         let turns = turn_costs(&shape.turning, self.wanted, self.taken, options.shape);
-        let mut found: Vec<(u32, Vec<DVec2>)> = Vec::new();
-        for &strength in &[1.0, 0.5, 0.0] {
+        // The whole flux is right where it is right at all; where the developed loop covers itself,
+        // less of it may not.
+        for strength in [1.0, 0.6, 0.2] {
+            let mut found: Vec<(u32, Vec<DVec2>)> = Vec::with_capacity(options.angles);
             for a in 0..options.angles {
                 let angle = std::f64::consts::FRAC_PI_3 * a as f64 / options.angles as f64;
                 let target = shape.developed(strength, angle);
@@ -183,16 +185,20 @@ impl Contest<'_> {
                     closeness: options.closeness,
                     reach: options.reach,
                 };
-                let bound = Layers::new(&wishes).least();
-                found.push((bound, target));
+                found.push((Layers::new(&wishes).least(), target));
             }
-        }
-        found.sort_by_key(|f| f.0);
-        for (i, (_, target)) in found.iter().take(options.placed).enumerate() {
-            progress.report(i as f64 / options.placed as f64)?;
-            let wishes = Wishes { target, turns: &turns, closeness: options.closeness, reach: options.reach };
-            if let Some(route) = route(&wishes, self.taken, STARTS, ROUNDS) {
-                self.place(&route.points, progress)?;
+            found.sort_by_key(|f| f.0);
+            for (i, (_, target)) in found.iter().take(options.placed).enumerate() {
+                progress.report(i as f64 / options.placed as f64)?;
+                let wishes =
+                    Wishes { target, turns: &turns, closeness: options.closeness, reach: options.reach };
+                if let Some(route) = route(&wishes, self.taken, STARTS, ROUNDS) {
+                    self.place(&route.points, progress)?;
+                }
+            }
+            let uneven = shape.flux.iter().map(|f| f.abs()).sum::<f64>() > 1.0;
+            if !uneven || self.best.as_ref().is_some_and(|(badness, _)| *badness < GOOD) {
+                break;
             }
         }
         Ok(())
