@@ -11,7 +11,7 @@ pub(crate) struct Bending<'a> {
     work: &'a Patchwork,
     /// The vertex of each equation.
     rows: Vec<u32>,
-    /// See [`seams`]; an equation for each follows those of the vertices.
+    /// See [`seams`], those with a free apex; an equation for each follows those of the vertices.
     seams: Vec<[u32; 4]>,
     system: LeastSquares,
 }
@@ -33,7 +33,8 @@ impl<'a> Bending<'a> {
             columns.extend(work.near[work.range(v)].iter().filter_map(|&u| work.unknown(u as usize)));
             start.push(columns.len() as u32);
         }
-        let seams = seams(work);
+        let mut seams = seams(work);
+        seams.retain(|&[.., apex, _]| work.unknown(apex as usize).is_some());
         for &[.., apex, _] in &seams {
             columns.extend(work.unknown(apex as usize));
             start.push(columns.len() as u32);
@@ -176,9 +177,9 @@ impl State {
     }
 }
 
-/// For each edge of the loop with a free triangle on the patch's side and a triangle outside: its two
-/// vertices, the apex inside and the one outside.
-fn seams(work: &Patchwork) -> Vec<[u32; 4]> {
+/// For each edge of the loop with a triangle on either side: its two vertices, the apex inside and the
+/// one outside.
+pub(super) fn seams(work: &Patchwork) -> Vec<[u32; 4]> {
     let across = |a: u32, b: u32| {
         let apex = |test: &dyn Fn(usize) -> bool| {
             work.fan(a as usize).iter().find_map(|&[t, p, q]| match test(t as usize) {
@@ -187,8 +188,7 @@ fn seams(work: &Patchwork) -> Vec<[u32; 4]> {
                 _ => None,
             })
         };
-        let (inner, outer) = (apex(&|t| t < work.n_patch)?, apex(&|t| t >= work.n_patch)?);
-        work.unknown(inner as usize).map(|_| [a, b, inner, outer])
+        Some([a, b, apex(&|t| t < work.n_patch)?, apex(&|t| t >= work.n_patch)?])
     };
     let n = work.n as u32;
     (0..n).filter_map(|a| across(a, (a + 1) % n)).collect()

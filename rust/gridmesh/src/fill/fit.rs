@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::fair::{Bending, Membrane};
+use super::fair::{Bending, Membrane, seams};
 use super::patchwork::Patchwork;
 use super::sweep::sweep;
 use super::unroll::area_vector;
@@ -28,15 +28,24 @@ const LEAST_WEIGHT: f64 = 1e-3;
 /// A loop counts as planar if it leaves its plane by less than this share of its size.
 const PLANAR: f64 = 1e-12;
 
+/// What [`Shape::solve`] found.
+pub(super) struct Solved {
+    /// Of all vertices of the patchwork.
+    pub positions: Vec<DVec3>,
+    /// Fallbacks.
+    pub repaired: usize,
+    /// Mean angle between the film and the surface around the loop, in radians.
+    pub rim_angle: f64,
+}
+
 impl Shape {
-    /// Positions of all vertices of the patchwork for a mesh with vertices at `mesh`, and the number of
-    /// fallbacks.
+    /// Positions for a mesh with vertices at `mesh`.
     ///
     /// First a film: the harmonic map with the metric of the flat patch, whose grid it inherits. Then the
     /// thin plate on the film's metric. Then rounds that separate shape and sampling: sweeps within
     /// the surface make the triangles good, a step along the normals makes the bending small. Neither undoes
     /// the other, as each solve in three coordinates would.
-    pub(super) fn solve(&self, mesh: &[DVec3]) -> Result<(Vec<DVec3>, usize)> {
+    pub(super) fn solve(&self, mesh: &[DVec3]) -> Result<Solved> {
         let work = &self.work;
         let mut positions = vec![DVec3::ZERO; work.len()];
         for (k, &v) in self.loop_.iter().enumerate() {
@@ -45,36 +54,33 @@ impl Shape {
         for (k, &v) in work.outer.iter().enumerate() {
             positions[work.end + k] = mesh[v as usize];
         }
-        if work.inner().is_empty() {
-            return Ok((positions, 0));
+        let membrane = if work.inner().is_empty() { None } else { self.film(&mut positions)? };
+        let mut solved = Solved { rim_angle: rim_angle(work, &positions), positions, repaired: 0 };
+        if work.inner().is_empty() || self.smooth == Smooth::Flat || !work.closed[..work.n].contains(&true) {
+            return Ok(solved);
         }
-        let membrane = self.film(&mut positions)?;
-        if self.smooth == Smooth::Flat || !work.closed[..work.n].contains(&true) {
-            return Ok((positions, 0));
-        }
-        let film = positions.clone();
-        let mut stages = vec![film];
-        match self.bend(&mut positions, membrane, &mut stages) {
+        let mut stages = vec![solved.positions.clone()];
+        match self.bend(&mut solved.positions, membrane, &mut stages) {
             Ok(()) => {}
             // Triangles without area can spoil the equations: what was reached before has to do.
             Err(Error::Solver { .. }) => {
-                positions = stages.pop().unwrap_or(positions);
-                return Ok((positions, 1));
+                solved.positions = stages.pop().unwrap_or_default();
+                solved.repaired = 1;
+                return Ok(solved);
             }
             Err(other) => return Err(other),
         }
-        let mut least = folds(work, &positions);
-        let mut repaired = 0;
+        let mut least = folds(work, &solved.positions);
         for stage in stages.into_iter().rev() {
             if least == 0 {
                 break;
             }
             let folded = folds(work, &stage);
             if folded < least {
-                (positions, least, repaired) = (stage, folded, 1);
+                (solved.positions, least, solved.repaired) = (stage, folded, 1);
             }
         }
-        Ok((positions, repaired))
+        Ok(solved)
     }
 
     /// Places the new vertices on a film in the loop.
@@ -231,6 +237,19 @@ fn curvature_target(work: &Patchwork, membrane: &Membrane<'_>, positions: &[DVec
     let weights = cotangents.iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
     target.extend(membrane.harmonic(&weights, |v| [target[v]])?.into_iter().flatten());
     Ok(target)
+}
+
+/// Mean angle across the loop's edges, weighted by length.
+fn rim_angle(work: &Patchwork, positions: &[DVec3]) -> f64 {
+    let (mut sum, mut total) = (0.0, 0.0);
+    for [a, b, c, d] in seams(work) {
+        let [a, b, c, d] = [a, b, c, d].map(|v| positions[v as usize]);
+        let edge = b - a;
+        let (inner, outer) = (edge.cross(c - a), (d - a).cross(edge));
+        sum += edge.length() * inner.cross(outer).length().atan2(inner.dot(outer));
+        total += edge.length();
+    }
+    if total > 0.0 { sum / total } else { 0.0 }
 }
 
 /// Inner edges of a patch whose triangles are more than 120 degrees apart.
