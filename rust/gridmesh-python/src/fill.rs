@@ -365,7 +365,7 @@ impl<'py> Mesh<'py> {
             return Err(it.wrong_type());
         } else {
             match array.extract::<PyReadonlyArray2<'py, i32>>() {
-                Ok(held) if held.as_slice().is_ok() => Faces::Held(held),
+                Ok(held) if held.is_c_contiguous() => Faces::Held(held),
                 _ => {
                     let wide = array.extract::<PyArrayLike2<'_, i64, AllowTypeChange>>()?;
                     let table = wide.as_array();
@@ -404,8 +404,8 @@ fn read_positions<'py>(it: &Argument<'_, 'py>) -> PyResult<PyArrayLike2<'py, f64
 
 /// In place if the memory is laid out in rows.
 fn as_positions<'a>(held: &'a PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Cow<'a, [DVec3]>> {
-    if let Ok(slice) = held.as_slice() {
-        return Ok(Cow::Borrowed(bytemuck::cast_slice(slice)));
+    if held.is_c_contiguous() {
+        return Ok(Cow::Borrowed(bytemuck::cast_slice(held.as_slice()?)));
     }
     let rows = held.as_array();
     Ok(Cow::Owned(rows.rows().into_iter().map(|row| DVec3::new(row[0], row[1], row[2])).collect()))
