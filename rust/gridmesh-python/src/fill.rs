@@ -186,7 +186,10 @@ pub fn fill_holes(
 ///     The new triangles only. Numbers below n are those of the mesh; n + i is the new vertex i.
 /// report : dict
 ///     Plain numbers: "triangles", "vertices", "irregular" (new vertices whose valence is not 6),
-///     "irregular_loop" (loop vertices whose valence is not 6 now), "unrolling" ("projected", "developed",
+///     "irregular_loop" (loop vertices whose valence is not 6 now), "grid" ("lattice", "grown", "graded",
+///     "centre" or "no_interior": how the patch was made), "folded" (True if it could not be laid out in the
+///     plane), "rim_angle" (mean angle between the surface and a film in the loop, radians: near zero where
+///     the surface goes on, about pi / 2 at the end of a tube), "unrolling" ("projected", "developed",
 ///     "evened" or "circle": how the loop was laid out in the plane), "distortion" (largest relative change
 ///     of a loop edge thereby), "winding_conflicts" (loop edges whose neighbour is wound against most
 ///     others), "wire_edges" (loop edges without a neighbour), "min_angle" (radians), "folds" (edges with
@@ -317,6 +320,9 @@ fn report(py: Python<'_>, report: &FillReport) -> PyResult<Py<PyDict>> {
     dict.set_item("vertices", report.vertices)?;
     dict.set_item("irregular", report.irregular)?;
     dict.set_item("irregular_loop", report.irregular_loop)?;
+    dict.set_item("grid", report.grid.word())?;
+    dict.set_item("folded", report.folded)?;
+    dict.set_item("rim_angle", report.rim_angle)?;
     dict.set_item("unrolling", report.unrolling.word())?;
     dict.set_item("distortion", report.distortion)?;
     dict.set_item("winding_conflicts", report.winding_conflicts)?;
@@ -359,7 +365,7 @@ impl<'py> Mesh<'py> {
             return Err(it.wrong_type());
         } else {
             match array.extract::<PyReadonlyArray2<'py, i32>>() {
-                Ok(held) if held.as_slice().is_ok() => Faces::Held(held),
+                Ok(held) if held.is_c_contiguous() => Faces::Held(held),
                 _ => {
                     let wide = array.extract::<PyArrayLike2<'_, i64, AllowTypeChange>>()?;
                     let table = wide.as_array();
@@ -398,8 +404,8 @@ fn read_positions<'py>(it: &Argument<'_, 'py>) -> PyResult<PyArrayLike2<'py, f64
 
 /// In place if the memory is laid out in rows.
 fn as_positions<'a>(held: &'a PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Cow<'a, [DVec3]>> {
-    if let Ok(slice) = held.as_slice() {
-        return Ok(Cow::Borrowed(bytemuck::cast_slice(slice)));
+    if held.is_c_contiguous() {
+        return Ok(Cow::Borrowed(bytemuck::cast_slice(held.as_slice()?)));
     }
     let rows = held.as_array();
     Ok(Cow::Owned(rows.rows().into_iter().map(|row| DVec3::new(row[0], row[1], row[2])).collect()))

@@ -30,7 +30,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use self::check::{Checked, check_loop};
 use self::flat::{FlatOptions, Method, fill_flat};
-use self::meet::{Box3, count_meetings, near_boxes};
+use self::meet::{Box3, count_meetings, is_graph, near_boxes};
 use self::mesh::Rim;
 use self::patchwork::Patchwork;
 pub use self::unroll::Unrolling;
@@ -90,6 +90,13 @@ pub struct FillReport {
     pub irregular: usize,
     /// Loop vertices that have a valence other than six now, edges of the mesh counted.
     pub irregular_loop: usize,
+    /// How the patch was made.
+    pub grid: Grid,
+    /// True if no patch was found whose triangles are all counter-clockwise in the plane.
+    pub folded: bool,
+    /// Mean angle between the surface at the loop and a film in the loop, in radians: near zero where the
+    /// surface goes on, about a right angle at the end of a tube.
+    pub rim_angle: f64,
     /// How the loop was laid out in the plane.
     pub unrolling: Unrolling,
     /// Largest relative change of a loop edge's length thereby.
@@ -108,6 +115,45 @@ pub struct FillReport {
     pub repaired: usize,
     /// Seconds spent in each stage.
     pub seconds: Vec<(&'static str, f64)>,
+}
+
+/// How a patch was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Grid {
+    /// The loop's own vertices, no others.
+    #[default]
+    NoInterior,
+    /// One vertex in the middle.
+    Centre,
+    /// A lattice patch: the cheapest of exactly as many edges as the loop.
+    Lattice,
+    /// A lattice patch grown as in the paper's section V.
+    Grown,
+    /// Points of nested lattices, for loops too uneven for one.
+    Graded,
+}
+
+impl Grid {
+    fn of(method: Method) -> Self {
+        match method {
+            Method::NoInterior => Grid::NoInterior,
+            Method::Centre => Grid::Centre,
+            Method::Optimal => Grid::Lattice,
+            Method::Grown => Grid::Grown,
+            Method::Graded => Grid::Graded,
+        }
+    }
+
+    /// A stable word, for programs.
+    pub fn word(self) -> &'static str {
+        match self {
+            Grid::NoInterior => "no_interior",
+            Grid::Centre => "centre",
+            Grid::Lattice => "lattice",
+            Grid::Grown => "grown",
+            Grid::Graded => "graded",
+        }
+    }
 }
 
 /// What is needed to solve the same patch again.
@@ -271,13 +317,21 @@ impl Job<'_> {
         let wanted = wanted(loop_, rim);
         let is_taken = |i: usize, j: usize| taken.has(i, j);
         // A triangle that the mesh has already is filled with three others.
-        let flat_options = FlatOptions { single: !taken.face };
+        let flat_options = FlatOptions { single: !taken.face, ..FlatOptions::default() };
         let patch = fill_flat(&unrolled.points, &wanted, &is_taken, &flat_options, progress)?;
+        if patch.quality.repeated > 0 {
+            return Err(Error::NoPatch {
+                reason: "every patch repeats an edge of the mesh".into(),
+                at: around[0].truncate().to_array(),
+            });
+        }
+        let method = Grid::of(patch.method);
         clock.stage("grid");
         progress.report(0.0)?;
 
         let rings = if self.options.smooth == Smooth::Curvature { 2 } else { 1 };
         let work = Patchwork::new(loop_, patch.interior.len(), &patch.triangles, rim, rings);
+        let folded = patch.folded;
         let mut flat = unrolled.points;
         flat.extend(patch.interior);
         let mut shape = Shape {
@@ -289,8 +343,8 @@ impl Job<'_> {
             vertices: self.vertices.len(),
             positions: vec![],
         };
-        let repaired;
-        (shape.positions, repaired) = shape.solve(self.vertices)?;
+        let solved = shape.solve(self.vertices)?;
+        shape.positions = solved.positions;
         clock.stage("fair");
 
         let first_new = self.vertices.len() as u32;
@@ -303,6 +357,9 @@ impl Job<'_> {
             vertices: work.inner().len(),
             irregular: work.inner().filter(|&v| valence(v) != 6).count(),
             irregular_loop: (0..n).filter(|&v| valence(v) != 6).count(),
+            grid: method,
+            folded,
+            rim_angle: solved.rim_angle,
             unrolling: unrolled.method,
             distortion: unrolled.distortion,
             winding_conflicts: checked.conflicts,
@@ -310,7 +367,7 @@ impl Job<'_> {
             min_angle: min_angle(&shape.positions, own),
             folds: fit::folds(work, &shape.positions),
             self_intersections: 0,
-            repaired,
+            repaired: solved.repaired,
             seconds: clock.seconds,
         };
         Ok(Fill {
@@ -328,11 +385,11 @@ impl Job<'_> {
         let n = self.vertices.len() as u32;
         let done = fills.iter().flatten().map(|fill| {
             // New vertices of all fills get numbers of their own here.
-            (fill.triangles.as_slice(), fill.vertices.as_slice())
+            (fill.triangles.as_slice(), fill.vertices.as_slice(), fill.shape.as_ref())
         });
         let done = done.collect::<Vec<_>>();
         let mut first = vec![n];
-        for (_, vertices) in &done {
+        for (_, vertices, _) in &done {
             first.push(first[first.len() - 1] + vertices.len() as u32);
         }
         let owner = |v: u32| first.partition_point(|&f| f <= v) - 1;
@@ -351,14 +408,17 @@ impl Job<'_> {
             .map(|k| Box3::around(named(k).iter().flatten().map(|&v| position(v))))
             .collect::<Vec<_>>();
         let near = near_boxes(&boxes, self.vertices, self.triangles);
-        let counts = (0..done.len())
-            .into_par_iter()
-            .map(|k| {
-                let mut others = near[k].iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
-                others.extend((0..k).filter(|&j| boxes[j].meets(&boxes[k])).flat_map(named));
-                count_meetings(position, &named(k), &others)
-            })
-            .collect::<Vec<_>>();
+        let count = |k: usize| {
+            let mut others = near[k].iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
+            others.extend((0..k).filter(|&j| boxes[j].meets(&boxes[k])).flat_map(named));
+            let (around, positions, own) = done[k].2.graph();
+            let apart = is_graph(around, positions, own);
+            count_meetings(position, &named(k), &others, apart)
+        };
+        let counts: Vec<_> = match done.len() {
+            0 | 1 => (0..done.len()).map(count).collect(),
+            several => (0..several).into_par_iter().map(count).collect(),
+        };
         let seconds = since.elapsed().as_secs_f64();
         for (item, (pairs, at)) in fills.iter_mut().filter(|fill| fill.is_ok()).zip(counts) {
             if let Ok(fill) = item {
@@ -401,7 +461,7 @@ impl Fill {
         if let Some(&v) = near.into_iter().find(|&&v| !vertices[v as usize].is_finite()) {
             return Err(Error::NotFinite { what: "mesh".into(), point: v as usize });
         }
-        let (positions, _) = self.shape.solve(vertices)?;
+        let positions = self.shape.solve(vertices)?.positions;
         Ok(positions[self.shape.work.inner()].to_vec())
     }
 }

@@ -44,9 +44,9 @@ impl Loop {
             if k > 0 {
                 heading += self.turning[k] - strength * self.flux[k];
             }
-            let step = DVec2::from_angle(heading);
-            steps.push(step / hexagonal_length(step));
+            steps.push(step(heading));
         }
+        // What does not close is spread over the steps. (Turning them instead was no better.)
         let gap = steps.iter().sum::<DVec2>() / n as f64;
         let mut at = DVec2::ZERO;
         let mut places = Vec::with_capacity(n);
@@ -58,6 +58,12 @@ impl Loop {
         places.iter_mut().for_each(|p| *p -= centre);
         places
     }
+}
+
+/// One lattice step long in the hexagonal norm.
+fn step(heading: f64) -> DVec2 {
+    let unit = DVec2::from_angle(heading);
+    unit / hexagonal_length(unit)
 }
 
 /// Lattice steps along a vector: one for the six unit vectors, up to 1.1547 per length between.

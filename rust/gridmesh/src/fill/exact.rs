@@ -19,7 +19,10 @@ use crate::lattice::Lattice;
 /// Integer cost of one turn.
 pub(super) const TURN: u32 = 64;
 
-const NEVER: u32 = u32::MAX / 4;
+/// Starts tried when the search runs again with prices.
+const REPAIR_STARTS: usize = 6;
+
+const NEVER: u32 = 1 << 30;
 
 /// What a path should follow, and at what price.
 pub(super) struct Wishes<'a> {
@@ -44,15 +47,23 @@ pub(super) struct Route {
 }
 
 /// The layers with the bounds and prices on them.
+///
+/// A *cell* is a lattice point of a layer; a *state* is a cell with the direction in which the path
+/// enters it. The number of a cell beyond the last stands for all points outside the layer.
 pub(super) struct Layers<'a> {
     wishes: &'a Wishes<'a>,
     /// Offsets of the cells of a layer from its centre.
     stencil: Vec<Axial>,
     centres: Vec<Axial>,
+    /// For each layer, which of `tables` leads to the next one.
+    table: Vec<u16>,
+    /// For each cell and direction the cell of the next layer that it leads to, by the shift
+    /// between the two centres.
+    tables: Vec<(Axial, Vec<[u16; 6]>)>,
     /// Cost of each cell of each layer, prices included.
     nodes: Vec<u32>,
     /// Least cost from a state of a layer to any state of the last.
-    to_go: Vec<u32>,
+    to_go: Vec<[u32; 6]>,
 }
 
 impl<'a> Layers<'a> {
@@ -62,16 +73,37 @@ impl<'a> Layers<'a> {
             .flat_map(|r| (-reach..=reach).map(move |q| Axial::new(q, r)))
             .filter(|o| (o.q + o.r).abs() <= reach)
             .collect();
+        let n = wishes.target.len();
         let centres: Vec<Axial> = wishes.target.iter().map(|&t| Lattice::nearest(t)).collect();
-        let mut nodes = Vec::with_capacity(centres.len() * stencil.len());
+        let mut nodes = Vec::with_capacity(n * (stencil.len() + 1));
+        let places: Vec<DVec2> = stencil.iter().map(|&o| Lattice::units(o)).collect();
         for (&centre, &target) in centres.iter().zip(wishes.target) {
-            for &offset in &stencil {
-                let d = Lattice::units(centre + offset).distance_squared(target);
-                nodes.push((f64::from(TURN) * wishes.closeness * d).min(1e6).round() as u32);
-            }
+            let off = Lattice::units(centre) - target;
+            let price = |p: &DVec2| (f64::from(TURN) * wishes.closeness * (*p + off).length_squared()) as u32;
+            nodes.extend(places.iter().map(price));
+            nodes.push(NEVER);
         }
-        let to_go = vec![0; (centres.len() + 1) * stencil.len() * 6];
-        let mut layers = Layers { wishes, stencil, centres, nodes, to_go };
+        let to_go = vec![[0; 6]; (n + 1) * stencil.len()];
+        let mut layers = Layers {
+            wishes,
+            stencil,
+            centres,
+            table: Vec::with_capacity(n),
+            tables: Vec::new(),
+            nodes,
+            to_go,
+        };
+        for layer in 0..n {
+            let shift = layers.centres[layer] - layers.centres[(layer + 1) % n];
+            let known = layers.tables.iter().position(|t| t.0 == shift);
+            let table = known.unwrap_or_else(|| {
+                let ways = layers.stencil.iter().map(|&o| Dir::ALL.map(|d| layers.cell(o + shift + d)));
+                let ways = ways.collect();
+                layers.tables.push((shift, ways));
+                layers.tables.len() - 1
+            });
+            layers.table.push(table as u16);
+        }
         layers.bound();
         layers
     }
@@ -80,18 +112,21 @@ impl<'a> Layers<'a> {
         self.centres.len()
     }
 
-    /// For each cell of a layer and each direction, the cell of the next layer that it leads to.
-    fn steps(&self, layer: usize) -> Vec<[u16; 6]> {
-        let next = (layer + 1) % self.len();
-        let shift = self.centres[layer] - self.centres[next];
-        self.stencil.iter().map(|&o| Dir::ALL.map(|d| self.cell(o + shift + d))).collect()
+    fn ways(&self, layer: usize) -> &[[u16; 6]] {
+        &self.tables[usize::from(self.table[layer])].1
     }
 
-    /// Number of the cell at an offset from the centre; `u16::MAX` outside.
+    /// Costs of the cells of a layer; the last one is that of the points outside.
+    fn costs(&self, layer: usize) -> &[u32] {
+        let row = self.stencil.len() + 1;
+        &self.nodes[layer * row..(layer + 1) * row]
+    }
+
+    /// Number of the cell at an offset from the centre.
     fn cell(&self, offset: Axial) -> u16 {
         let reach = self.wishes.reach;
         if offset.distance(Axial::default()) > reach {
-            return u16::MAX;
+            return self.stencil.len() as u16;
         }
         // Cells before this row: the rows of a hexagon, of 2 reach + 1 - |r| cells each.
         let below = offset.r + reach;
@@ -104,50 +139,56 @@ impl<'a> Layers<'a> {
 
     /// The sweep backwards.
     fn bound(&mut self) {
-        let states = self.stencil.len() * 6;
+        let cells = self.stencil.len();
         let n = self.len();
         for layer in (0..n).rev() {
+            let (before, after) = self.to_go.split_at_mut((layer + 1) * cells);
+            let here = &mut before[layer * cells..];
+            let row = cells + 1;
             let next = (layer + 1) % n;
-            let steps = self.steps(layer);
-            let nodes = &self.nodes[next * self.stencil.len()..(next + 1) * self.stencil.len()];
-            let (before, after) = self.to_go.split_at_mut((layer + 1) * states);
-            let here = &mut before[layer * states..];
+            let nodes = &self.nodes[next * row..(next + 1) * row];
+            let ways = &self.tables[usize::from(self.table[layer])].1;
             let turns = &self.wishes.turns[layer];
-            for (cell, ways) in steps.iter().enumerate() {
-                // Twice round, so that a turn needs no modulo.
-                let mut ahead = [NEVER; 12];
+            for (ways, here) in ways.iter().zip(here) {
+                // Round more than once, so that a turn needs no modulo.
+                let mut ahead = [NEVER; 10];
                 for (d, &to) in ways.iter().enumerate() {
-                    if to != u16::MAX {
-                        let to = to as usize;
-                        ahead[d] = nodes[to] + after[to * 6 + d];
-                        ahead[d + 6] = ahead[d];
+                    let to = usize::from(to);
+                    if to < cells {
+                        ahead[d + 2] = nodes[to] + after[to][d];
                     }
                 }
-                for d in 0..6 {
-                    let from = d + 4;
-                    let mut least = NEVER;
-                    for (t, &cost) in turns.iter().enumerate() {
-                        least = least.min(ahead[(from + t) % 12].saturating_add(cost));
+                (ahead[0], ahead[1], ahead[8], ahead[9]) = (ahead[6], ahead[7], ahead[2], ahead[3]);
+                let mut least = [NEVER; 6];
+                for (t, &cost) in turns.iter().enumerate() {
+                    for d in 0..6 {
+                        least[d] = least[d].min(ahead[d + t] + cost);
                     }
-                    here[cell * 6 + d] = least.min(NEVER);
                 }
+                *here = least.map(|cost| cost.min(NEVER));
             }
         }
+    }
+
+    /// No closed path costs less.
+    pub fn least(&self) -> u32 {
+        self.to_go[..self.stencil.len()].iter().flatten().copied().min().unwrap_or(NEVER)
     }
 
     /// The cheapest closed path, if there is one; with `starts` the number of starts tried at most.
     pub fn solve(&self, starts: usize) -> Option<(Vec<Axial>, u32)> {
         let states = self.stencil.len() * 6;
-        let mut order: Vec<usize> = (0..states).filter(|&s| self.to_go[s] < NEVER).collect();
-        order.sort_by_key(|&s| (self.to_go[s], s));
-        let steps: Vec<Vec<[u16; 6]>> = (0..self.len()).map(|layer| self.steps(layer)).collect();
+        let bound = |s: usize| self.to_go[s / 6][s % 6];
+        let mut order: Vec<usize> = (0..states).filter(|&s| bound(s) < NEVER).collect();
+        order.sort_by_key(|&s| (bound(s), s));
         let mut best: Option<(Vec<Axial>, u32)> = None;
+        let mut came = vec![0; (self.len() + 1) * states];
         let mut limit = NEVER;
         for &start in order.iter().take(starts) {
-            if self.to_go[start] >= limit {
+            if bound(start) >= limit {
                 break;
             }
-            if let Some((points, cost)) = self.closed_from(start, limit, &steps) {
+            if let Some((points, cost)) = self.closed_from(start, limit, &mut came) {
                 limit = cost;
                 best = Some((points, cost));
             }
@@ -156,36 +197,36 @@ impl<'a> Layers<'a> {
     }
 
     /// The cheapest path from a state of layer 0 back to it that costs less than `limit`.
-    fn closed_from(&self, start: usize, limit: u32, steps: &[Vec<[u16; 6]>]) -> Option<(Vec<Axial>, u32)> {
+    fn closed_from(&self, start: usize, limit: u32, came: &mut [u8]) -> Option<(Vec<Axial>, u32)> {
         let cells = self.stencil.len();
         let states = cells * 6;
         let n = self.len();
-        let mut came = vec![u8::MAX; (n + 1) * states];
         let mut here = vec![NEVER; states];
         let mut there = vec![NEVER; states];
         let mut active = vec![start];
         let mut reached = Vec::new();
         here[start] = 0;
         for layer in 0..n {
-            let next = (layer + 1) % n;
-            let to_go = &self.to_go[(layer + 1) * states..(layer + 2) * states];
+            let nodes = self.costs((layer + 1) % n);
+            let to_go = &self.to_go[(layer + 1) * cells..(layer + 2) * cells];
+            let ways = self.ways(layer);
             for &state in &active {
                 let (cell, d) = (state / 6, state % 6);
                 let so_far = std::mem::replace(&mut here[state], NEVER);
                 for (t, &turn) in self.wishes.turns[layer].iter().enumerate() {
                     let out = (d + 4 + t) % 6;
-                    let to = steps[layer][cell][out];
-                    if to == u16::MAX {
+                    let to = usize::from(ways[cell][out]);
+                    if to == cells {
                         continue;
                     }
-                    let cost = so_far + turn + self.nodes[next * cells + to as usize];
-                    let to = to as usize * 6 + out;
-                    if cost < there[to] && cost + to_go[to] < limit {
-                        if there[to] == NEVER {
-                            reached.push(to);
+                    let cost = so_far + turn + nodes[to];
+                    let known = &mut there[to * 6 + out];
+                    if cost < *known && cost + to_go[to][out] < limit {
+                        if *known == NEVER {
+                            reached.push(to * 6 + out);
                         }
-                        there[to] = cost;
-                        came[(layer + 1) * states + to] = d as u8;
+                        *known = cost;
+                        came[(layer + 1) * states + to * 6 + out] = d as u8;
                     }
                 }
             }
@@ -201,7 +242,7 @@ impl<'a> Layers<'a> {
         let (mut at, mut d) = (self.centres[0] + self.stencil[start / 6], start % 6);
         for layer in (1..=n).rev() {
             let cell = self.cell(at - self.centres[layer % n]);
-            let before = came[layer * states + cell as usize * 6 + d];
+            let before = came[layer * states + usize::from(cell) * 6 + d];
             at = at - Dir::ALL[d];
             points[layer - 1] = at;
             d = usize::from(before);
@@ -209,14 +250,11 @@ impl<'a> Layers<'a> {
         Some((points, cost))
     }
 
-    fn raise(&mut self, layer: usize, point: Axial, price: u32) -> u64 {
-        let cell = self.cell(point - self.centres[layer]);
-        match self.nodes.get_mut(layer * self.stencil.len() + usize::from(cell)) {
-            Some(node) if cell != u16::MAX => {
-                *node = (*node + price).min(1 << 24);
-                u64::from(price)
-            }
-            _ => 0,
+    fn raise(&mut self, layer: usize, point: Axial, price: u32) {
+        let cell = usize::from(self.cell(point - self.centres[layer]));
+        if cell < self.stencil.len() {
+            let node = &mut self.nodes[layer * (self.stencil.len() + 1) + cell];
+            *node = (*node + price).min(1 << 24);
         }
     }
 }
@@ -237,15 +275,17 @@ pub(super) fn route(
 ) -> Option<Route> {
     let mut layers = Layers::new(wishes);
     for round in 0..=rounds {
-        let (points, cost) = layers.solve(starts)?;
+        let (points, cost) = layers.solve(if round == 0 { starts } else { REPAIR_STARTS })?;
         let conflicts = conflicts(&points, taken);
         if conflicts.is_empty() && turning(&points) == 6 {
             let cost = cost_of(wishes, &points).unwrap_or(u64::from(cost));
             return Some(Route { points, cost, rounds: round });
         }
         for &(i, j) in &conflicts {
-            layers.raise(i, points[i], TURN / 2);
-            layers.raise(j, points[j], TURN / 2);
+            // Ever dearer, so that stubborn conflicts do not come round and round.
+            let price = TURN / 2 * (1 + round as u32 / 2);
+            layers.raise(i, points[i], price);
+            layers.raise(j, points[j], price);
         }
         if conflicts.is_empty() {
             return None;
@@ -263,7 +303,7 @@ fn cost_of(wishes: &Wishes<'_>, points: &[Axial]) -> Option<u64> {
         let leave = points[k].step_to(points[(k + 1) % n])?;
         let turn = wishes.turns[k].get((enter.turn_to(leave) + 2) as usize)?;
         let d = Lattice::units(points[k]).distance_squared(wishes.target[k]);
-        sum += u64::from(*turn) + (f64::from(TURN) * wishes.closeness * d).round() as u64;
+        sum += u64::from(*turn) + (f64::from(TURN) * wishes.closeness * d) as u64;
     }
     Some(sum)
 }
@@ -330,7 +370,7 @@ mod tests {
             for (i, &o) in layers.stencil.iter().enumerate() {
                 assert_eq!(layers.cell(o) as usize, i);
             }
-            assert_eq!(layers.cell(Axial::new(reach, 1)), u16::MAX);
+            assert_eq!(usize::from(layers.cell(Axial::new(reach, 1))), layers.stencil.len());
         }
     }
 

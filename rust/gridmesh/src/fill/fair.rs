@@ -11,6 +11,7 @@ pub(crate) struct Bending<'a> {
     work: &'a Patchwork,
     /// The vertex of each equation.
     rows: Vec<u32>,
+    /// See [`seams`], those with a free apex; an equation for each follows those of the vertices.
     seams: Vec<[u32; 4]>,
     system: LeastSquares,
 }
@@ -32,33 +33,26 @@ impl<'a> Bending<'a> {
             columns.extend(work.near[work.range(v)].iter().filter_map(|&u| work.unknown(u as usize)));
             start.push(columns.len() as u32);
         }
-        let mut seams = vec![];
-        for t in &work.triangles[..work.n_patch] {
-            for k in 0..3 {
-                let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
-                if (a as usize + 1) % work.n == b as usize && (a as usize) < work.n && work.unknown(c as usize).is_some() {
-                    let d = work.fan(a as usize).iter().find_map(|&[_, p, q]| {
-                        if p == b && q != c { Some(q) } else if q == b && p != c { Some(p) } else { None }
-                    });
-                    if let Some(d) = d {
-                        seams.push([a, b, c, d]);
-                        columns.extend(work.unknown(c as usize));
-                        start.push(columns.len() as u32);
-                    }
-                }
-            }
+        let mut seams = seams(work);
+        seams.retain(|&[.., apex, _]| work.unknown(apex as usize).is_some());
+        for &[.., apex, _] in &seams {
+            columns.extend(work.unknown(apex as usize));
+            start.push(columns.len() as u32);
         }
         let system = LeastSquares::new(work.end - work.n, start, columns)?;
         Ok(Bending { work, rows, seams, system })
     }
 
-    /// Minimises the squared Laplacians `sum w (x_j - x_i)` of the positions, one factorisation for the
-    /// three coordinates. `weights` parallel to `near`.
-    pub fn positions(&self, positions: &mut [DVec3], weights: &[f64], masses: &[f64]) -> Result<()> {
+    /// The thin plate: minimises the squared Laplacians of the positions on the present metric, one
+    /// factorisation for the three coordinates.
+    pub fn positions(&self, positions: &mut [DVec3]) -> Result<()> {
         let work = self.work;
-        let mut coefficients = vec![];
-        let mut right = vec![];
-        let mut importance = vec![];
+        let cotangents = work.cotangents(positions);
+        let masses = bounded_masses(work, positions);
+        let n_rows = self.rows.len() + self.seams.len();
+        let mut coefficients = Vec::with_capacity(7 * n_rows);
+        let mut right = Vec::with_capacity(n_rows);
+        let mut weights = Vec::with_capacity(n_rows);
         for &v in &self.rows {
             let v = v as usize;
             let mut sum = 0.0;
@@ -69,11 +63,11 @@ impl<'a> Bending<'a> {
             }
             for slot in work.range(v) {
                 let u = work.near[slot] as usize;
-                sum += weights[slot];
+                sum += cotangents[slot];
                 if work.unknown(u).is_some() {
-                    coefficients.push(weights[slot]);
+                    coefficients.push(cotangents[slot]);
                 } else {
-                    known += weights[slot] * positions[u];
+                    known += cotangents[slot] * positions[u];
                 }
             }
             if work.unknown(v).is_some() {
@@ -82,26 +76,53 @@ impl<'a> Bending<'a> {
                 known -= sum * positions[v];
             }
             right.push((-known).to_array());
-            importance.push(1.0 / masses[v]);
+            weights.push(1.0 / masses[v]);
         }
-        for _ in &self.seams { coefficients.push(0.0); right.push([0.0; 3]); importance.push(0.0); }
-        let found = self.system.solve(&coefficients, &importance, &right, |_| 0.0)?;
+        // The angles across the loop are not linear in the positions.
+        coefficients.resize(coefficients.len() + self.seams.len(), 0.0);
+        right.resize(n_rows, [0.0; 3]);
+        weights.resize(n_rows, 0.0);
+        let found = self.system.solve(&coefficients, &weights, &right)?;
         for (v, x) in work.inner().zip(found) {
             positions[v] = x.into();
         }
         Ok(())
     }
 
-    /// Moves the new vertices along their normals so that the sum of squared mean curvatures, weighted by
-    /// area, is least (to first order).
-    pub fn normal_step(&self, positions: &mut [DVec3], target: Option<&[f64]>) -> Result<()> {
+    /// Moves the new vertices along their normals so that the bending is least (to first order). The step
+    /// is halved until it lowers the true bending; the energy before and after, for the caller to judge.
+    pub fn normal_step(&self, positions: &mut [DVec3], seam: f64, target: Option<&[f64]>) -> Result<[f64; 2]> {
+        const HALVINGS: usize = 4;
         let work = self.work;
-        let weights = work.cotangents(positions);
-        let masses = work.areas(positions);
+        let state = self.state(positions, seam, target);
+        let found = self.system.solve(&state.coefficients, &state.weights, &state.right)?;
+        let start = positions[work.inner()].to_vec();
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            for (k, v) in work.inner().enumerate() {
+                positions[v] = start[k] + share * found[k][0] * state.normals[v];
+            }
+            let energy = self.state(positions, seam, target).energy();
+            if energy < state.energy() {
+                return Ok([state.energy(), energy]);
+            }
+            share *= 0.5;
+        }
+        positions[work.inner()].copy_from_slice(&start);
+        Ok([state.energy(); 2])
+    }
+
+    /// The equations of [`Bending::normal_step`] at the present positions: for each vertex the mean
+    /// curvature, weighted by area; for each edge of the loop the angle across it.
+    fn state(&self, positions: &[DVec3], seam: f64, target: Option<&[f64]>) -> State {
+        let work = self.work;
+        let cotangents = work.cotangents(positions);
+        let masses = bounded_masses(work, positions);
         let normals = work.normals(positions);
-        let mut coefficients = vec![];
-        let mut right = vec![];
-        let mut importance = vec![];
+        let n_rows = self.rows.len() + self.seams.len();
+        let mut coefficients = Vec::with_capacity(7 * n_rows);
+        let mut right = Vec::with_capacity(n_rows);
+        let mut weights = Vec::with_capacity(n_rows);
         for &v in &self.rows {
             let v = v as usize;
             let mut sum = 0.0;
@@ -112,10 +133,10 @@ impl<'a> Bending<'a> {
             }
             for slot in work.range(v) {
                 let u = work.near[slot] as usize;
-                sum += weights[slot];
-                laplacian += weights[slot] * (positions[u] - positions[v]);
+                sum += cotangents[slot];
+                laplacian += cotangents[slot] * (positions[u] - positions[v]);
                 if work.unknown(u).is_some() {
-                    coefficients.push(weights[slot] * normals[v].dot(normals[u]));
+                    coefficients.push(cotangents[slot] * normals[v].dot(normals[u]));
                 }
             }
             if work.unknown(v).is_some() {
@@ -123,30 +144,62 @@ impl<'a> Bending<'a> {
             }
             let wanted = target.map_or(0.0, |h| h[v] * masses[v]);
             right.push([wanted - normals[v].dot(laplacian)]);
-            let extra = if v < work.n { super::fit::env("WL", 1.0) } else { 1.0 };
-            importance.push(extra / masses[v].max(f64::MIN_POSITIVE));
+            weights.push(1.0 / masses[v]);
         }
-        let ws = super::fit::env("WS", 0.0);
         for &[a, b, c, d] in &self.seams {
             let [pa, pb, pc, pd] = [a, b, c, d].map(|v| positions[v as usize]);
-            let e = pb - pa;
-            let (n1, n2) = (e.cross(pc - pa), (pd - pa).cross(e));
-            let h = n1.length() / e.length();
-            let area = 0.5 * (n1.length() + n2.length());
-            let (m1, m2) = (n1.normalize_or_zero(), n2.normalize_or_zero());
-            // Positive where the patch's triangle bends down (against its normal).
-            let angle = m1.cross(m2).dot(e.normalize_or_zero()).atan2(m1.dot(m2));
-            coefficients.push(-m1.dot(normals[c as usize]) / h);
+            let edge = pb - pa;
+            let (inner, outer) = (edge.cross(pc - pa), (pd - pa).cross(edge));
+            let height = inner.length() / edge.length();
+            let area = 0.5 * (inner.length() + outer.length());
+            let (m, o) = (inner.normalize_or_zero(), outer.normalize_or_zero());
+            // Raising the apex of the patch's triangle turns its normal away from the apex.
+            let angle = m.cross(o).dot(edge.normalize_or_zero()).atan2(m.dot(o));
+            coefficients.push(-m.dot(normals[c as usize]) / height.max(f64::MIN_POSITIVE));
             right.push([-angle]);
-            importance.push(ws * e.length_squared() / area);
-            if std::env::var("DBG").is_ok() { eprintln!("{angle:.3} {h:.4}"); }
+            weights.push(seam * edge.length_squared() / area.max(f64::MIN_POSITIVE));
         }
-        let found = self.system.solve(&coefficients, &importance, &right, |_| 0.0)?;
-        for (v, [x]) in work.inner().zip(found) {
-            positions[v] += x * normals[v];
-        }
-        Ok(())
+        State { coefficients, right, weights, normals }
     }
+}
+
+/// See [`Bending::state`].
+struct State {
+    coefficients: Vec<f64>,
+    right: Vec<[f64; 1]>,
+    weights: Vec<f64>,
+    normals: Vec<DVec3>,
+}
+
+impl State {
+    fn energy(&self) -> f64 {
+        self.right.iter().zip(&self.weights).map(|([x], w)| w * x * x).sum()
+    }
+}
+
+/// For each edge of the loop with a triangle on either side: its two vertices, the apex inside and the
+/// one outside.
+pub(super) fn seams(work: &Patchwork) -> Vec<[u32; 4]> {
+    let across = |a: u32, b: u32| {
+        let apex = |test: &dyn Fn(usize) -> bool| {
+            work.fan(a as usize).iter().find_map(|&[t, p, q]| match test(t as usize) {
+                true if p == b => Some(q),
+                true if q == b => Some(p),
+                _ => None,
+            })
+        };
+        Some([a, b, apex(&|t| t < work.n_patch)?, apex(&|t| t >= work.n_patch)?])
+    };
+    let n = work.n as u32;
+    (0..n).filter_map(|a| across(a, (a + 1) % n)).collect()
+}
+
+/// Areas at the vertices, kept away from zero.
+fn bounded_masses(work: &Patchwork, positions: &[DVec3]) -> Vec<f64> {
+    let mut masses = work.areas(positions);
+    let mean = masses.iter().sum::<f64>() / masses.len() as f64;
+    masses.iter_mut().for_each(|m| *m = m.max(1e-6 * mean).max(f64::MIN_POSITIVE));
+    masses
 }
 
 /// Equations of first order, one for each edge at a new vertex.
@@ -198,6 +251,6 @@ impl<'a> Membrane<'a> {
                 right.push(known(u as usize));
             }
         }
-        self.system.solve(&coefficients, &importance, &right, |_| 0.0)
+        self.system.solve(&coefficients, &importance, &right)
     }
 }

@@ -38,11 +38,21 @@ pub(crate) enum Method {
 pub(crate) struct FlatOptions {
     /// A loop of three may be one triangle.
     pub single: bool,
+    /// Cost of a squared lattice distance from the developed loop, in turns.
+    pub closeness: f64,
+    /// Cost of a squared logarithm of an angle at the loop against 60 degrees, in turns.
+    pub shape: f64,
+    /// Lattice steps that a vertex may be off its place in the developed loop.
+    pub reach: i32,
+    /// Lattice angles compared in the range of 60 degrees.
+    pub angles: usize,
+    /// Of the paths found, how many are placed and measured.
+    pub placed: usize,
 }
 
 impl Default for FlatOptions {
     fn default() -> Self {
-        FlatOptions { single: true }
+        FlatOptions { single: true, closeness: 0.4, shape: 3.0, reach: 2, angles: 6, placed: 2 }
     }
 }
 
@@ -111,12 +121,6 @@ pub(crate) fn fill_flat(
 /// Badness below which no further method is tried.
 const GOOD: f64 = 1.5;
 
-/// Lattice angles tried in the range of 60 degrees.
-const ANGLES: usize = 6;
-
-/// Candidates of the lattice search that are placed and measured.
-const PLACED: usize = 2;
-
 struct Contest<'a> {
     points: &'a [DVec2],
     wanted: &'a [i32],
@@ -138,7 +142,7 @@ impl Contest<'_> {
             self.settle_and_enter(vec![centre], triangles, Method::Centre, progress)?;
         }
         if n >= 5 {
-            self.lattice(progress.part(0.0, 0.7))?;
+            self.lattice(options, progress.part(0.0, 0.7))?;
         }
         if self.best.as_ref().is_none_or(|(badness, _)| *badness > GOOD) && n > 3 {
             match graded(self.points, self.wanted, self.taken, progress.part(0.7, 1.0)) {
@@ -165,26 +169,36 @@ impl Contest<'_> {
     }
 
     /// Lattice patches: the cheapest paths over several angles, placed and measured.
-    fn lattice(&mut self, progress: Progress<'_>) -> Result<()> {
+    fn lattice(&mut self, options: &FlatOptions, progress: Progress<'_>) -> Result<()> {
         let shape = Loop::new(self.points);
-        let turns = turn_costs(&shape.turning, self.wanted, self.taken);
-        let mut found: Vec<(u32, Vec<DVec2>)> = Vec::new();
-        for &strength in &[1.0, 0.5, 0.0] {
-            for a in 0..ANGLES {
-                let angle = std::f64::consts::FRAC_PI_3 * a as f64 / ANGLES as f64;
+        let turns = turn_costs(&shape.turning, self.wanted, self.taken, options.shape);
+        // The whole flux is right where it is right at all; where the developed loop covers itself,
+        // less of it may not.
+        for strength in [1.0, 0.6, 0.2] {
+            let mut found: Vec<(u32, Vec<DVec2>)> = Vec::with_capacity(options.angles);
+            for a in 0..options.angles {
+                let angle = std::f64::consts::FRAC_PI_3 * a as f64 / options.angles as f64;
                 let target = shape.developed(strength, angle);
-                let wishes = Wishes { target: &target, turns: &turns, closeness: CLOSENESS, reach: REACH };
-                if let Some((_, cost)) = Layers::new(&wishes).solve(1) {
-                    found.push((cost, target));
+                let wishes = Wishes {
+                    target: &target,
+                    turns: &turns,
+                    closeness: options.closeness,
+                    reach: options.reach,
+                };
+                found.push((Layers::new(&wishes).least(), target));
+            }
+            found.sort_by_key(|f| f.0);
+            for (i, (_, target)) in found.iter().take(options.placed).enumerate() {
+                progress.report(i as f64 / options.placed as f64)?;
+                let wishes =
+                    Wishes { target, turns: &turns, closeness: options.closeness, reach: options.reach };
+                if let Some(route) = route(&wishes, self.taken, STARTS, ROUNDS) {
+                    self.place(&route.points, progress)?;
                 }
             }
-        }
-        found.sort_by_key(|f| f.0);
-        for (i, (_, target)) in found.iter().take(PLACED).enumerate() {
-            progress.report(i as f64 / PLACED as f64)?;
-            let wishes = Wishes { target, turns: &turns, closeness: CLOSENESS, reach: REACH };
-            if let Some(route) = route(&wishes, self.taken, STARTS, ROUNDS) {
-                self.place(&route.points, progress)?;
+            let uneven = shape.flux.iter().map(|f| f.abs()).sum::<f64>() > 1.0;
+            if !uneven || self.best.as_ref().is_some_and(|(badness, _)| *badness < GOOD) {
+                break;
             }
         }
         Ok(())
@@ -241,29 +255,27 @@ impl Contest<'_> {
     }
 }
 
-/// Cost of a squared lattice distance from the target, in turns.
-const CLOSENESS: f64 = 0.1;
-
-/// Lattice steps that a vertex may be off its target.
-const REACH: i32 = 2;
-
 /// Starts of the exact search tried at most.
 const STARTS: usize = 24;
 
 /// Times that conflicts are priced.
-const ROUNDS: usize = 20;
+const ROUNDS: usize = 12;
 
 /// What each turn costs at each vertex: how far the valence is from the wanted one, and how far the
 /// angles between its edges are from 60 degrees.
-fn turn_costs(turning: &[f64], wanted: &[i32], taken: &dyn Fn(usize, usize) -> bool) -> Vec<[u32; 5]> {
-    const SHAPE: f64 = 1.0;
+fn turn_costs(
+    turning: &[f64],
+    wanted: &[i32],
+    taken: &dyn Fn(usize, usize) -> bool,
+    shape: f64,
+) -> Vec<[u32; 5]> {
     let n = turning.len();
     let cost = |k: usize| {
         std::array::from_fn(|t| {
             let valence = 6 - t as i32;
             let angle = (std::f64::consts::PI - turning[k]).clamp(0.05, 6.2) / f64::from(valence - 1);
             let off = (angle / std::f64::consts::FRAC_PI_3).ln();
-            let mut cost = f64::from((valence - wanted[k]).abs()) + SHAPE * off * off;
+            let mut cost = f64::from((valence - wanted[k]).abs()) + shape * off * off;
             if valence == 2 {
                 // A triangle at the tip: no room for it where the loop is straight, and its third
                 // edge joins loop vertices.

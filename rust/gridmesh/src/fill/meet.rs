@@ -1,17 +1,20 @@
 //! Whether new triangles meet each other or the mesh.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
+use super::mesh::{CHUNK, in_chunks};
+use super::unroll::{area_vector, is_simple};
 use crate::embed::triangles_meet;
-
-/// Triangles looked at by one thread at a time.
-const CHUNK: usize = 1 << 16;
+use crate::segments::orientation;
 
 /// Cells along each axis of the grid that tells which boxes may be near.
 const CELLS: usize = 48;
+
+/// From this number of triangles on the work is shared among threads.
+const MANY: usize = 4096;
 
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +28,12 @@ impl Box3 {
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
         let none = Box3 { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
         points.into_iter().fold(none, |b, p| Box3 { low: b.low.min(p), high: b.high.max(p) })
+    }
+
+    /// A bit for each face of the box beyond which a point lies: a triangle whose corners share one is
+    /// outside.
+    fn side(&self, p: DVec3) -> u8 {
+        (p.cmplt(self.low).bitmask() | p.cmpgt(self.high).bitmask() << 3) as u8
     }
 
     /// True if they have a point in common.
@@ -53,14 +62,19 @@ pub(crate) fn near_boxes(boxes: &[Box3], positions: &[DVec3], triangles: &[[u32;
             }
         }
     }
+    let sides: Vec<u8> = if positions.len() <= CHUNK {
+        positions.iter().map(|&p| all.side(p)).collect()
+    } else {
+        positions.par_iter().with_min_len(CHUNK).map(|&p| all.side(p)).collect()
+    };
     let scan = |(part, chunk): (usize, &[[u32; 3]])| {
         let mut found = vec![];
         for (k, t) in chunk.iter().enumerate() {
-            let own = Box3::around(t.map(|v| positions[v as usize]));
-            if !own.meets(&all) {
+            if t.iter().fold(u8::MAX, |side, &v| side & sides[v as usize]) != 0 {
                 continue;
             }
             if several {
+                let own = Box3::around(t.map(|v| positions[v as usize]));
                 let (low, high) = (cell(own.low), cell(own.high));
                 let hit = (low.z..=high.z).any(|z| {
                     (low.y..=high.y).any(|y| taken[place(low.x, y, z)..=place(high.x, y, z)].contains(&true))
@@ -73,7 +87,7 @@ pub(crate) fn near_boxes(boxes: &[Box3], positions: &[DVec3], triangles: &[[u32;
         }
         found
     };
-    let parts = triangles.par_chunks(CHUNK).enumerate().map(scan).collect::<Vec<_>>();
+    let parts = in_chunks(triangles, scan);
     if !several {
         if let Some(near) = near.first_mut() {
             *near = parts.concat();
@@ -102,11 +116,12 @@ fn boxed(b: &Box3, data: u32) -> Boxed {
 /// (exact predicates), and a corner of the first such new triangle.
 ///
 /// Vertices on the same point count as one: a mesh along a seam of doubled vertices touches itself
-/// all along, and means nothing by it.
+/// all along, and means nothing by it. `apart`: the new triangles are known not to meet each other.
 pub(crate) fn count_meetings(
     position: impl Fn(u32) -> DVec3,
     new: &[[u32; 3]],
     old: &[[u32; 3]],
+    apart: bool,
 ) -> (usize, Option<DVec3>) {
     let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
     let mut ids = new.iter().chain(old).flatten().copied().collect::<Vec<_>>();
@@ -127,27 +142,51 @@ pub(crate) fn count_meetings(
     let new = new.iter().map(renumber).filter(sound).collect::<Vec<_>>();
     let old = old.iter().map(renumber).filter(sound).collect::<Vec<_>>();
     let around = |t: &[u32; 3]| Box3::around(t.map(|v| vertices[v as usize]));
-    let tree = |of: &[[u32; 3]]| -> RTree<Boxed> {
-        RTree::bulk_load(of.iter().enumerate().map(|(i, t)| boxed(&around(t), i as u32)).collect())
-    };
-    let (new_tree, old_tree) = (tree(&new), tree(&old));
-    let mut count = 0;
-    let mut first = None;
-    let mut note = |t: u32| {
-        count += 1;
-        first = Some(first.map_or(t, |f: u32| f.min(t)));
-    };
-    for (a, b) in new_tree.intersection_candidates_with_other_tree(&new_tree) {
-        if a.data < b.data && triangles_meet(&vertices, new[a.data as usize], new[b.data as usize]) {
-            note(a.data);
-        }
+    // The old triangles, and the new ones if they have to be compared with each other, by their number
+    // after the old ones.
+    let mut items = old.iter().enumerate().map(|(i, t)| boxed(&around(t), i as u32)).collect::<Vec<_>>();
+    if !apart {
+        let number = |i: usize| (old.len() + i) as u32;
+        items.extend(new.iter().enumerate().map(|(i, t)| boxed(&around(t), number(i))));
     }
-    for (a, b) in new_tree.intersection_candidates_with_other_tree(&old_tree) {
-        if triangles_meet(&vertices, new[a.data as usize], old[b.data as usize]) {
-            note(a.data);
-        }
+    if items.is_empty() {
+        return (0, None);
     }
-    (count, first.map(|t| vertices[new[t as usize][0] as usize]))
+    let tree = RTree::bulk_load(items);
+    let meets = |i: usize| -> usize {
+        let own = around(&new[i]);
+        let envelope = AABB::from_corners(own.low.into(), own.high.into());
+        let hits = tree.locate_in_envelope_intersecting(&envelope).filter(|hit| {
+            let k = hit.data as usize;
+            match k.checked_sub(old.len()) {
+                Some(j) => j > i && triangles_meet(&vertices, new[i], new[j]),
+                None => triangles_meet(&vertices, new[i], old[k]),
+            }
+        });
+        hits.count()
+    };
+    let counts: Vec<usize> = if new.len() < MANY {
+        (0..new.len()).map(meets).collect()
+    } else {
+        (0..new.len()).into_par_iter().map(meets).collect()
+    };
+    let first = counts.iter().position(|&count| count > 0);
+    (counts.iter().sum(), first.map(|i| vertices[new[i][0] as usize]))
+}
+
+/// True if a patch is a graph over the plane of its loop's mean normal, which proves that it does not meet
+/// itself: the projected loop is simple and every triangle is counter-clockwise there (exact for the
+/// rounded projection).
+pub(crate) fn is_graph(around: &[DVec3], positions: &[DVec3], triangles: &[[u32; 3]]) -> bool {
+    let Some(normal) = area_vector(around).try_normalize() else { return false };
+    let (e, f) = normal.any_orthonormal_pair();
+    let flat = positions.iter().map(|&p| p - around[0]).map(|p| DVec2::new(p.dot(e), p.dot(f)));
+    let flat = flat.collect::<Vec<_>>();
+    let up = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| flat[v as usize]);
+        orientation(a, b, c) > 0.0
+    };
+    triangles.iter().all(up) && is_simple(&flat[..around.len()])
 }
 
 #[cfg(test)]
@@ -169,10 +208,10 @@ mod tests {
         ]
         .map(DVec3::from);
         let at = |v: u32| p[v as usize];
-        assert_eq!(count_meetings(at, &[[0, 1, 2]], &[[3, 4, 5]]).0, 0);
-        assert_eq!(count_meetings(at, &[[0, 1, 2]], &[[6, 7, 8], [3, 4, 5]]).0, 1);
-        assert_eq!(count_meetings(at, &[[0, 1, 2], [6, 7, 8]], &[]).0, 1);
-        assert_eq!(count_meetings(at, &[[3, 4, 5]], &[[6, 7, 8], [0, 1, 2]]).0, 0);
+        assert_eq!(count_meetings(at, &[[0, 1, 2]], &[[3, 4, 5]], false).0, 0);
+        assert_eq!(count_meetings(at, &[[0, 1, 2]], &[[6, 7, 8], [3, 4, 5]], false).0, 1);
+        assert_eq!(count_meetings(at, &[[0, 1, 2], [6, 7, 8]], &[], false).0, 1);
+        assert_eq!(count_meetings(at, &[[3, 4, 5]], &[[6, 7, 8], [0, 1, 2]], false).0, 0);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Result};
 
 /// Triangles looked at by one thread at a time.
-const CHUNK: usize = 1 << 16;
+pub(crate) const CHUNK: usize = 1 << 16;
 
 /// The triangles within some rings of given vertices, with vertices renumbered.
 ///
@@ -123,12 +123,24 @@ fn touching(marked: &[bool], triangles: &[[u32; 3]]) -> Result<Vec<u32>> {
         }
         Ok(found)
     };
-    let parts = triangles.par_chunks(CHUNK).enumerate().map(scan).collect::<Vec<_>>();
     let mut all = vec![];
-    for part in parts {
+    for part in in_chunks(triangles, scan) {
         all.append(&mut part?);
     }
     Ok(all)
+}
+
+/// What `scan` makes of each chunk of `triangles`, given with its number, in order; in parallel if there
+/// are several.
+pub(crate) fn in_chunks<T: Send>(
+    triangles: &[[u32; 3]],
+    scan: impl Fn((usize, &[[u32; 3]])) -> T + Send + Sync,
+) -> Vec<T> {
+    if triangles.len() <= CHUNK {
+        // To wake the other threads takes longer.
+        return vec![scan((0, triangles))];
+    }
+    triangles.par_chunks(CHUNK).enumerate().map(scan).collect()
 }
 
 /// True if a triangle names a vertex twice.

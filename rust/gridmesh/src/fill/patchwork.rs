@@ -21,6 +21,8 @@ pub(crate) struct Patchwork {
     /// The neighbours of vertex `v` are `near[start[v]..start[v + 1]]`, ascending.
     pub start: Vec<u32>,
     pub near: Vec<u32>,
+    /// For each triangle and each of its corners: where in `near` the edge that faces it is, from either end.
+    slots: Vec<[[u32; 2]; 3]>,
     /// The triangles at vertex `v` are `fans[fan_start[v]..fan_start[v + 1]]`, each as its number and
     /// the two vertices that follow `v` in it.
     pub fan_start: Vec<u32>,
@@ -66,6 +68,7 @@ impl Patchwork {
             n_patch: patch.len(),
             start: vec![0],
             near: vec![],
+            slots: vec![],
             fan_start: vec![0; count + 1],
             fans: vec![[0; 3]; 3 * triangles.len()],
             closed: vec![],
@@ -101,6 +104,17 @@ impl Patchwork {
             self.near.extend_from_slice(&ends);
             self.start.push(self.near.len() as u32);
         }
+        let slot = |p: u32, q: u32| {
+            let range = self.range(p as usize);
+            (range.start + self.near[range].iter().position(|&u| u == q).unwrap_or_default()) as u32
+        };
+        let facing = |t: &[u32; 3]| {
+            [0, 1, 2].map(|k| {
+                let (p, q) = (t[(k + 1) % 3], t[(k + 2) % 3]);
+                [slot(p, q), slot(q, p)]
+            })
+        };
+        self.slots = self.triangles.iter().map(facing).collect();
     }
 
     /// The number of all vertices.
@@ -133,19 +147,15 @@ impl Patchwork {
     pub fn cotangents(&self, positions: &[DVec3]) -> Vec<f64> {
         const THIN: f64 = 0.05;
         let mut weights = vec![0.0; self.near.len()];
-        for corners in &self.triangles {
+        for (corners, slots) in self.triangles.iter().zip(&self.slots) {
             let [a, b, c] = corners.map(|v| positions[v as usize]);
             let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
             let doubled = (b - a).cross(c - a).length().max(THIN * longest).max(f64::MIN_POSITIVE);
             let dots = [(b - a).dot(c - a), (c - b).dot(a - b), (a - c).dot(b - c)];
             for k in 0..3 {
-                let (p, q) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
                 let half = 0.5 * dots[k] / doubled;
-                for (p, q) in [(p, q), (q, p)] {
-                    let range = self.range(p as usize);
-                    if let Ok(slot) = self.near[range.clone()].binary_search(&q) {
-                        weights[range.start + slot] += half;
-                    }
+                for slot in slots[k] {
+                    weights[slot as usize] += half;
                 }
             }
         }

@@ -95,28 +95,17 @@ impl LeastSquares {
         Ok(LeastSquares { unknowns, start, columns, slots, col_ptr, row_idx, symbolic })
     }
 
-    /// Number of equations.
-    pub fn len(&self) -> usize {
-        self.start.len() - 1
-    }
-
-    /// The unknowns of equation `i`.
-    pub fn row(&self, i: usize) -> &[u32] {
-        &self.columns[self.range(i)]
-    }
-
     /// Where the coefficients of equation `i` are.
-    pub fn range(&self, i: usize) -> std::ops::Range<usize> {
+    fn range(&self, i: usize) -> std::ops::Range<usize> {
         self.start[i] as usize..self.start[i + 1] as usize
     }
 
-    /// Solves for `K` right sides at once; `damping` is added to the diagonal.
+    /// Solves for `K` right sides at once.
     pub fn solve<const K: usize>(
         &self,
         coefficients: &[f64],
         weights: &[f64],
         right: &[[f64; K]],
-        damping: impl Fn(usize) -> f64,
     ) -> Result<Vec<[f64; K]>> {
         let n = self.unknowns;
         let mut values = vec![0.0; self.row_idx.len()];
@@ -134,9 +123,6 @@ impl LeastSquares {
                     x[r * n + c as usize] += a * value;
                 }
             }
-        }
-        for c in 0..n {
-            values[self.col_ptr[c + 1] - 1] += damping(c);
         }
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &self.col_ptr, None, &self.row_idx);
         let mut factor = vec![0.0; self.symbolic.len_val()];
@@ -178,7 +164,7 @@ mod tests {
         let system = LeastSquares::new(2, start, [0, 1].repeat(5)).unwrap();
         let coefficients = (0..5).flat_map(|t| [1.0, f64::from(t)]).collect::<Vec<_>>();
         let right = [1.0, 3.1, 4.9, 7.1, 8.9].map(|y| [y, 2.0 * y]);
-        let found = system.solve(&coefficients, &[1.0; 5], &right, |_| 0.0).unwrap();
+        let found = system.solve(&coefficients, &[1.0; 5], &right).unwrap();
         assert!((found[0][0] - 1.04).abs() < 1e-12 && (found[1][0] - 1.98).abs() < 1e-12, "{found:?}");
         assert!((found[1][1] - 3.96).abs() < 1e-12);
         assert!(LeastSquares::new(2, vec![0, 1], vec![0]).is_err());

@@ -9,8 +9,7 @@ const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
 
 /// One sweep over the new vertices, each moved in its tangent plane to where its triangles are best.
 ///
-/// A triangle's badness is the sum of its squared sides over its area (1 if equilateral); the fourth
-/// powers are summed, so that the worst count most. One Newton step with a positive definite model is
+/// A triangle's badness is the sum of its squared sides over its area (1 if equilateral). One Newton step with a positive definite model is
 /// taken, halved until the sum is smaller. Off a curved surface this leads by second-order
 /// terms only, which the next normal step removes.
 pub(crate) fn sweep(work: &Patchwork, positions: &mut [DVec3]) {
@@ -34,14 +33,13 @@ pub(crate) fn sweep(work: &Patchwork, positions: &mut [DVec3]) {
             let ds = -2.0 * (a + b);
             let (ds, da) = (DVec2::new(ds.dot(e), ds.dot(f)), DVec2::new(widen.dot(e), widen.dot(f)));
             let badness = sides / area / EQUILATERAL;
-            present += badness.powi(4);
-            let weight = badness * badness * badness / area;
+            present += badness;
+            let weight = 1.0 / area;
             slope += weight * (ds - da * (sides / area));
             let (m, n) = (1.0 / area, 2.0 * sides / (area * area));
-            let steep = (ds - da * (sides / area)) * (3.0 / sides).sqrt();
-            xx += weight * (4.0 - 2.0 * m * ds.x * da.x + n * da.x * da.x + steep.x * steep.x);
-            yy += weight * (4.0 - 2.0 * m * ds.y * da.y + n * da.y * da.y + steep.y * steep.y);
-            xy += weight * (n * da.x * da.y - m * (ds.x * da.y + ds.y * da.x) + steep.x * steep.y);
+            xx += weight * (4.0 - 2.0 * m * ds.x * da.x + n * da.x * da.x);
+            yy += weight * (4.0 - 2.0 * m * ds.y * da.y + n * da.y * da.y);
+            xy += weight * (n * da.x * da.y - m * (ds.x * da.y + ds.y * da.x));
         }
         let determinant = xx * yy - xy * xy;
         if determinant.is_nan() || determinant <= 0.0 {
@@ -54,7 +52,7 @@ pub(crate) fn sweep(work: &Patchwork, positions: &mut [DVec3]) {
             let sum = fan.iter().map(|&[_, i, j]| {
                 let (sides, area, _) =
                     shape(positions[i as usize] - there, positions[j as usize] - there, normal);
-                (sides / area / EQUILATERAL).powi(4)
+                sides / area / EQUILATERAL
             });
             if sum.sum::<f64>() < present {
                 positions[v] = there;
