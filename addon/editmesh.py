@@ -126,35 +126,42 @@ class EditMesh:
             return Problem(reason, (a, b), ((a, b),))
         return None
 
-    def add(self, patches: Sequence[Patch], *, quads: bool) -> Added:
-        """Put patches into the mesh and select them; if that fails, none of them stays."""
-        bm, added = self.bm, Added()
+    def add(self, patches: Sequence[Patch], added: Added) -> None:
+        """Put patches into the mesh, and write into `added` what was made."""
+        bm = self.bm
         surroundings = [
             attributes.Surroundings(bm, [bm.verts[index] for index in patch.loop]) for patch in patches
         ]
         face_set = attributes.new_face_set(bm)
-        made: list[Any] = []
-        try:
-            for patch, around in zip(patches, surroundings, strict=True):
-                faces = self._add_one(patch, around, made)
-                if face_set is not None:
-                    for face in faces:
-                        face[face_set[0]] = face_set[1]
-                added.faces += faces
-                added.torn += around.torn > 0
-                added.broken += around.broken
-        except BaseException:
-            self._take_back(made)
-            raise
+        for patch, around in zip(patches, surroundings, strict=True):
+            faces = self._add_one(patch, around, added.elements)
+            if face_set is not None:
+                for face in faces:
+                    face[face_set[0]] = face_set[1]
+            added.faces += faces
+            added.torn += around.torn > 0
+            added.broken += around.broken
+
+    def take_back(self, added: Added) -> None:
+        """Remove what was made: faces first, for with an edge or a vertex goes what is built on it."""
+        for kind, elements in (
+            (bmesh.types.BMFace, self.bm.faces),
+            (bmesh.types.BMEdge, self.bm.edges),
+            (bmesh.types.BMVert, self.bm.verts),
+        ):
+            for element in added.elements:
+                if isinstance(element, kind):
+                    elements.remove(element)
+
+    def finish(self, added: Added, *, quads: bool) -> None:
+        """Select what was made, joined to quads where asked for, and hand it to Blender."""
         self.deselect()
         if quads:
             joined = bmesh.ops.join_triangles(
-                bm, faces=added.faces, angle_face_threshold=_BENT, angle_shape_threshold=_SKEW
+                self.bm, faces=added.faces, angle_face_threshold=_BENT, angle_shape_threshold=_SKEW
             )
-            added.faces = [face for face in added.faces if face.is_valid] + [
-                face for face in joined["faces"] if face.is_valid
-            ]
-            added.faces = list(dict.fromkeys(added.faces))
+            faces = dict.fromkeys((*added.faces, *joined["faces"]))
+            added.faces = [face for face in faces if face.is_valid]
         for face in added.faces:
             face.normal_update()
         for vertex in dict.fromkeys(vertex for face in added.faces for vertex in face.verts):
@@ -162,7 +169,6 @@ class EditMesh:
         for face in added.faces:
             face.select_set(True)
         self.update()
-        return added
 
     def _add_one(self, patch: Patch, around: attributes.Surroundings, made: list[Any]) -> list[Any]:
         bm = self.bm
@@ -194,17 +200,6 @@ class EditMesh:
                 face.material_index = self.ob.active_material_index
         around.write(new, faces, patch.extend)
         return faces
-
-    def _take_back(self, made: list[Any]) -> None:
-        """Remove elements again: faces first, for removing an edge or a vertex removes what is built on it."""
-        for kind, elements in (
-            (bmesh.types.BMFace, self.bm.faces),
-            (bmesh.types.BMEdge, self.bm.edges),
-            (bmesh.types.BMVert, self.bm.verts),
-        ):
-            for element in made:
-                if isinstance(element, kind):
-                    elements.remove(element)
 
     def deselect(self) -> None:
         """Select nothing."""
@@ -281,6 +276,8 @@ class Patch:
 class Added:
     """What came into a mesh."""
 
+    elements: list[Any] = field(default_factory=list)
+    """Everything, in the order in which it was made."""
     faces: list[Any] = field(default_factory=list)
     torn: int = 0
     """Loops along which corner data does not agree."""

@@ -99,9 +99,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         problems = [job.name(problem, several) for job in jobs for problem in job.found.problems]
         if not any(job.patches for job in jobs):
             return self._refuse(jobs, problems)
-        for job in jobs:
-            if job.patches:
-                job.add(quads=self.use_quads)
+        _add_all([job for job in jobs if job.patches], quads=self.use_quads)
         self._tell(jobs, problems, perf_counter() - started)
         return {"FINISHED"}
 
@@ -220,14 +218,23 @@ class _Job:
             )
             self.reports.append(fill.report)
 
-    def add(self, *, quads: bool) -> None:
-        """Put the patches into the mesh."""
-        self.added = self.edited.add(self.patches, quads=quads)
-
     def name(self, problem: Problem, several: bool) -> str:
         """Message of a problem, with the object's name where there are several."""
         own = f"'{self.edited.name}'"
         return f"{own}: {problem.reason}" if several and own not in problem.reason else problem.reason
+
+
+def _add_all(jobs: list[_Job], *, quads: bool) -> None:
+    """Put all patches into their meshes; if one fails, no mesh keeps any."""
+    try:
+        for job in jobs:
+            job.edited.add(job.patches, job.added)
+    except BaseException:
+        for job in jobs:
+            job.edited.take_back(job.added)
+        raise
+    for job in jobs:
+        job.edited.finish(job.added, quads=quads)
 
 
 def _forgive_unselected(jobs: list[_Job]) -> None:

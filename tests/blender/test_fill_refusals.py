@@ -262,14 +262,16 @@ def test_refusal_is_no_undo_step():
 
 
 def test_failure_on_the_way_leaves_nothing(monkeypatch):
-    ob = suzanne()
-    before = Before(ob)
-    edit(ob)
+    """In the second of two meshes, after patches are in both."""
+    meshes = suzanne(), ball_with_hole()
+    befores = [Before(ob) for ob in meshes]
+    activate(*meshes)
+    bpy.ops.object.mode_set(mode="EDIT")
     write, calls = editmesh.attributes.Surroundings.write, []
 
     def failing(self, *args):
         calls.append(self)
-        if len(calls) == 3:
+        if len(calls) == 5:
             raise MemoryError
         write(self, *args)
 
@@ -277,10 +279,11 @@ def test_failure_on_the_way_leaves_nothing(monkeypatch):
     with pytest.raises(RuntimeError, match="MemoryError"):
         bpy.ops.mesh.gridmesh_fill(holes="ALL", max_edges=0)
     leave()
-    assert len(calls) == 3
-    assert np.array_equal(vertices(ob.data), before.points)
-    assert faces_of(ob.data) == before.faces
-    assert {frozenset(edge.vertices) for edge in ob.data.edges} == before.edges
+    assert len(calls) == 5
+    for ob, before in zip(meshes, befores, strict=True):
+        assert np.array_equal(vertices(ob.data), before.points)
+        assert faces_of(ob.data) == before.faces
+        assert {frozenset(edge.vertices) for edge in ob.data.edges} == before.edges
 
 
 class TestStopping:
