@@ -307,12 +307,12 @@ impl Job<'_> {
         }
     }
 
-    /// The edge length at which a grown patch has about `n` triangles: growth stops inside the
-    /// curve, on average 0.28 triangles for each edge length of curve short of its area.
+    /// The edge length at which a patch has about `n` triangles. The lattice path cuts off what it
+    /// cannot follow, and growth stops inside the curve: on average a patch is so many triangles for
+    /// each edge length of curve short of its area.
     fn first_guess(&self, n: usize) -> f64 {
-        const SHORT: f64 = 0.28;
         let area = self.area / (0.5 * crate::lattice::ROW_HEIGHT);
-        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.0 } else { SHORT };
+        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.09 } else { 0.28 };
         let short = short * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
         2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
     }
