@@ -48,7 +48,8 @@ pub(crate) fn near_boxes(boxes: &[Box3], positions: &[DVec3], triangles: &[[u32;
     let all = Box3::around(boxes.iter().flat_map(|b| [b.low, b.high]));
     // Cells that some box meets; a triangle that meets none of them is near no box.
     let size = ((all.high - all.low) / CELLS as f64).max(DVec3::splat(f64::MIN_POSITIVE));
-    let cell = |p: DVec3| ((p - all.low) / size).clamp(DVec3::ZERO, DVec3::splat(CELLS as f64 - 1.0)).as_uvec3();
+    let cell =
+        |p: DVec3| ((p - all.low) / size).clamp(DVec3::ZERO, DVec3::splat(CELLS as f64 - 1.0)).as_uvec3();
     let several = boxes.len() > 1;
     let mut taken = vec![false; if several { CELLS * CELLS * CELLS } else { 0 }];
     let place = |x: u32, y: u32, z: u32| (z as usize * CELLS + y as usize) * CELLS + x as usize;
@@ -228,7 +229,8 @@ mod tests {
         let boxes = [[1.0, 2.0, 0.0], [20.5, 3.2, 0.1], [29.0, 29.0, 0.9], [8.0, 8.0, 5.0]]
             .map(|p| Box3 { low: DVec3::from(p), high: DVec3::from(p) + 1.3 });
         let own = |t: [u32; 3]| Box3::around(t.map(|v| positions[v as usize]));
-        let wanted = boxes.map(|b| (0..900u32).filter(|&t| own(triangles[t as usize]).meets(&b)).collect::<Vec<_>>());
+        let wanted =
+            boxes.map(|b| (0..900u32).filter(|&t| own(triangles[t as usize]).meets(&b)).collect::<Vec<_>>());
         assert_eq!(near_boxes(&boxes, &positions, &triangles), wanted);
         assert_eq!(near_boxes(&boxes[1..2], &positions, &triangles), wanted[1..2]);
         assert!(near_boxes(&[], &positions, &triangles).is_empty());
