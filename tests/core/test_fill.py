@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import doctest
+
 import numpy as np
 import pytest
 from checks import check_array, check_fans, edges_of, half_edges
@@ -318,6 +320,15 @@ def test_surplus_faces_are_named() -> None:
     with pytest.raises(gridmesh.GridMeshError) as caught:
         gridmesh.fill_hole(vertices, faces, np.arange(10))
     assert caught.value.kind == "faces_on_both_sides"
+
+
+@pytest.mark.parametrize("function", [gridmesh.fill_hole, gridmesh.fill_holes], ids=lambda f: f.__name__)
+def test_examples_run(function) -> None:
+    example = doctest.DocTestParser().get_doctest(function.__doc__, {}, function.__name__, None, 0)
+    assert example.examples
+    failures: list[str] = []
+    doctest.DocTestRunner(verbose=False).run(example, out=failures.append)
+    assert not failures, "".join(failures)
 
 
 @settings(max_examples=60, deadline=None)

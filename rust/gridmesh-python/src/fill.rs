@@ -350,11 +350,8 @@ enum Faces<'py> {
 impl<'py> Mesh<'py> {
     fn read(vertices: &Bound<'py, PyAny>, triangles: &Bound<'py, PyAny>) -> PyResult<Self> {
         let positions = read_positions(&positions_argument(vertices))?;
-        let it = Argument {
-            name: "triangles",
-            value: triangles,
-            allowed: "an (m, 3) array of whole numbers",
-        };
+        let it =
+            Argument { name: "triangles", value: triangles, allowed: "an (m, 3) array of whole numbers" };
         let array = it.array()?;
         if array.len() > 0 && (array.ndim() != 2 || array.shape()[1] != 3) {
             return Err(it.wrong_shape(&format!("has shape {:?}", array.shape())));

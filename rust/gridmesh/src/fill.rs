@@ -109,7 +109,7 @@ pub struct FillReport {
     pub min_angle: f64,
     /// Inner edges of the patch with more than 120 degrees between the triangles.
     pub folds: usize,
-    /// Pairs of triangles, at least one of them new, that meet where they should not.
+    /// Pairs of triangles, at least one of them new, that meet where they should not; counted up to 100,000.
     pub self_intersections: usize,
     /// Fallbacks: solves that failed and were replaced by simpler ones.
     pub repaired: usize,
@@ -484,9 +484,9 @@ fn wanted(loop_: &[u32], rim: &Rim) -> Vec<i32> {
         let Some(v) = rim.local(loop_[k]) else { return 4 };
         let near = rim.neighbours(v);
         // Loop edges that the mesh has not got count as well.
-        let missing = [loop_[(k + n - 1) % n], loop_[(k + 1) % n]].into_iter().filter(|&u| {
-            rim.local(u).is_none_or(|u| near.binary_search(&u).is_err())
-        });
+        let missing = [loop_[(k + n - 1) % n], loop_[(k + 1) % n]]
+            .into_iter()
+            .filter(|&u| rim.local(u).is_none_or(|u| near.binary_search(&u).is_err()));
         8 - (near.len() + missing.count()) as i32
     };
     (0..n).map(outside).collect()

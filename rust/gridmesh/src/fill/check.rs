@@ -159,7 +159,8 @@ fn meeting(p: DVec3, q: DVec3, a: DVec3, b: DVec3) -> Option<DVec3> {
     let (u, v, w) = (q - p, b - a, p - a);
     let (uu, uv, vv, uw, vw) = (u.dot(u), u.dot(v), v.dot(v), u.dot(w), v.dot(w));
     let determinant = uu * vv - uv * uv;
-    let mut s = if determinant > 1e-14 * uu * vv { ((uv * vw - vv * uw) / determinant).clamp(0.0, 1.0) } else { 0.0 };
+    let mut s =
+        if determinant > 1e-14 * uu * vv { ((uv * vw - vv * uw) / determinant).clamp(0.0, 1.0) } else { 0.0 };
     let t = ((uv * s + vw) / vv).clamp(0.0, 1.0);
     s = ((uv * t - uw) / uu).clamp(0.0, 1.0);
     let (x, y) = (p + s * u, a + t * v);

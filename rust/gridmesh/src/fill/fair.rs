@@ -91,7 +91,12 @@ impl<'a> Bending<'a> {
 
     /// Moves the new vertices along their normals so that the bending is least (to first order). The step
     /// is halved until it lowers the true bending; the energy before and after, for the caller to judge.
-    pub fn normal_step(&self, positions: &mut [DVec3], seam: f64, target: Option<&[f64]>) -> Result<[f64; 2]> {
+    pub fn normal_step(
+        &self,
+        positions: &mut [DVec3],
+        seam: f64,
+        target: Option<&[f64]>,
+    ) -> Result<[f64; 2]> {
         const HALVINGS: usize = 4;
         let work = self.work;
         let state = self.state(positions, seam, target);

@@ -169,7 +169,8 @@ impl Shape {
         if all.is_empty() {
             return Ok(all);
         }
-        let weights = work.cotangents(&self.positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
+        let weights =
+            work.cotangents(&self.positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
         let membrane = Membrane::new(work)?;
         for first in (0..columns).step_by(TOGETHER) {
             let part = first..columns.min(first + TOGETHER);

@@ -13,6 +13,12 @@ use crate::segments::orientation;
 /// Cells along each axis of the grid that tells which boxes may be near.
 const CELLS: usize = 48;
 
+/// Meetings that are counted at most.
+pub(crate) const MOST: usize = 100_000;
+
+/// Triangles between two looks at how many meetings there are.
+const BLOCK: usize = 4096;
+
 /// From this number of triangles on the work is shared among threads.
 const MANY: usize = 4096;
 
@@ -48,7 +54,8 @@ pub(crate) fn near_boxes(boxes: &[Box3], positions: &[DVec3], triangles: &[[u32;
     let all = Box3::around(boxes.iter().flat_map(|b| [b.low, b.high]));
     // Cells that some box meets; a triangle that meets none of them is near no box.
     let size = ((all.high - all.low) / CELLS as f64).max(DVec3::splat(f64::MIN_POSITIVE));
-    let cell = |p: DVec3| ((p - all.low) / size).clamp(DVec3::ZERO, DVec3::splat(CELLS as f64 - 1.0)).as_uvec3();
+    let cell =
+        |p: DVec3| ((p - all.low) / size).clamp(DVec3::ZERO, DVec3::splat(CELLS as f64 - 1.0)).as_uvec3();
     let several = boxes.len() > 1;
     let mut taken = vec![false; if several { CELLS * CELLS * CELLS } else { 0 }];
     let place = |x: u32, y: u32, z: u32| (z as usize * CELLS + y as usize) * CELLS + x as usize;
@@ -116,7 +123,8 @@ fn boxed(b: &Box3, data: u32) -> Boxed {
 /// (exact predicates), and a corner of the first such new triangle.
 ///
 /// Vertices on the same point count as one: a mesh along a seam of doubled vertices touches itself
-/// all along, and means nothing by it. `apart`: the new triangles are known not to meet each other.
+/// all along, and means nothing by it. Counting ends at [`MOST`]: in a tangle every triangle meets every
+/// other. `apart`: the new triangles are known not to meet each other.
 pub(crate) fn count_meetings(
     position: impl Fn(u32) -> DVec3,
     new: &[[u32; 3]],
@@ -165,13 +173,21 @@ pub(crate) fn count_meetings(
         });
         hits.count()
     };
-    let counts: Vec<usize> = if new.len() < MANY {
-        (0..new.len()).map(meets).collect()
-    } else {
-        (0..new.len()).into_par_iter().map(meets).collect()
-    };
-    let first = counts.iter().position(|&count| count > 0);
-    (counts.iter().sum(), first.map(|i| vertices[new[i][0] as usize]))
+    let (mut sum, mut first) = (0, None);
+    for start in (0..new.len()).step_by(BLOCK) {
+        let block = start..new.len().min(start + BLOCK);
+        let counts: Vec<usize> = if new.len() < MANY {
+            block.map(meets).collect()
+        } else {
+            block.into_par_iter().map(meets).collect()
+        };
+        sum += counts.iter().sum::<usize>();
+        first = first.or(counts.iter().position(|&count| count > 0).map(|k| start + k));
+        if sum >= MOST {
+            break;
+        }
+    }
+    (sum.min(MOST), first.map(|i| vertices[new[i][0] as usize]))
 }
 
 /// True if a patch is a graph over the plane of its loop's mean normal, which proves that it does not meet
@@ -228,7 +244,8 @@ mod tests {
         let boxes = [[1.0, 2.0, 0.0], [20.5, 3.2, 0.1], [29.0, 29.0, 0.9], [8.0, 8.0, 5.0]]
             .map(|p| Box3 { low: DVec3::from(p), high: DVec3::from(p) + 1.3 });
         let own = |t: [u32; 3]| Box3::around(t.map(|v| positions[v as usize]));
-        let wanted = boxes.map(|b| (0..900u32).filter(|&t| own(triangles[t as usize]).meets(&b)).collect::<Vec<_>>());
+        let wanted =
+            boxes.map(|b| (0..900u32).filter(|&t| own(triangles[t as usize]).meets(&b)).collect::<Vec<_>>());
         assert_eq!(near_boxes(&boxes, &positions, &triangles), wanted);
         assert_eq!(near_boxes(&boxes[1..2], &positions, &triangles), wanted[1..2]);
         assert!(near_boxes(&[], &positions, &triangles).is_empty());

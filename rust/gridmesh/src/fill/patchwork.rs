@@ -53,13 +53,11 @@ impl Patchwork {
         // `seeds` is ascending, and so are the mesh's numbers in it.
         let outer =
             seeds.iter().map(|&v| rim.ids[v as usize]).filter(|&v| place(v).is_none()).collect::<Vec<_>>();
-        let number = |v: u32| {
-            place(v).unwrap_or_else(|| (end + outer.binary_search(&v).unwrap_or_default()) as u32)
-        };
+        let number =
+            |v: u32| place(v).unwrap_or_else(|| (end + outer.binary_search(&v).unwrap_or_default()) as u32);
         let mut triangles = patch.to_vec();
-        triangles.extend(
-            around.iter().map(|&t| rim.triangles[t as usize].map(|v| number(rim.ids[v as usize]))),
-        );
+        triangles
+            .extend(around.iter().map(|&t| rim.triangles[t as usize].map(|v| number(rim.ids[v as usize]))));
         let count = end + outer.len();
         let mut it = Patchwork {
             n,
@@ -149,7 +147,8 @@ impl Patchwork {
         let mut weights = vec![0.0; self.near.len()];
         for (corners, slots) in self.triangles.iter().zip(&self.slots) {
             let [a, b, c] = corners.map(|v| positions[v as usize]);
-            let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+            let longest =
+                (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
             let doubled = (b - a).cross(c - a).length().max(THIN * longest).max(f64::MIN_POSITIVE);
             let dots = [(b - a).dot(c - a), (c - b).dot(a - b), (a - c).dot(b - c)];
             for k in 0..3 {

@@ -59,10 +59,8 @@ pub(crate) fn unroll(positions: &[DVec3]) -> Unrolled {
     let finish = |points: Vec<DVec2>, method| {
         let n = points.len();
         let change = |k: usize| {
-            let (flat, true_length) = (
-                points[k].distance(points[(k + 1) % n]),
-                positions[k].distance(positions[(k + 1) % n]),
-            );
+            let (flat, true_length) =
+                (points[k].distance(points[(k + 1) % n]), positions[k].distance(positions[(k + 1) % n]));
             (flat / true_length - 1.0).abs()
         };
         let distortion = (0..n).map(change).fold(0.0, f64::max);
@@ -199,8 +197,11 @@ fn developed(positions: &[DVec3]) -> Vec<DVec2> {
             continue;
         }
         let j = apex[i * m + k] as usize;
-        let (a, b, c) =
-            (corners[j].distance(corners[i]), corners[j].distance(corners[k]), corners[k].distance(corners[i]));
+        let (a, b, c) = (
+            corners[j].distance(corners[i]),
+            corners[j].distance(corners[k]),
+            corners[k].distance(corners[i]),
+        );
         let along = (flat[k] - flat[i]).normalize_or(DVec2::X);
         let x = if c > 0.0 { 0.5 * (a * a + c * c - b * b) / c } else { a };
         let x = x.clamp(-a, a);
@@ -269,11 +270,7 @@ fn evened(positions: &[DVec3], flat: &[DVec2], share: f64) -> Vec<DVec2> {
 fn inscribed(positions: &[DVec3]) -> Vec<DVec2> {
     let n = positions.len();
     let lengths = (0..n).map(|k| positions[k].distance(positions[(k + 1) % n])).collect::<Vec<_>>();
-    let (longest, &most) = lengths
-        .iter()
-        .enumerate()
-        .max_by(|a, b| a.1.total_cmp(b.1))
-        .unwrap_or((0, &1.0));
+    let (longest, &most) = lengths.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap_or((0, &1.0));
     let total: f64 = lengths.iter().sum();
     // The angles at the centre as a function of the curvature; at the largest one the longest edge is
     // a diameter. If the others then fall short of the other half, the centre lies beyond that edge.
@@ -283,8 +280,11 @@ fn inscribed(positions: &[DVec3]) -> Vec<DVec2> {
     let (mut low, mut high) = (0.0, 2.0 / most);
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
-        let excess =
-            if inside { others(middle) + angle(most, middle) - TAU } else { angle(most, middle) - others(middle) };
+        let excess = if inside {
+            others(middle) + angle(most, middle) - TAU
+        } else {
+            angle(most, middle) - others(middle)
+        };
         // The long edge's angle catches up with the others' from below as the curvature grows.
         if excess < 0.0 { low = middle } else { high = middle }
     }
@@ -316,8 +316,7 @@ mod tests {
     fn a_bent_strip_develops() {
         // A band around 300 degrees of a cylinder: its projection covers itself.
         let arc = |k: i32| f64::from(k) * 5.0 / 20.0;
-        let mut positions =
-            (0..=20).map(|k| DVec3::new(arc(k).cos(), arc(k).sin(), 0.0)).collect::<Vec<_>>();
+        let mut positions = (0..=20).map(|k| DVec3::new(arc(k).cos(), arc(k).sin(), 0.0)).collect::<Vec<_>>();
         positions.extend((0..=20).rev().map(|k| DVec3::new(arc(k).cos(), arc(k).sin(), 0.4)));
         let unrolled = unroll(&positions);
         assert_eq!(unrolled.method, Unrolling::Developed);
