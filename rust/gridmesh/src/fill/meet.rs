@@ -126,11 +126,18 @@ fn boxed(b: &Box3, data: u32) -> Boxed {
 /// all along, and means nothing by it. Counting ends at [`MOST`]: in a tangle every triangle meets every
 /// other. `apart`: the new triangles are known not to meet each other.
 pub(crate) fn count_meetings(
-    position: impl Fn(u32) -> DVec3,
+    position: impl Fn(u32) -> DVec3 + Sync,
     new: &[[u32; 3]],
     old: &[[u32; 3]],
     apart: bool,
 ) -> (usize, Option<DVec3>) {
+    let kept;
+    let new = if apart && new.len() >= MANY {
+        kept = touching_boxes(&position, new, old);
+        kept.as_slice()
+    } else {
+        new
+    };
     let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
     let mut ids = new.iter().chain(old).flatten().copied().collect::<Vec<_>>();
     ids.sort_unstable();
@@ -188,6 +195,22 @@ pub(crate) fn count_meetings(
         }
     }
     (sum.min(MOST), first.map(|i| vertices[new[i][0] as usize]))
+}
+
+/// The new triangles whose boxes meet that of an old one, in order.
+fn touching_boxes(
+    position: &(impl Fn(u32) -> DVec3 + Sync),
+    new: &[[u32; 3]],
+    old: &[[u32; 3]],
+) -> Vec<[u32; 3]> {
+    let around = |t: &[u32; 3]| Box3::around(t.map(position));
+    let tree = RTree::bulk_load(old.iter().map(|t| boxed(&around(t), 0)).collect());
+    let touches = |t: &&[u32; 3]| {
+        let own = around(t);
+        let envelope = AABB::from_corners(own.low.into(), own.high.into());
+        tree.locate_in_envelope_intersecting(&envelope).next().is_some()
+    };
+    new.par_iter().filter(touches).copied().collect()
 }
 
 /// True if a patch is a graph over the plane of its loop's mean normal, which proves that it does not meet
