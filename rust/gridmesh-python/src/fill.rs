@@ -396,7 +396,7 @@ fn read_positions<'py>(it: &Argument<'_, 'py>) -> PyResult<PyArrayLike2<'py, f64
     if array.ndim() != 2 || array.shape()[1] != 3 {
         return Err(it.wrong_shape(&format!("has shape {:?}", array.shape())));
     }
-    Ok(array.extract()?)
+    array.extract().map_err(PyErr::from)
 }
 
 /// In place if the memory is laid out in rows.

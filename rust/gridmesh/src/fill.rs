@@ -15,6 +15,7 @@ mod meet;
 mod mesh;
 mod patchwork;
 mod quality;
+mod regrid;
 mod settle;
 mod small;
 mod solver;
@@ -33,6 +34,7 @@ use self::flat::{FlatOptions, Method, fill_flat};
 use self::meet::{Box3, count_meetings, is_graph, near_boxes};
 use self::mesh::Rim;
 use self::patchwork::Patchwork;
+pub use self::regrid::{Regrid, regrid};
 pub use self::unroll::Unrolling;
 use crate::error::{Error, Result};
 use crate::metrics::min_angle;
@@ -157,7 +159,7 @@ impl Grid {
 }
 
 /// What is needed to solve the same patch again.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Shape {
     work: Patchwork,
     loop_: Vec<u32>,

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use glam::DVec3;
+use gridmesh::error::Result;
 use gridmesh::fill::{Fill, FillOptions, Smooth, fill_hole, fill_holes};
 use gridmesh::metrics::check_mesh;
 use gridmesh::progress::Progress;
@@ -38,8 +39,8 @@ fn closed(vertices: &[DVec3], triangles: &[[u32; 3]], fills: &[Fill]) -> (Vec<DV
     (points, faces)
 }
 
-fn sound(fills: Vec<gridmesh::error::Result<Fill>>) -> Vec<Fill> {
-    fills.into_iter().map(|fill| fill.unwrap()).collect()
+fn sound(fills: Vec<Result<Fill>>) -> Result<Vec<Fill>> {
+    fills.into_iter().collect()
 }
 
 #[test]
@@ -48,7 +49,8 @@ fn holes_of_a_torus_are_closed() {
         torus(48, 24, |i, j| (i / 6) % 2 == 0 && (j / 6) % 2 == 0 && (i % 6 + j % 6) > 2);
     for smooth in [Smooth::Flat, Smooth::Tangent, Smooth::Curvature] {
         let options = FillOptions { smooth, ..FillOptions::default() };
-        let fills = sound(fill_holes(&vertices, &triangles, None, &options, Progress::NONE).unwrap());
+        let fills =
+            fill_holes(&vertices, &triangles, None, &options, Progress::NONE).and_then(sound).unwrap();
         assert_eq!(fills.len(), 8);
         let (points, faces) = closed(&vertices, &triangles, &fills);
         let check = check_mesh(points.len(), &faces);
@@ -71,7 +73,7 @@ fn loops_that_share_corners_do_not_share_new_edges() {
         loops.push(vec![0, n, 1, n + 1]);
     }
     let fills = fill_holes(&vertices, &[], Some(&loops), &FillOptions::default(), Progress::NONE);
-    let (_, faces) = closed(&vertices, &[], &sound(fills.unwrap()));
+    let (_, faces) = closed(&vertices, &[], &fills.and_then(sound).unwrap());
     let mut edges: BTreeMap<[u32; 2], usize> = BTreeMap::new();
     for t in &faces {
         for k in 0..3 {
@@ -88,7 +90,9 @@ fn threads_change_nothing() {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let options = FillOptions::default();
-        pool.install(|| sound(fill_holes(&vertices, &triangles, None, &options, Progress::NONE).unwrap()))
+        pool.install(|| {
+            fill_holes(&vertices, &triangles, None, &options, Progress::NONE).and_then(sound).unwrap()
+        })
     };
     let (one, three) = (run(1), run(3));
     assert_eq!(one.len(), 12);

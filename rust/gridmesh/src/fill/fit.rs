@@ -23,7 +23,7 @@ const SETTLED: f64 = 1e-3;
 
 /// Weights are limited to this from below where all must be positive, so that no value leaves the range
 /// of those given.
-const LEAST_WEIGHT: f64 = 1e-3;
+pub(super) const LEAST_WEIGHT: f64 = 1e-3;
 
 /// A loop counts as planar if it leaves its plane by less than this share of its size.
 const PLANAR: f64 = 1e-12;
