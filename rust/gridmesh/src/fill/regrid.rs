@@ -9,7 +9,7 @@ use super::holes::boundary_loops;
 use super::mesh::{Rim, repeats};
 use super::patchwork::Patchwork;
 use super::sweep::sweep;
-use super::{Fill, FillOptions, Job};
+use super::{Fill, FillOptions, Job, Smooth};
 use crate::error::{Error, Result};
 use crate::metrics::min_angle;
 use crate::progress::Progress;
@@ -78,16 +78,17 @@ pub fn regrid(
     }
     // The patch takes the region's place: it runs as the region does, against the direction of a hole in it.
     let loop_ = border.iter().rev().copied().collect::<Vec<_>>();
-    let job = Job { vertices, triangles: &rest, options };
+    // What counts is where the vertices come to lie in the end.
+    let first = FillOptions { smooth: Smooth::Flat, strict: false, max_edges: None };
+    let job = Job { vertices, triangles: &rest, options: if keep_shape { &first } else { options } };
     let mut fills = job.run(&[Ok(loop_)], progress.part(0.0, 0.5))?;
     let mut fill = fills.pop().unwrap_or(Err(Error::Cancelled))?;
 
     let surface = Surface::new(vertices, &numbers, &region);
     if keep_shape {
         lay_back(&mut fill, vertices, &region, &surface, progress.part(0.5, 0.9))?;
-        fill.report.self_intersections = 0;
         let mut items = [Ok(fill)];
-        job.count_meetings(&mut items);
+        Job { options, ..job }.count_meetings(&mut items);
         let [item] = items;
         fill = item?;
     }
