@@ -1,7 +1,7 @@
 //! The Python module `gridmesh._native`: conversions only, no algorithm.
 //!
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `arrays`
-//! and `reports` hand results back, `patch` and `surface` are the two classes, `batch` is the parallel map.
+//! and `reports` hand results back, `patch`, `surface` and `fill` are the classes, `batch` is the parallel map.
 #![forbid(unsafe_code)]
 
 mod arrays;
@@ -9,6 +9,7 @@ mod batch;
 mod error;
 mod fill;
 mod input;
+mod mesh;
 mod options;
 mod patch;
 mod reports;
