@@ -181,19 +181,26 @@ impl<'a> Layers<'a> {
         let bound = |s: usize| self.to_go[s / 6][s % 6];
         let mut order: Vec<usize> = (0..states).filter(|&s| bound(s) < NEVER).collect();
         order.sort_by_key(|&s| (bound(s), s));
-        let mut best: Option<(Vec<Axial>, u32)> = None;
         let mut came = vec![0; (self.len() + 1) * states];
-        let mut limit = NEVER;
-        for &start in order.iter().take(starts) {
-            if bound(start) >= limit {
-                break;
+        let least = bound(*order.first()?);
+        // The optimum costs little more than the bound, as a rule: look there first.
+        for slack in [2 * TURN, 8 * TURN, NEVER - least] {
+            let mut best: Option<(Vec<Axial>, u32)> = None;
+            let mut limit = least + slack;
+            for &start in order.iter().take(starts) {
+                if bound(start) >= limit {
+                    break;
+                }
+                if let Some((points, cost)) = self.closed_from(start, limit, &mut came) {
+                    limit = cost;
+                    best = Some((points, cost));
+                }
             }
-            if let Some((points, cost)) = self.closed_from(start, limit, &mut came) {
-                limit = cost;
-                best = Some((points, cost));
+            if best.is_some() {
+                return best;
             }
         }
-        best
+        None
     }
 
     /// The cheapest path from a state of layer 0 back to it that costs less than `limit`.
