@@ -22,6 +22,9 @@ pub(super) const TURN: u32 = 64;
 /// Starts tried when the search runs again with prices.
 const REPAIR_STARTS: usize = 6;
 
+/// Conflicts left after some rounds that end the search.
+const HOPELESS: usize = 8;
+
 const NEVER: u32 = 1 << 30;
 
 /// What a path should follow, and at what price.
@@ -184,7 +187,7 @@ impl<'a> Layers<'a> {
         let mut came = vec![0; (self.len() + 1) * states];
         let least = bound(*order.first()?);
         // The optimum costs little more than the bound, as a rule: look there first.
-        for slack in [2 * TURN, 8 * TURN, NEVER - least] {
+        for slack in [2 * TURN, 8 * TURN, 32 * TURN] {
             let mut best: Option<(Vec<Axial>, u32)> = None;
             let mut limit = least + slack;
             for &start in order.iter().take(starts) {
@@ -294,7 +297,8 @@ pub(super) fn route(
             layers.raise(i, points[i], price);
             layers.raise(j, points[j], price);
         }
-        if conflicts.is_empty() {
+        // Where a loop is thinner than the lattice in many places, prices do not help.
+        if conflicts.is_empty() || (round >= 2 && conflicts.len() > HOPELESS) {
             return None;
         }
         layers.bound();
