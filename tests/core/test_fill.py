@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import doctest
+
+import gridmesh
 import numpy as np
 import pytest
 from checks import check_array, check_fans, edges_of, half_edges
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-import gridmesh
 
 NO_FACES = np.zeros((0, 3), np.int32)
 
@@ -318,6 +319,34 @@ def test_surplus_faces_are_named() -> None:
     with pytest.raises(gridmesh.GridMeshError) as caught:
         gridmesh.fill_hole(vertices, faces, np.arange(10))
     assert caught.value.kind == "faces_on_both_sides"
+
+
+def test_a_region_is_replaced_on_its_own_surface() -> None:
+    vertices, faces = ball(32)
+    region = np.flatnonzero(vertices[faces].mean(axis=1) @ [1.0, 0.2, 0.1] > 0.6)
+    done = gridmesh.regrid(vertices, faces, region)
+    rest = np.delete(faces, region, axis=0)
+    check_fill(vertices, rest, done.fill)
+    assert done.off < 1e-9
+    corners = vertices[faces[done.source_faces]]
+    assert np.abs((corners * done.source_weights[:, :, None]).sum(axis=1) - done.fill.vertices).max() < 1e-9
+    assert np.isin(done.source_faces, region).all()
+    assert (edges_of(np.concatenate([rest, done.fill.triangles]))[1] == 2).all()
+    assert not np.isin(done.unused, np.unique(rest)).any()
+    with pytest.raises(gridmesh.GridMeshError) as caught:
+        gridmesh.regrid(vertices, faces, np.arange(len(faces)))
+    assert caught.value.kind == "not_a_disk"
+
+
+@pytest.mark.parametrize(
+    "function", [gridmesh.fill_hole, gridmesh.fill_holes, gridmesh.regrid], ids=lambda f: f.__name__
+)
+def test_examples_run(function) -> None:
+    example = doctest.DocTestParser().get_doctest(function.__doc__, {}, function.__name__, None, 0)
+    assert example.examples
+    failures: list[str] = []
+    doctest.DocTestRunner(verbose=False).run(example, out=failures.append)
+    assert not failures, "".join(failures)
 
 
 @settings(max_examples=60, deadline=None)

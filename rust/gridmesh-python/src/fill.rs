@@ -1,18 +1,16 @@
 //! `fill_hole`, `fill_holes` and the Python class `Fill`.
 
-use std::borrow::Cow;
-
 use glam::DVec3;
 use gridmesh::fill::{Fill as CoreFill, FillOptions, FillReport, Smooth};
 use numpy::{
-    AllowTypeChange, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayLike1, PyArrayLike2, PyArrayMethods,
-    PyReadonlyArray2, PyUntypedArrayMethods,
+    AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::error::{detached, from_core};
 use crate::input::Argument;
+use crate::mesh::{Mesh, as_positions, indices, loop_argument, positions_argument, read_positions};
 use crate::watch::Watch;
 use crate::{arrays, reports};
 
@@ -170,6 +168,124 @@ pub fn fill_holes(
         }
     }
     Ok(items.unbind())
+}
+
+/// Replace a region of a mesh by a grid patch on the same boundary.
+///
+/// Parameters
+/// ----------
+/// vertices, triangles
+///     The mesh, as `fill_hole` takes it.
+/// faces : (f,) array of int
+///     The triangles of the region, which must be a disk: connected, one border, not touching itself.
+/// keep_shape : bool
+///     True: the new vertices are laid on the old surface. False: the hole is filled as by `fill_hole`.
+/// smooth, strict, progress
+///     As in `fill_hole`; `smooth` matters without `keep_shape` only.
+///
+/// Returns
+/// -------
+/// Regrid
+///     A fill of the hole that the region leaves, with all guarantees of `fill_hole`.
+///
+/// Raises
+/// ------
+/// GridMeshError
+///     If the faces are no disk, or as `fill_hole`.
+/// TypeError
+///     If an argument has a type that is not allowed.
+///
+/// Notes
+/// -----
+/// Nealen, Pett, Alexa, Igarashi: GridMesh, section VII, names the task.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, gridmesh
+/// >>> a, b = np.meshgrid(np.arange(9), np.arange(9), indexing="ij")
+/// >>> sheet = np.c_[a.ravel(), b.ravel(), np.sin(a).ravel()]
+/// >>> quad = np.array([[9 * i + j for j in range(8)] for i in range(8)]).ravel()
+/// >>> faces = np.r_[np.c_[quad, quad + 9, quad + 1], np.c_[quad + 9, quad + 10, quad + 1]]
+/// >>> done = gridmesh.regrid(sheet, faces, np.arange(128))
+/// >>> len(done.fill.loop), done.off < 1e-9
+/// (32, True)
+#[pyfunction]
+#[pyo3(
+    signature = (vertices, triangles, faces, *, keep_shape = None, smooth = None, strict = None, progress = None),
+    text_signature = "(vertices, triangles, faces, *, keep_shape=True, smooth='tangent', strict=False, progress=None)"
+)]
+#[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
+pub fn regrid(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    triangles: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    keep_shape: Option<&Bound<'_, PyAny>>,
+    smooth: Option<&Bound<'_, PyAny>>,
+    strict: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Regrid> {
+    let mesh = Mesh::read(vertices, triangles)?;
+    let allowed = "an (f,) array of whole numbers";
+    let region = indices(&Argument { name: "faces", value: faces, allowed })?;
+    let options = options(smooth, strict)?;
+    let keep = keep_shape
+        .map_or(Ok(true), |value| Argument { name: "keep_shape", value, allowed: "True or False" }.bool())?;
+    let (positions, all) = (mesh.positions()?, mesh.faces()?);
+    let done = Watch::new(progress)?
+        .run(py, |progress| gridmesh::fill::regrid(&positions, &all, &region, keep, &options, progress))?;
+    let (numbers, weights) = done
+        .sources
+        .into_iter()
+        .map(|(face, w)| (face, DVec3::from_array(w)))
+        .unzip::<_, _, Vec<_>, Vec<_>>();
+    Ok(Regrid {
+        source_faces: arrays::indices(py, numbers.into_iter()),
+        source_weights: arrays::space_points(py, &weights)?,
+        unused: arrays::indices(py, done.unused.into_iter()),
+        off: done.off,
+        fill: Py::new(py, Fill::new(py, done.fill)?)?,
+    })
+}
+
+/// A region that was replaced; made by `regrid`.
+///
+/// Attributes
+/// ----------
+/// fill : Fill
+///     The patch; its triangles take the place of the region's.
+/// source_faces : (j,) int32
+///     For each new vertex the old triangle that it lies on, or that is nearest.
+/// source_weights : (j, 3) float64
+///     Weights of that triangle's corners: carries over data of any kind.
+/// unused : (u,) int32
+///     Vertices of the mesh that only the region used.
+/// off : float
+///     Largest distance of a new vertex from the old surface.
+#[pyclass(frozen, module = "gridmesh")]
+pub struct Regrid {
+    #[pyo3(get)]
+    fill: Py<Fill>,
+    #[pyo3(get)]
+    source_faces: Py<PyArray1<i32>>,
+    #[pyo3(get)]
+    source_weights: Py<PyArray2<f64>>,
+    #[pyo3(get)]
+    unused: Py<PyArray1<i32>>,
+    #[pyo3(get)]
+    off: f64,
+}
+
+#[pymethods]
+impl Regrid {
+    // It cannot change: a copy is the thing itself.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
 }
 
 /// A filled hole; made by `fill_hole` and `fill_holes`.
@@ -333,101 +449,4 @@ fn report(py: Python<'_>, report: &FillReport) -> PyResult<Py<PyDict>> {
     dict.set_item("repaired", report.repaired)?;
     dict.set_item("seconds", reports::seconds(py, &report.seconds)?)?;
     Ok(dict.unbind())
-}
-
-/// The arrays of a mesh, held while they are read in place.
-struct Mesh<'py> {
-    positions: PyArrayLike2<'py, f64, AllowTypeChange>,
-    faces: Faces<'py>,
-}
-
-/// Triangles as numpy holds them, or copied.
-enum Faces<'py> {
-    Held(PyReadonlyArray2<'py, i32>),
-    Copied(Vec<[u32; 3]>),
-}
-
-impl<'py> Mesh<'py> {
-    fn read(vertices: &Bound<'py, PyAny>, triangles: &Bound<'py, PyAny>) -> PyResult<Self> {
-        let positions = read_positions(&positions_argument(vertices))?;
-        let it =
-            Argument { name: "triangles", value: triangles, allowed: "an (m, 3) array of whole numbers" };
-        let array = it.array()?;
-        if array.len() > 0 && (array.ndim() != 2 || array.shape()[1] != 3) {
-            return Err(it.wrong_shape(&format!("has shape {:?}", array.shape())));
-        }
-        let faces = if array.len() == 0 {
-            Faces::Copied(vec![])
-        } else if array.dtype().kind() == b'f' {
-            return Err(it.wrong_type());
-        } else {
-            match array.extract::<PyReadonlyArray2<'py, i32>>() {
-                Ok(held) if held.is_c_contiguous() => Faces::Held(held),
-                _ => {
-                    let wide = array.extract::<PyArrayLike2<'_, i64, AllowTypeChange>>()?;
-                    let table = wide.as_array();
-                    let rows = table.rows().into_iter().map(|row| [0, 1, 2].map(|k| narrow(row[k])));
-                    Faces::Copied(rows.collect())
-                }
-            }
-        };
-        Ok(Mesh { positions, faces })
-    }
-
-    fn positions(&self) -> PyResult<Cow<'_, [DVec3]>> {
-        as_positions(&self.positions)
-    }
-
-    /// Negative numbers become large ones, which no mesh has.
-    fn faces(&self) -> PyResult<Cow<'_, [[u32; 3]]>> {
-        match &self.faces {
-            Faces::Held(held) => Ok(Cow::Borrowed(bytemuck::cast_slice(held.as_slice()?))),
-            Faces::Copied(faces) => Ok(Cow::Borrowed(faces)),
-        }
-    }
-}
-
-fn positions_argument<'a, 'py>(value: &'a Bound<'py, PyAny>) -> Argument<'a, 'py> {
-    Argument { name: "vertices", value, allowed: "an (n, 3) array of real numbers" }
-}
-
-fn read_positions<'py>(it: &Argument<'_, 'py>) -> PyResult<PyArrayLike2<'py, f64, AllowTypeChange>> {
-    let array = it.array()?;
-    if array.ndim() != 2 || array.shape()[1] != 3 {
-        return Err(it.wrong_shape(&format!("has shape {:?}", array.shape())));
-    }
-    Ok(array.extract()?)
-}
-
-/// In place if the memory is laid out in rows.
-fn as_positions<'a>(held: &'a PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Cow<'a, [DVec3]>> {
-    if held.is_c_contiguous() {
-        return Ok(Cow::Borrowed(bytemuck::cast_slice(held.as_slice()?)));
-    }
-    let rows = held.as_array();
-    Ok(Cow::Owned(rows.rows().into_iter().map(|row| DVec3::new(row[0], row[1], row[2])).collect()))
-}
-
-fn loop_argument<'a, 'py>(name: &'a str, value: &'a Bound<'py, PyAny>) -> Argument<'a, 'py> {
-    Argument { name, value, allowed: "a (k,) array of whole numbers" }
-}
-
-fn indices(it: &Argument<'_, '_>) -> PyResult<Vec<u32>> {
-    let array = it.array()?;
-    if array.ndim() != 1 {
-        return Err(it.wrong_shape(&format!("has shape {:?}", array.shape())));
-    }
-    if array.len() == 0 {
-        return Ok(vec![]);
-    }
-    if array.dtype().kind() == b'f' {
-        return Err(it.wrong_type());
-    }
-    let wide = array.extract::<PyArrayLike1<'_, i64, AllowTypeChange>>()?;
-    Ok(wide.as_array().iter().map(|&v| narrow(v)).collect())
-}
-
-/// As the library numbers vertices; what no mesh can have stays out of range.
-fn narrow(v: i64) -> u32 {
-    i32::try_from(v).unwrap_or(-1) as u32
 }

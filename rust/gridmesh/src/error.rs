@@ -170,6 +170,11 @@ pub enum Error {
         /// The loop that is refused.
         second: usize,
     },
+    /// Faces that were to be replaced do not form a disk.
+    NotADisk {
+        /// Their number of borders.
+        borders: usize,
+    },
     /// The fill meets itself or the mesh, which was not to be.
     FillIntersects {
         /// Pairs of triangles that meet.
@@ -207,6 +212,7 @@ impl Error {
             Error::NonManifold { .. } => "non_manifold",
             Error::SharedEdge { .. } => "shared_edge",
             Error::FillIntersects { .. } => "fill_intersects",
+            Error::NotADisk { .. } => "not_a_disk",
         }
     }
 }
@@ -312,6 +318,10 @@ impl fmt::Display for Error {
                 f,
                 "loop {second} uses the edge from vertex {a} to vertex {b} like loop {first}; \
                  give each loop edge to one loop"
+            ),
+            Error::NotADisk { borders } => write!(
+                f,
+                "the faces have {borders} borders or touch themselves; choose one connected region without holes"
             ),
             Error::FillIntersects { pairs, at: [x, y, z] } => write!(
                 f,

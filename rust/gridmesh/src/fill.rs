@@ -13,8 +13,12 @@ mod graded;
 pub mod holes;
 mod meet;
 mod mesh;
+mod options;
 mod patchwork;
 mod quality;
+mod regrid;
+mod report;
+mod reserve;
 mod settle;
 mod small;
 mod solver;
@@ -26,13 +30,17 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
 use self::check::{Checked, check_loop};
-use self::flat::{FlatOptions, Method, fill_flat};
+use self::flat::{FlatOptions, fill_flat};
 use self::meet::{Box3, count_meetings, is_graph, near_boxes};
 use self::mesh::Rim;
+pub use self::options::{FillOptions, Smooth};
 use self::patchwork::Patchwork;
+pub use self::regrid::{Regrid, regrid};
+pub use self::report::{FillReport, Grid};
+use self::reserve::{Taken, edges, groups, refuse_shared_edges, wanted};
 pub use self::unroll::Unrolling;
 use crate::error::{Error, Result};
 use crate::metrics::min_angle;
@@ -40,29 +48,6 @@ use crate::progress::Progress;
 
 /// Groups of loops filled between two reports of progress.
 const BATCH: usize = 64;
-
-/// How a patch continues the surface around its loop.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Smooth {
-    /// Not at all: a soap film in the loop.
-    Flat,
-    /// With its slope.
-    #[default]
-    Tangent,
-    /// With its slope and curvature.
-    Curvature,
-}
-
-/// Options of [`fill_hole`] and [`fill_holes`].
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FillOptions {
-    /// How the patch continues the surface.
-    pub smooth: Smooth,
-    /// Refuse fills that meet themselves or the mesh, instead of counting that.
-    pub strict: bool,
-    /// Of [`fill_holes`] without given loops: leave holes with more edges open.
-    pub max_edges: Option<usize>,
-}
 
 /// A filled hole.
 #[derive(Clone, Debug)]
@@ -79,85 +64,8 @@ pub struct Fill {
     shape: Arc<Shape>,
 }
 
-/// Numbers about a [`Fill`].
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FillReport {
-    /// New triangles.
-    pub triangles: usize,
-    /// New vertices.
-    pub vertices: usize,
-    /// New vertices of valence other than six.
-    pub irregular: usize,
-    /// Loop vertices that have a valence other than six now, edges of the mesh counted.
-    pub irregular_loop: usize,
-    /// How the patch was made.
-    pub grid: Grid,
-    /// True if no patch was found whose triangles are all counter-clockwise in the plane.
-    pub folded: bool,
-    /// Mean angle between the surface at the loop and a film in the loop, in radians: near zero where the
-    /// surface goes on, about a right angle at the end of a tube.
-    pub rim_angle: f64,
-    /// How the loop was laid out in the plane.
-    pub unrolling: Unrolling,
-    /// Largest relative change of a loop edge's length thereby.
-    pub distortion: f64,
-    /// Loop edges whose neighbour is wound against most others.
-    pub winding_conflicts: usize,
-    /// Loop edges without a neighbour.
-    pub wire_edges: usize,
-    /// Smallest angle of a new triangle, in radians.
-    pub min_angle: f64,
-    /// Inner edges of the patch with more than 120 degrees between the triangles.
-    pub folds: usize,
-    /// Pairs of triangles, at least one of them new, that meet where they should not.
-    pub self_intersections: usize,
-    /// Fallbacks: solves that failed and were replaced by simpler ones.
-    pub repaired: usize,
-    /// Seconds spent in each stage.
-    pub seconds: Vec<(&'static str, f64)>,
-}
-
-/// How a patch was made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Grid {
-    /// The loop's own vertices, no others.
-    #[default]
-    NoInterior,
-    /// One vertex in the middle.
-    Centre,
-    /// A lattice patch: the cheapest of exactly as many edges as the loop.
-    Lattice,
-    /// A lattice patch grown as in the paper's section V.
-    Grown,
-    /// Points of nested lattices, for loops too uneven for one.
-    Graded,
-}
-
-impl Grid {
-    fn of(method: Method) -> Self {
-        match method {
-            Method::NoInterior => Grid::NoInterior,
-            Method::Centre => Grid::Centre,
-            Method::Optimal => Grid::Lattice,
-            Method::Grown => Grid::Grown,
-            Method::Graded => Grid::Graded,
-        }
-    }
-
-    /// A stable word, for programs.
-    pub fn word(self) -> &'static str {
-        match self {
-            Grid::NoInterior => "no_interior",
-            Grid::Centre => "centre",
-            Grid::Lattice => "lattice",
-            Grid::Grown => "grown",
-            Grid::Graded => "graded",
-        }
-    }
-}
-
 /// What is needed to solve the same patch again.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Shape {
     work: Patchwork,
     loop_: Vec<u32>,
@@ -470,114 +378,6 @@ impl PartialEq for Fill {
     fn eq(&self, other: &Self) -> bool {
         self.vertices == other.vertices && self.triangles == other.triangles && self.loop_ == other.loop_
     }
-}
-
-/// The edges of a triangle, lower vertex first.
-fn edges(t: &[u32; 3]) -> [[u32; 2]; 3] {
-    [0, 1, 2].map(|k| [t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])])
-}
-
-/// The patch valence that makes each loop vertex regular.
-fn wanted(loop_: &[u32], rim: &Rim) -> Vec<i32> {
-    let n = loop_.len();
-    let outside = |k: usize| {
-        let Some(v) = rim.local(loop_[k]) else { return 4 };
-        let near = rim.neighbours(v);
-        // Loop edges that the mesh has not got count as well.
-        let missing = [loop_[(k + n - 1) % n], loop_[(k + 1) % n]]
-            .into_iter()
-            .filter(|&u| rim.local(u).is_none_or(|u| near.binary_search(&u).is_err()));
-        8 - (near.len() + missing.count()) as i32
-    };
-    (0..n).map(outside).collect()
-}
-
-/// Edges between vertices of one loop that exist already.
-struct Taken {
-    pairs: FxHashSet<[u32; 2]>,
-    /// True if a triangle of the mesh joins three vertices of the loop.
-    face: bool,
-}
-
-impl Taken {
-    fn new(checked: &Checked, rim: &Rim, reserved: &FxHashSet<[u32; 2]>) -> Self {
-        let loop_ = &checked.vertices;
-        let places: FxHashMap<u32, u32> = loop_.iter().enumerate().map(|(k, &v)| (v, k as u32)).collect();
-        let mut pairs = FxHashSet::default();
-        let mut face = false;
-        for v in loop_.iter().filter_map(|&v| rim.local(v)) {
-            for &t in rim.around(v) {
-                let t = rim.triangles[t as usize].map(|v| rim.ids[v as usize]);
-                for [a, b] in edges(&t) {
-                    if let (Some(&a), Some(&b)) = (places.get(&a), places.get(&b)) {
-                        pairs.insert([a.min(b), a.max(b)]);
-                    }
-                }
-                face |= t.iter().all(|v| places.contains_key(v));
-            }
-        }
-        for [a, b] in reserved {
-            if let (Some(&a), Some(&b)) = (places.get(a), places.get(b)) {
-                pairs.insert([a.min(b), a.max(b)]);
-            }
-        }
-        Taken { pairs, face }
-    }
-
-    fn has(&self, i: usize, j: usize) -> bool {
-        self.pairs.contains(&[i.min(j) as u32, i.max(j) as u32])
-    }
-}
-
-/// Turns loops that use an edge of an earlier loop into errors.
-fn refuse_shared_edges(checked: &mut [Result<Checked>]) {
-    let mut used = vec![];
-    for (k, item) in checked.iter().enumerate() {
-        if let Ok(item) = item {
-            let n = item.vertices.len();
-            for i in 0..n {
-                let (a, b) = (item.vertices[i], item.vertices[(i + 1) % n]);
-                used.push(([a.min(b), a.max(b)], k));
-            }
-        }
-    }
-    used.sort_unstable();
-    for same in used.chunk_by(|a, b| a.0 == b.0) {
-        for &(edge, second) in &same[1..] {
-            checked[second] = Err(Error::SharedEdge { edge, first: same[0].1, second });
-        }
-    }
-}
-
-/// Numbers of the loops, ascending, those together that share two vertices or more.
-fn groups(checked: &[Result<Checked>]) -> Vec<Vec<usize>> {
-    let mut at = vec![];
-    for (k, item) in checked.iter().enumerate() {
-        at.extend(item.iter().flat_map(|item| item.vertices.iter().map(move |&v| (v, k))));
-    }
-    at.sort_unstable();
-    let mut pairs = vec![];
-    for same in at.chunk_by(|a, b| a.0 == b.0) {
-        for (i, a) in same.iter().enumerate() {
-            pairs.extend(same[i + 1..].iter().map(|b| (a.1, b.1)));
-        }
-    }
-    pairs.sort_unstable();
-    let mut root = (0..checked.len()).collect::<Vec<_>>();
-    fn find(root: &mut [usize], mut k: usize) -> usize {
-        while root[k] != k {
-            root[k] = root[root[k]];
-            k = root[k];
-        }
-        k
-    }
-    for same in pairs.chunk_by(|a, b| a == b).filter(|same| same.len() > 1) {
-        let (a, b) = (find(&mut root, same[0].0), find(&mut root, same[0].1));
-        root[a.max(b)] = a.min(b);
-    }
-    let mut members = (0..checked.len()).map(|k| (find(&mut root, k), k)).collect::<Vec<_>>();
-    members.sort_unstable();
-    members.chunk_by(|a, b| a.0 == b.0).map(|part| part.iter().map(|m| m.1).collect()).collect()
 }
 
 /// Seconds per stage.

@@ -2,7 +2,7 @@
 
 ``mesh_sketch`` meshes the inside of a drawing, ``inflate`` makes a smooth watertight body of it, ``stitch`` a
 flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. ``fill_hole`` and ``fill_holes`` close
-holes of a mesh with patches that fit their boundaries vertex for vertex. Positions are float64, indices
+holes of a mesh with patches that fit their boundaries vertex for vertex, ``regrid`` replaces a region by one. Positions are float64, indices
 int32, angles radians, options keyword-only. The same input gives the same bytes. The one exception for what
 cannot be done is ``GridMeshError``.
 """
@@ -11,6 +11,7 @@ from gridmesh._native import (
     Fill,
     GridMeshError,
     Patch,
+    Regrid,
     Surface,
     __version__,
     fill_hole,
@@ -19,6 +20,7 @@ from gridmesh._native import (
     inflate,
     map_sketches,
     mesh_sketch,
+    regrid,
     stitch,
 )
 
@@ -26,6 +28,7 @@ __all__ = [
     "Fill",
     "GridMeshError",
     "Patch",
+    "Regrid",
     "Surface",
     "__version__",
     "fill_hole",
@@ -34,5 +37,6 @@ __all__ = [
     "inflate",
     "map_sketches",
     "mesh_sketch",
+    "regrid",
     "stitch",
 ]

@@ -8,6 +8,7 @@ __all__ = [
     "Fill",
     "GridMeshError",
     "Patch",
+    "Regrid",
     "Surface",
     "__version__",
     "_patch",
@@ -18,6 +19,7 @@ __all__ = [
     "inflate",
     "map_sketches",
     "mesh_sketch",
+    "regrid",
     "stitch",
 ]
 
@@ -132,6 +134,21 @@ def inflate(
     corner_angle: float = 0.6981317007977318,
     progress: _Progress | None = None,
 ) -> Surface: ...
+@final
+class Regrid:
+    @property
+    def fill(self) -> Fill: ...
+    @property
+    def source_faces(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def source_weights(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def unused(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def off(self) -> float: ...
+    def __copy__(self) -> Regrid: ...
+    def __deepcopy__(self, _memo: object, /) -> Regrid: ...
+
 def fill_hole(
     vertices: npt.ArrayLike,
     triangles: npt.ArrayLike,
@@ -151,6 +168,16 @@ def fill_holes(
     strict: bool = False,
     progress: _Progress | None = None,
 ) -> list[Fill | GridMeshError]: ...
+def regrid(
+    vertices: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    faces: npt.ArrayLike,
+    *,
+    keep_shape: bool = True,
+    smooth: Literal["flat", "tangent", "curvature"] = "tangent",
+    strict: bool = False,
+    progress: _Progress | None = None,
+) -> Regrid: ...
 def map_sketches(
     outlines: Iterable[_Points | tuple[_Points, Sequence[_Points]]],
     *,

@@ -22,6 +22,9 @@ pub(super) const TURN: u32 = 64;
 /// Starts tried when the search runs again with prices.
 const REPAIR_STARTS: usize = 6;
 
+/// Conflicts left after some rounds that end the search.
+const HOPELESS: usize = 8;
+
 const NEVER: u32 = 1 << 30;
 
 /// What a path should follow, and at what price.
@@ -181,19 +184,26 @@ impl<'a> Layers<'a> {
         let bound = |s: usize| self.to_go[s / 6][s % 6];
         let mut order: Vec<usize> = (0..states).filter(|&s| bound(s) < NEVER).collect();
         order.sort_by_key(|&s| (bound(s), s));
-        let mut best: Option<(Vec<Axial>, u32)> = None;
         let mut came = vec![0; (self.len() + 1) * states];
-        let mut limit = NEVER;
-        for &start in order.iter().take(starts) {
-            if bound(start) >= limit {
-                break;
+        let least = bound(*order.first()?);
+        // The optimum costs little more than the bound, as a rule: look there first.
+        for slack in [2 * TURN, 8 * TURN, 32 * TURN] {
+            let mut best: Option<(Vec<Axial>, u32)> = None;
+            let mut limit = least + slack;
+            for &start in order.iter().take(starts) {
+                if bound(start) >= limit {
+                    break;
+                }
+                if let Some((points, cost)) = self.closed_from(start, limit, &mut came) {
+                    limit = cost;
+                    best = Some((points, cost));
+                }
             }
-            if let Some((points, cost)) = self.closed_from(start, limit, &mut came) {
-                limit = cost;
-                best = Some((points, cost));
+            if best.is_some() {
+                return best;
             }
         }
-        best
+        None
     }
 
     /// The cheapest path from a state of layer 0 back to it that costs less than `limit`.
@@ -287,7 +297,8 @@ pub(super) fn route(
             layers.raise(i, points[i], price);
             layers.raise(j, points[j], price);
         }
-        if conflicts.is_empty() {
+        // Where a loop is thinner than the lattice in many places, prices do not help.
+        if conflicts.is_empty() || (round >= 2 && conflicts.len() > HOPELESS) {
             return None;
         }
         layers.bound();

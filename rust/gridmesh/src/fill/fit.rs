@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 const SEAM: f64 = 0.7;
 
 /// Rounds of tangential sweeps and a normal step, at most.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 2;
 
 /// Sweeps in each round.
 const SWEEPS: usize = 2;
@@ -23,7 +23,7 @@ const SETTLED: f64 = 1e-3;
 
 /// Weights are limited to this from below where all must be positive, so that no value leaves the range
 /// of those given.
-const LEAST_WEIGHT: f64 = 1e-3;
+pub(super) const LEAST_WEIGHT: f64 = 1e-3;
 
 /// A loop counts as planar if it leaves its plane by less than this share of its size.
 const PLANAR: f64 = 1e-12;
@@ -71,7 +71,8 @@ impl Shape {
             Err(other) => return Err(other),
         }
         let mut least = folds(work, &solved.positions);
-        for stage in stages.into_iter().rev() {
+        // The film itself folds least, but it does not continue the surface.
+        for stage in stages.into_iter().skip(1).rev() {
             if least == 0 {
                 break;
             }
@@ -255,7 +256,23 @@ fn rim_angle(work: &Patchwork, positions: &[DVec3]) -> f64 {
 
 /// Inner edges of a patch whose triangles are more than 120 degrees apart.
 pub(super) fn folds(work: &Patchwork, positions: &[DVec3]) -> usize {
-    let own = &work.triangles[..work.n_patch];
-    let angles = crate::metrics::face_angles(positions, own);
-    angles.iter().filter(|(_, angle)| *angle > 120f64.to_radians()).count()
+    const NONE: u32 = u32::MAX;
+    let normal = |t: usize| {
+        let [a, b, c] = work.triangles[t].map(|v| positions[v as usize]);
+        (b - a).cross(c - a).normalize_or_zero()
+    };
+    // The first triangle at each edge.
+    let mut first = vec![NONE; work.near.len()];
+    let mut count = 0;
+    for t in 0..work.n_patch {
+        for edge in work.edge_slots(t) {
+            let other = &mut first[edge as usize];
+            if *other == NONE {
+                *other = t as u32;
+            } else {
+                count += usize::from(normal(t).dot(normal(*other as usize)) < -0.5);
+            }
+        }
+    }
+    count
 }

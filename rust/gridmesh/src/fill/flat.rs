@@ -259,7 +259,7 @@ impl Contest<'_> {
 const STARTS: usize = 24;
 
 /// Times that conflicts are priced.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 8;
 
 /// What each turn costs at each vertex: how far the valence is from the wanted one, and how far the
 /// angles between its edges are from 60 degrees.

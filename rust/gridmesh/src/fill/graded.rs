@@ -2,6 +2,8 @@
 //! near by, joined by a constrained Delaunay triangulation. Works for every simple polygon.
 
 use glam::DVec2;
+use rstar::RTree;
+use rstar::primitives::{GeomWithData, Line};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::flips::improve_valences;
@@ -10,6 +12,7 @@ use crate::axial::Axial;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
 use crate::progress::Progress;
+use crate::segments::{nearest_on_segment, orientation};
 
 /// How much the size of the triangles grows per length, away from the loop.
 const GROWTH: f64 = 0.35;
@@ -119,84 +122,127 @@ pub(super) fn triangulate(positions: &[DVec2], n: usize) -> Result<Vec<[u32; 3]>
     Ok(triangles)
 }
 
-/// How long edges should be at a point: as the loop's edges near by, growing with the distance.
+/// How long edges should be: as the loop's edges near by, growing with the distance from them.
 struct SizeField {
-    places: Vec<(DVec2, f64)>,
-    least: f64,
-    most: f64,
+    /// Middle and length of each edge.
+    edges: Vec<(DVec2, f64)>,
 }
 
 impl SizeField {
     fn new(polygon: &[DVec2]) -> SizeField {
         let n = polygon.len();
-        let places: Vec<(DVec2, f64)> = (0..n)
-            .map(|k| {
-                let (a, b) = (polygon[k], polygon[(k + 1) % n]);
-                (0.5 * (a + b), a.distance(b))
-            })
-            .collect();
-        let least = places.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
-        let most = places.iter().map(|p| p.1).fold(0.0, f64::max);
-        SizeField { places, least, most }
+        let edge = |k: usize| {
+            let (a, b) = (polygon[k], polygon[(k + 1) % n]);
+            (0.5 * (a + b), a.distance(b))
+        };
+        SizeField { edges: (0..n).map(edge).collect() }
     }
 
-    fn at(&self, x: DVec2) -> f64 {
-        // Within half its length of the middle of an edge, its size holds.
-        let size = |&(p, length): &(DVec2, f64)| length + GROWTH * (x.distance(p) - 0.5 * length).max(0.0);
-        self.places.iter().map(size).fold(f64::INFINITY, f64::min)
+    /// The size that an edge asks for at a point. Within half its length of its middle, its own.
+    fn asked(&self, edge: u32, x: DVec2) -> f64 {
+        let (middle, length) = self.edges[edge as usize];
+        length + GROWTH * (x.distance(middle) - 0.5 * length).max(0.0)
     }
 
     /// Vertices of a triangular lattice that is halved until it is as fine as wished, inside the
-    /// polygon and not too near its edges.
+    /// polygon and not too near its edges; in a fixed order.
     fn points(&self, polygon: &[DVec2]) -> Vec<DVec2> {
         let low = polygon.iter().fold(DVec2::INFINITY, |a, &b| a.min(b));
         let high = polygon.iter().fold(DVec2::NEG_INFINITY, |a, &b| a.max(b));
         let across = (high - low).max_element();
+        let least = self.edges.iter().map(|e| e.1).fold(f64::INFINITY, f64::min);
         // The finest lattice has edges of the least size; one coarse triangle covers all.
-        let fine = self.least.max(across * 1e-5).max(f64::MIN_POSITIVE);
+        let fine = least.max(across * 1e-5).max(f64::MIN_POSITIVE);
         let levels = (4.0 * across / fine).log2().ceil().clamp(1.0, 24.0) as u32;
         let origin = low - DVec2::new(across, 0.5 * across);
+        let mut descent = Descent { field: self, low, high, origin, fine, found: Vec::new() };
+        let all: Vec<u32> = (0..polygon.len() as u32).collect();
+        descent.visit(Axial::default(), 1 << levels, 1, &all);
+        let mut found = descent.found;
+        found.sort_unstable_by_key(|f| f.0);
+        found.dedup_by_key(|f| f.0);
+        let walls = Walls::new(polygon);
         let place = |p: Axial| origin + fine * Lattice::units(p);
-        let mut stack = vec![(Axial::default(), 1i32 << levels, 1i32)];
-        let mut points = Vec::new();
-        while let Some((corner, edge, up)) = stack.pop() {
-            let (a, b) = (Axial::new(edge * up, 0), Axial::new(0, edge * up));
-            let corners = [corner, corner + a, corner + b].map(place);
-            let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
-            let length = f64::from(edge) * fine;
-            let outside = (centre.clamp(low, high) - centre).length() > 0.6 * length;
-            if outside {
-                continue;
-            }
-            let wished = self.at(centre).min(self.most * 4.0);
-            if edge > 1 && length > 1.3 * wished {
-                let half = edge / 2;
-                let (a, b) = (Axial::new(half * up, 0), Axial::new(0, half * up));
-                stack.push((corner, half, up));
-                stack.push((corner + a, half, up));
-                stack.push((corner + b, half, up));
-                stack.push((corner + a + b, half, -up));
-            } else {
-                points.extend([corner, corner + Axial::new(edge * up, 0), corner + Axial::new(0, edge * up)]);
-            }
+        let clear = |(p, size): (Axial, f64)| walls.contains(place(p), CLEARANCE * size).then(|| place(p));
+        found.into_iter().filter_map(clear).collect()
+    }
+}
+
+/// Distance of a vertex from the loop, in sizes, at least.
+const CLEARANCE: f64 = 0.6;
+
+/// Halves triangles down to the wished size.
+struct Descent<'a> {
+    field: &'a SizeField,
+    low: DVec2,
+    high: DVec2,
+    origin: DVec2,
+    fine: f64,
+    /// Corners of the triangles that are small enough, with the size wished there.
+    found: Vec<(Axial, f64)>,
+}
+
+impl Descent<'_> {
+    /// The triangle with a corner and edges of `edge` steps of the finest lattice, pointing up or
+    /// down (`up` = -1); `near` are the edges of the loop that may ask for the least size in it.
+    fn visit(&mut self, corner: Axial, edge: i32, up: i32, near: &[u32]) {
+        let place = |p: Axial| self.origin + self.fine * Lattice::units(p);
+        let (a, b) = (Axial::new(edge * up, 0), Axial::new(0, edge * up));
+        let corners = [corner, corner + a, corner + b];
+        let centre = corners.iter().map(|&p| place(p)).sum::<DVec2>() / 3.0;
+        let length = f64::from(edge) * self.fine;
+        let reach = 0.6 * length;
+        if (centre.clamp(self.low, self.high) - centre).length() > reach {
+            return;
         }
-        points.sort_unstable();
-        points.dedup();
-        let clear = |x: &DVec2| {
-            let size = self.at(*x);
-            let mut inside = false;
-            for (i, &a) in polygon.iter().enumerate() {
-                let b = polygon[(i + 1) % polygon.len()];
-                if (a.y > x.y) != (b.y > x.y) && x.x < a.x + (x.y - a.y) / (b.y - a.y) * (b.x - a.x) {
-                    inside = !inside;
-                }
-                let t = ((*x - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-                if a.lerp(b, t).distance(*x) < 0.6 * size {
-                    return false;
-                }
-            }
-            inside
+        let asked = |&e: &u32| self.field.asked(e, centre);
+        let wished = near.iter().map(asked).fold(f64::INFINITY, f64::min);
+        let near: Vec<u32> =
+            near.iter().copied().filter(|e| asked(e) <= wished + 2.0 * GROWTH * reach).collect();
+        if edge == 1 || length <= 1.3 * wished {
+            let size = |p| near.iter().map(|&e| self.field.asked(e, p)).fold(f64::INFINITY, f64::min);
+            let sized = corners.map(|p| (p, size(place(p))));
+            self.found.extend(sized);
+            return;
+        }
+        let half = edge / 2;
+        let (a, b) = (Axial::new(half * up, 0), Axial::new(0, half * up));
+        self.visit(corner, half, up, &near);
+        self.visit(corner + a, half, up, &near);
+        self.visit(corner + b, half, up, &near);
+        self.visit(corner + a + b, half, -up, &near);
+    }
+}
+
+/// The polygon's edges, to ask for the nearest.
+struct Walls<'a> {
+    polygon: &'a [DVec2],
+    tree: RTree<GeomWithData<Line<[f64; 2]>, usize>>,
+}
+
+impl<'a> Walls<'a> {
+    fn new(polygon: &'a [DVec2]) -> Walls<'a> {
+        let n = polygon.len();
+        let line = |k: usize| Line::new(polygon[k].to_array(), polygon[(k + 1) % n].to_array());
+        Walls { polygon, tree: RTree::bulk_load((0..n).map(|k| GeomWithData::new(line(k), k)).collect()) }
+    }
+
+    /// True for points inside that are further than `distance` from the edges.
+    fn contains(&self, x: DVec2, distance: f64) -> bool {
+        let Some(k) = self.tree.nearest_neighbor(&x.to_array()).map(|line| line.data) else { return false };
+        let n = self.polygon.len();
+        let corner = |k: usize| self.polygon[k % n];
+        let (a, b) = (corner(k), corner(k + 1));
+        let (t, squared) = nearest_on_segment(x, a, b);
+        let convex = |k: usize| orientation(corner(k + n - 1), corner(k), corner(k + 1)) > 0.0;
+        // Next to a corner, a point lies inside if the corner is reflex.
+        let inside = if t <= 0.0 {
+            !convex(k)
+        } else if t >= 1.0 {
+            !convex(k + 1)
+        } else {
+            orientation(a, b, x) > 0.0
         };
-        points.into_iter().map(place).filter(clear).collect()
+        inside && squared > distance * distance
     }
 }

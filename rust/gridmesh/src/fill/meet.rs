@@ -13,6 +13,12 @@ use crate::segments::orientation;
 /// Cells along each axis of the grid that tells which boxes may be near.
 const CELLS: usize = 48;
 
+/// Meetings that are counted at most.
+pub(crate) const MOST: usize = 100_000;
+
+/// Triangles between two looks at how many meetings there are.
+const BLOCK: usize = 4096;
+
 /// From this number of triangles on the work is shared among threads.
 const MANY: usize = 4096;
 
@@ -117,13 +123,21 @@ fn boxed(b: &Box3, data: u32) -> Boxed {
 /// (exact predicates), and a corner of the first such new triangle.
 ///
 /// Vertices on the same point count as one: a mesh along a seam of doubled vertices touches itself
-/// all along, and means nothing by it. `apart`: the new triangles are known not to meet each other.
+/// all along, and means nothing by it. Counting ends at [`MOST`]: in a tangle every triangle meets every
+/// other. `apart`: the new triangles are known not to meet each other.
 pub(crate) fn count_meetings(
-    position: impl Fn(u32) -> DVec3,
+    position: impl Fn(u32) -> DVec3 + Sync,
     new: &[[u32; 3]],
     old: &[[u32; 3]],
     apart: bool,
 ) -> (usize, Option<DVec3>) {
+    let kept;
+    let new = if apart && new.len() >= MANY {
+        kept = touching_boxes(&position, new, old);
+        kept.as_slice()
+    } else {
+        new
+    };
     let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
     let mut ids = new.iter().chain(old).flatten().copied().collect::<Vec<_>>();
     ids.sort_unstable();
@@ -166,13 +180,37 @@ pub(crate) fn count_meetings(
         });
         hits.count()
     };
-    let counts: Vec<usize> = if new.len() < MANY {
-        (0..new.len()).map(meets).collect()
-    } else {
-        (0..new.len()).into_par_iter().map(meets).collect()
+    let (mut sum, mut first) = (0, None);
+    for start in (0..new.len()).step_by(BLOCK) {
+        let block = start..new.len().min(start + BLOCK);
+        let counts: Vec<usize> = if new.len() < MANY {
+            block.map(meets).collect()
+        } else {
+            block.into_par_iter().map(meets).collect()
+        };
+        sum += counts.iter().sum::<usize>();
+        first = first.or(counts.iter().position(|&count| count > 0).map(|k| start + k));
+        if sum >= MOST {
+            break;
+        }
+    }
+    (sum.min(MOST), first.map(|i| vertices[new[i][0] as usize]))
+}
+
+/// The new triangles whose boxes meet that of an old one, in order.
+fn touching_boxes(
+    position: &(impl Fn(u32) -> DVec3 + Sync),
+    new: &[[u32; 3]],
+    old: &[[u32; 3]],
+) -> Vec<[u32; 3]> {
+    let around = |t: &[u32; 3]| Box3::around(t.map(position));
+    let tree = RTree::bulk_load(old.iter().map(|t| boxed(&around(t), 0)).collect());
+    let touches = |t: &&[u32; 3]| {
+        let own = around(t);
+        let envelope = AABB::from_corners(own.low.into(), own.high.into());
+        tree.locate_in_envelope_intersecting(&envelope).next().is_some()
     };
-    let first = counts.iter().position(|&count| count > 0);
-    (counts.iter().sum(), first.map(|i| vertices[new[i][0] as usize]))
+    new.par_iter().filter(touches).copied().collect()
 }
 
 /// True if a patch is a graph over the plane of its loop's mean normal, which proves that it does not meet

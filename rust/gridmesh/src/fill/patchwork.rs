@@ -140,6 +140,11 @@ impl Patchwork {
         self.inner().contains(&v).then(|| (v - self.n) as u32)
     }
 
+    /// A number below the length of `near` for each edge of a triangle, the same for all triangles there.
+    pub fn edge_slots(&self, t: usize) -> [u32; 3] {
+        self.slots[t].map(|[a, b]| a.min(b))
+    }
+
     /// Half the sum of the cotangents that face each edge, parallel to `near`. Thin triangles count as if
     /// they were thicker: all three cotangents alike, so that each triangle's share stays semidefinite.
     pub fn cotangents(&self, positions: &[DVec3]) -> Vec<f64> {

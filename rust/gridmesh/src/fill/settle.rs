@@ -107,40 +107,37 @@ pub(super) fn untangle(
     sweeps: usize,
     progress: Progress<'_>,
 ) -> Result<bool> {
-    let mut active = vec![false; rings.len()];
+    let tangled = |positions: &[DVec2], i: usize| {
+        let x = positions[rings.n_loop + i];
+        rings.ring(i).windows(2).any(|p| {
+            let (a, b) = (positions[p[0] as usize] - x, positions[p[1] as usize] - x);
+            // A NaN is tangled too.
+            !matches!(det(a, b).partial_cmp(&(TANGLED * stretch(a, b))), Some(std::cmp::Ordering::Greater))
+        })
+    };
+    // Triangles become tangled only where a vertex has moved: only those are looked at again.
+    let mut bad: Vec<usize> = (0..rings.len()).filter(|&i| tangled(positions, i)).collect();
+    let mut active: Vec<usize> = Vec::new();
     for sweep in 0..sweeps {
-        progress.report(sweep as f64 / sweeps as f64)?;
-        let mut tangled = false;
-        for i in 0..rings.len() {
-            let x = positions[rings.n_loop + i];
-            let bad = rings.ring(i).windows(2).any(|p| {
-                let (a, b) = (positions[p[0] as usize] - x, positions[p[1] as usize] - x);
-                !(det(a, b) > TANGLED * stretch(a, b))
-            });
-            if bad {
-                tangled = true;
-                active[i] = true;
-                for &w in rings.ring(i) {
-                    if let Some(near) = (w as usize).checked_sub(rings.n_loop) {
-                        active[near] = true;
-                    }
-                }
-            }
-        }
-        if !tangled {
+        if bad.is_empty() {
             return Ok(true);
         }
-        for i in 0..rings.len() {
-            if active[i] {
-                let x = untangled(positions[rings.n_loop + i], rings.ring(i), positions);
-                positions[rings.n_loop + i] = x;
-            }
+        progress.report(sweep as f64 / sweeps as f64)?;
+        if sweep % 4 == 0 {
+            active.clear();
         }
-        if sweep % 4 == 3 {
-            active.iter_mut().for_each(|a| *a = false);
+        for &i in &bad {
+            active.push(i);
+            active.extend(rings.ring(i).iter().filter_map(|&w| (w as usize).checked_sub(rings.n_loop)));
         }
+        active.sort_unstable();
+        active.dedup();
+        for &i in &active {
+            positions[rings.n_loop + i] = untangled(positions[rings.n_loop + i], rings.ring(i), positions);
+        }
+        bad = active.iter().copied().filter(|&i| tangled(positions, i)).collect();
     }
-    Ok(false)
+    Ok(bad.is_empty())
 }
 
 /// A triangle with a smaller share of the area that its edges allow counts as tangled.
