@@ -134,6 +134,7 @@ def inflate(
     corner_angle: float = 0.6981317007977318,
     progress: _Progress | None = None,
 ) -> Surface: ...
+
 @final
 class Regrid:
     @property
