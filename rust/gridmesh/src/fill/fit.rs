@@ -10,13 +10,13 @@ use super::{Shape, Smooth};
 use crate::error::{Error, Result};
 
 /// Weight of the angles across the loop's edges against the curvatures at the vertices.
-const SEAM: f64 = 0.7;
+const SEAM: f64 = 3.0;
 
 /// Rounds of tangential sweeps and a normal step, at most.
 const ROUNDS: usize = 2;
 
 /// Sweeps in each round.
-const SWEEPS: usize = 2;
+const SWEEPS: usize = 3;
 
 /// A round that lowers the bending by less than this share is the last.
 const SETTLED: f64 = 1e-3;
