@@ -26,9 +26,9 @@ use crate::union::{nearest_source, outer_outline};
 const SHIFTS: [[f64; 2]; 6] =
     [[0.0, 0.0], [0.5, 0.29], [0.5, -0.29], [0.25, 0.43], [0.25, -0.14], [0.75, 0.14]];
 
-/// With triangles of this angle, away from drawn corners, a placement is good enough not to try
-/// another lattice angle; 14 degrees.
-const ENOUGH: f64 = 14.0 * std::f64::consts::PI / 180.0;
+/// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies
+/// this close to the drawing, in edges, is good enough not to try another lattice angle.
+const ENOUGH: (f64, f64) = (14.0 * std::f64::consts::PI / 180.0, 1.0);
 
 /// A flat patch with the numbers of its making.
 #[derive(Clone, Debug)]
@@ -158,7 +158,7 @@ impl Job<'_> {
 
     /// Tries lattice placements until one gives a valid patch of the size asked for: the angles
     /// first, cheapest boundary first, then shifts of the lattice. Where the cheapest boundary
-    /// starves triangles, the other angles are tried too, and the best is taken.
+    /// starves triangles or cuts off a tip, the other angles are tried too, and the best is taken.
     fn attempt(
         &mut self,
         asked: Asked,
@@ -210,11 +210,11 @@ impl Job<'_> {
             self.lap("placement", started);
             match placed {
                 Ok(placed) => {
-                    let angle = min_angle_off_corners(&placed.patch);
-                    if best.as_ref().is_none_or(|(least, ..)| angle > *least) {
-                        best = Some((angle, outline, placed));
+                    let faults = faults(&placed);
+                    if best.as_ref().is_none_or(|(least, ..)| faults < *least) {
+                        best = Some((faults, outline, placed));
                     }
-                    if angle >= ENOUGH {
+                    if faults == 0.0 {
                         break;
                     }
                 }
@@ -412,6 +412,13 @@ impl Job<'_> {
         report.seconds = self.seconds.clone();
         Sketch { patch, report }
     }
+}
+
+/// How far a placement is from being good enough: zero if it is.
+fn faults(placed: &Placed) -> f64 {
+    let (angle, distance) = ENOUGH;
+    let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
+    4.0 * starved + (placed.max_deviation - distance).max(0.0)
 }
 
 /// The centroid of the enclosed area.
