@@ -9,8 +9,13 @@ use super::unroll::area_vector;
 use super::{Shape, Smooth};
 use crate::error::{Error, Result};
 
-/// Weight of the angles across the loop's edges against the curvatures at the vertices.
+/// Weight of the angles across the loop's edges against the curvatures at the vertices. Chosen on disks cut
+/// from meshes: with 0.7 the seam is rougher than its surroundings by a fifth, with more than 3 the
+/// triangles at it get worse.
 const SEAM: f64 = 3.0;
+
+/// The same where the curvature is to continue: then a curved surface has angles across the loop, too.
+const SEAM_OF_CURVATURE: f64 = 0.7;
 
 /// Rounds of tangential sweeps and a normal step, at most.
 const ROUNDS: usize = 2;
@@ -118,6 +123,7 @@ impl Shape {
             (Smooth::Curvature, some) => some,
             _ => None,
         };
+        let seam = if membrane.is_some() { SEAM_OF_CURVATURE } else { SEAM };
         let rounds = match work.inner().len() {
             0..5_000 => ROUNDS,
             5_000..30_000 => 1,
@@ -129,7 +135,7 @@ impl Shape {
                 sweep(work, positions);
             }
             let target = membrane.as_ref().map(|m| curvature_target(work, m, positions)).transpose()?;
-            let [before, after] = bending.normal_step(positions, SEAM, target.as_deref())?;
+            let [before, after] = bending.normal_step(positions, seam, target.as_deref())?;
             if after > (1.0 - SETTLED) * before {
                 break;
             }
