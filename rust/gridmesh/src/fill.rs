@@ -5,6 +5,8 @@ mod exact;
 mod flat;
 mod flips;
 mod graded;
+mod grown;
 mod quality;
 mod settle;
 mod small;
+mod walls;

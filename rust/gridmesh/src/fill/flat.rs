@@ -7,8 +7,9 @@
 use glam::DVec2;
 
 use super::develop::Loop;
-use super::exact::{Layers, TURN, Wishes, route};
+use super::exact::{Layers, TURN, Wishes, conflicts, route};
 use super::graded::graded;
+use super::grown::grown;
 use super::quality::{Quality, measure};
 use super::settle::{Rings, even_out, extend, untangle};
 use super::small::{SMALL, around_centre, without_interior};
@@ -16,6 +17,7 @@ use crate::assemble::assemble;
 use crate::axial::Axial;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
+use crate::options::BoundaryMethod;
 use crate::progress::Progress;
 
 /// How a patch was made.
@@ -38,6 +40,8 @@ pub(crate) enum Method {
 pub(crate) struct FlatOptions {
     /// A loop of three may be one triangle.
     pub single: bool,
+    /// Where lattice patches get their boundary from.
+    pub boundary: BoundaryMethod,
     /// Cost of a squared lattice distance from the developed loop, in turns.
     pub closeness: f64,
     /// Cost of a squared logarithm of an angle at the loop against 60 degrees, in turns.
@@ -52,7 +56,15 @@ pub(crate) struct FlatOptions {
 
 impl Default for FlatOptions {
     fn default() -> Self {
-        FlatOptions { single: true, closeness: 0.4, shape: 3.0, reach: 2, angles: 6, placed: 2 }
+        FlatOptions {
+            single: true,
+            boundary: BoundaryMethod::Optimal,
+            closeness: 0.4,
+            shape: 3.0,
+            reach: 2,
+            angles: 6,
+            placed: 2,
+        }
     }
 }
 
@@ -104,7 +116,10 @@ pub(crate) fn fill_flat(
     let length: f64 = (0..n).map(|k| polygon[k].distance(polygon[(k + 1) % n])).sum();
     let scale = if length > 0.0 { length / n as f64 } else { 1.0 };
     let points: Vec<DVec2> = polygon.iter().map(|&p| (p - centre) / scale).collect();
-    let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0 };
+    let lengths = (0..n).map(|k| points[k].distance(points[(k + 1) % n]));
+    let (least, most) = lengths.fold((f64::INFINITY, 0.0f64), |(a, b), l| (a.min(l), b.max(l)));
+    let even = most <= 1.5 * least;
+    let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0, even };
     contest.run(options, progress)?;
     let candidates = contest.candidates;
     let Some((_, mut fill)) = contest.best else {
@@ -127,6 +142,8 @@ struct Contest<'a> {
     taken: &'a dyn Fn(usize, usize) -> bool,
     best: Option<(f64, FlatFill)>,
     candidates: usize,
+    /// The loop's edges differ by half at most: the patch should be regular inside.
+    even: bool,
 }
 
 impl Contest<'_> {
@@ -144,7 +161,9 @@ impl Contest<'_> {
         if n >= 5 {
             self.lattice(options, progress.part(0.0, 0.7))?;
         }
-        if self.best.as_ref().is_none_or(|(badness, _)| *badness > GOOD) && n > 3 {
+        let regular = |fill: &FlatFill| fill.quality.irregular == 0 && !fill.folded;
+        let settled = |(badness, fill): &(f64, FlatFill)| *badness <= GOOD || (self.even && regular(fill));
+        if n > 3 && !self.best.as_ref().is_some_and(settled) {
             match graded(self.points, self.wanted, self.taken, progress.part(0.7, 1.0)) {
                 Ok((interior, triangles)) => self.enter(interior, triangles, Method::Graded),
                 Err(Error::Solver { .. }) => {}
@@ -192,8 +211,18 @@ impl Contest<'_> {
                 progress.report(i as f64 / options.placed as f64)?;
                 let wishes =
                     Wishes { target, turns: &turns, closeness: options.closeness, reach: options.reach };
-                if let Some(route) = route(&wishes, self.taken, STARTS, ROUNDS) {
-                    self.place(&route.points, progress)?;
+                match options.boundary {
+                    BoundaryMethod::Optimal => {
+                        if let Some(route) = route(&wishes, self.taken, STARTS, ROUNDS) {
+                            self.place(&route.points, Method::Optimal, progress)?;
+                        }
+                    }
+                    BoundaryMethod::Grown => {
+                        let path = grown(target).filter(|path| conflicts(path, self.taken).is_empty());
+                        if let Some(path) = path {
+                            self.place(&path, Method::Grown, progress)?;
+                        }
+                    }
                 }
             }
             let uneven = shape.flux.iter().map(|f| f.abs()).sum::<f64>() > 1.0;
@@ -205,7 +234,7 @@ impl Contest<'_> {
     }
 
     /// Triangles inside a path, mapped to the loop.
-    fn place(&mut self, path: &[Axial], progress: Progress<'_>) -> Result<()> {
+    fn place(&mut self, path: &[Axial], method: Method, progress: Progress<'_>) -> Result<()> {
         let region = assemble(&[path.to_vec()]);
         let n = self.points.len();
         let mut positions: Vec<DVec2> = region.points.iter().map(|&p| Lattice::units(p)).collect();
@@ -218,7 +247,7 @@ impl Contest<'_> {
         if untangle(&rings, &mut positions, 40, progress)? {
             even_out(&rings, &mut positions, 12, 0.02, progress)?;
         }
-        self.enter(positions.split_off(n), region.triangles, Method::Optimal);
+        self.enter(positions.split_off(n), region.triangles, method);
         Ok(())
     }
 
@@ -245,7 +274,7 @@ impl Contest<'_> {
         let n = self.points.len();
         let positions = [self.points, &interior].concat();
         let quality = measure(&positions, &triangles, self.wanted, self.taken);
-        let badness = quality.badness(n);
+        let badness = quality.badness(n, self.even);
         self.candidates += 1;
         if badness < self.best.as_ref().map_or(f64::INFINITY, |b| b.0) {
             let folded = !quality.embedded;

@@ -2,17 +2,15 @@
 //! near by, joined by a constrained Delaunay triangulation. Works for every simple polygon.
 
 use glam::DVec2;
-use rstar::RTree;
-use rstar::primitives::{GeomWithData, Line};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::flips::improve_valences;
 use super::settle::{Rings, even_out, untangle};
+use super::walls::Walls;
 use crate::axial::Axial;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
 use crate::progress::Progress;
-use crate::segments::{nearest_on_segment, orientation};
 
 /// How much the size of the triangles grows per length, away from the loop.
 const GROWTH: f64 = 0.35;
@@ -163,7 +161,7 @@ impl SizeField {
         found.dedup_by_key(|f| f.0);
         let walls = Walls::new(polygon);
         let place = |p: Axial| origin + fine * Lattice::units(p);
-        let clear = |(p, size): (Axial, f64)| walls.contains(place(p), CLEARANCE * size).then(|| place(p));
+        let clear = |(p, size): (Axial, f64)| (walls.depth(place(p)) > CLEARANCE * size).then(|| place(p));
         found.into_iter().filter_map(clear).collect()
     }
 }
@@ -211,38 +209,5 @@ impl Descent<'_> {
         self.visit(corner + a, half, up, &near);
         self.visit(corner + b, half, up, &near);
         self.visit(corner + a + b, half, -up, &near);
-    }
-}
-
-/// The polygon's edges, to ask for the nearest.
-struct Walls<'a> {
-    polygon: &'a [DVec2],
-    tree: RTree<GeomWithData<Line<[f64; 2]>, usize>>,
-}
-
-impl<'a> Walls<'a> {
-    fn new(polygon: &'a [DVec2]) -> Walls<'a> {
-        let n = polygon.len();
-        let line = |k: usize| Line::new(polygon[k].to_array(), polygon[(k + 1) % n].to_array());
-        Walls { polygon, tree: RTree::bulk_load((0..n).map(|k| GeomWithData::new(line(k), k)).collect()) }
-    }
-
-    /// True for points inside that are further than `distance` from the edges.
-    fn contains(&self, x: DVec2, distance: f64) -> bool {
-        let Some(k) = self.tree.nearest_neighbor(&x.to_array()).map(|line| line.data) else { return false };
-        let n = self.polygon.len();
-        let corner = |k: usize| self.polygon[k % n];
-        let (a, b) = (corner(k), corner(k + 1));
-        let (t, squared) = nearest_on_segment(x, a, b);
-        let convex = |k: usize| orientation(corner(k + n - 1), corner(k), corner(k + 1)) > 0.0;
-        // Next to a corner, a point lies inside if the corner is reflex.
-        let inside = if t <= 0.0 {
-            !convex(k)
-        } else if t >= 1.0 {
-            !convex(k + 1)
-        } else {
-            orientation(a, b, x) > 0.0
-        };
-        inside && squared > distance * distance
     }
 }
