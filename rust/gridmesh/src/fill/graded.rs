@@ -2,6 +2,8 @@
 //! near by, joined by a constrained Delaunay triangulation. Works for every simple polygon.
 
 use glam::DVec2;
+use rstar::primitives::GeomWithData;
+use rstar::{AABB, RTree};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::flips::improve_valences;
@@ -162,8 +164,29 @@ impl SizeField {
         let walls = Walls::new(polygon);
         let place = |p: Axial| origin + fine * Lattice::units(p);
         let clear = |(p, size): (Axial, f64)| (walls.depth(place(p)) > CLEARANCE * size).then(|| place(p));
-        found.into_iter().filter_map(clear).collect()
+        let points = found.into_iter().filter_map(clear).collect();
+        outside_lenses(points, polygon)
     }
+}
+
+/// Leaves out points from which an edge of the loop is seen under more than 110 degrees: its
+/// triangle would be flat. Such points lie beside long edges that have short ones near by.
+fn outside_lenses(points: Vec<DVec2>, polygon: &[DVec2]) -> Vec<DVec2> {
+    const FLAT: f64 = -0.342_020_143_325_668_7; // cos 110
+    const HEIGHT: f64 = 0.36;
+    let place = |(i, p): (usize, &DVec2)| GeomWithData::new(p.to_array(), i);
+    let tree = RTree::bulk_load(points.iter().enumerate().map(place).collect());
+    let mut keep = vec![true; points.len()];
+    for (k, &a) in polygon.iter().enumerate() {
+        let b = polygon[(k + 1) % polygon.len()];
+        let pad = DVec2::splat(HEIGHT * a.distance(b));
+        let near = AABB::from_corners((a.min(b) - pad).to_array(), (a.max(b) + pad).to_array());
+        for found in tree.locate_in_envelope(&near) {
+            let (u, v) = (a - points[found.data], b - points[found.data]);
+            keep[found.data] &= u.dot(v) > FLAT * u.length() * v.length();
+        }
+    }
+    points.into_iter().zip(keep).filter_map(|(p, keep)| keep.then_some(p)).collect()
 }
 
 /// Distance of a vertex from the loop, in sizes, at least.
