@@ -12,7 +12,7 @@ mod deviation;
 pub mod dir;
 pub mod embed;
 pub mod error;
-mod fill;
+pub mod fill;
 pub mod growth;
 pub mod inflate;
 pub mod lattice;
