@@ -10,6 +10,7 @@ mod fit;
 mod flat;
 mod flips;
 mod graded;
+mod grown;
 pub mod holes;
 mod meet;
 mod mesh;
@@ -24,6 +25,7 @@ mod small;
 mod solver;
 mod sweep;
 mod unroll;
+mod walls;
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -20,7 +20,7 @@ use crate::lattice::Lattice;
 pub(super) const TURN: u32 = 64;
 
 /// Starts tried when the search runs again with prices.
-const REPAIR_STARTS: usize = 6;
+const REPAIR_STARTS: usize = 2;
 
 /// Conflicts left after some rounds that end the search.
 const HOPELESS: usize = 8;

@@ -7,8 +7,9 @@
 use glam::DVec2;
 
 use super::develop::Loop;
-use super::exact::{Layers, TURN, Wishes, route};
+use super::exact::{Layers, TURN, Wishes, conflicts, route};
 use super::graded::graded;
+use super::grown::grown;
 use super::quality::{Quality, measure};
 use super::settle::{Rings, even_out, extend, untangle};
 use super::small::{SMALL, around_centre, without_interior};
@@ -16,6 +17,7 @@ use crate::assemble::assemble;
 use crate::axial::Axial;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
+use crate::options::BoundaryMethod;
 use crate::progress::Progress;
 
 /// How a patch was made.
@@ -38,6 +40,8 @@ pub(crate) enum Method {
 pub(crate) struct FlatOptions {
     /// A loop of three may be one triangle.
     pub single: bool,
+    /// Where lattice patches get their boundary from.
+    pub boundary: BoundaryMethod,
     /// Cost of a squared lattice distance from the developed loop, in turns.
     pub closeness: f64,
     /// Cost of a squared logarithm of an angle at the loop against 60 degrees, in turns.
@@ -52,7 +56,15 @@ pub(crate) struct FlatOptions {
 
 impl Default for FlatOptions {
     fn default() -> Self {
-        FlatOptions { single: true, closeness: 0.4, shape: 3.0, reach: 2, angles: 6, placed: 2 }
+        FlatOptions {
+            single: true,
+            boundary: BoundaryMethod::Optimal,
+            closeness: 0.4,
+            shape: 3.0,
+            reach: 2,
+            angles: 6,
+            placed: 2,
+        }
     }
 }
 
@@ -104,7 +116,10 @@ pub(crate) fn fill_flat(
     let length: f64 = (0..n).map(|k| polygon[k].distance(polygon[(k + 1) % n])).sum();
     let scale = if length > 0.0 { length / n as f64 } else { 1.0 };
     let points: Vec<DVec2> = polygon.iter().map(|&p| (p - centre) / scale).collect();
-    let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0 };
+    let lengths = (0..n).map(|k| points[k].distance(points[(k + 1) % n]));
+    let (least, most) = lengths.fold((f64::INFINITY, 0.0f64), |(a, b), l| (a.min(l), b.max(l)));
+    let even = most <= 1.5 * least;
+    let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0, even };
     contest.run(options, progress)?;
     let candidates = contest.candidates;
     let Some((_, mut fill)) = contest.best else {
@@ -127,6 +142,8 @@ struct Contest<'a> {
     taken: &'a dyn Fn(usize, usize) -> bool,
     best: Option<(f64, FlatFill)>,
     candidates: usize,
+    /// The loop's edges differ by half at most: the patch should be regular inside.
+    even: bool,
 }
 
 impl Contest<'_> {
@@ -144,7 +161,9 @@ impl Contest<'_> {
         if n >= 5 {
             self.lattice(options, progress.part(0.0, 0.7))?;
         }
-        if self.best.as_ref().is_none_or(|(badness, _)| *badness > GOOD) && n > 3 {
+        let regular = |fill: &FlatFill| fill.quality.irregular == 0 && !fill.folded;
+        let settled = |(badness, fill): &(f64, FlatFill)| *badness <= GOOD || (self.even && regular(fill));
+        if n > 3 && !self.best.as_ref().is_some_and(settled) {
             match graded(self.points, self.wanted, self.taken, progress.part(0.7, 1.0)) {
                 Ok((interior, triangles)) => self.enter(interior, triangles, Method::Graded),
                 Err(Error::Solver { .. }) => {}
@@ -192,8 +211,18 @@ impl Contest<'_> {
                 progress.report(i as f64 / options.placed as f64)?;
                 let wishes =
                     Wishes { target, turns: &turns, closeness: options.closeness, reach: options.reach };
-                if let Some(route) = route(&wishes, self.taken, STARTS, ROUNDS) {
-                    self.place(&route.points, progress)?;
+                match options.boundary {
+                    BoundaryMethod::Optimal => {
+                        if let Some(route) = route(&wishes, self.taken, STARTS, ROUNDS) {
+                            self.place(&route.points, Method::Optimal, progress)?;
+                        }
+                    }
+                    BoundaryMethod::Grown => {
+                        let path = grown(target).filter(|path| conflicts(path, self.taken).is_empty());
+                        if let Some(path) = path {
+                            self.place(&path, Method::Grown, progress)?;
+                        }
+                    }
                 }
             }
             let uneven = shape.flux.iter().map(|f| f.abs()).sum::<f64>() > 1.0;
@@ -205,7 +234,7 @@ impl Contest<'_> {
     }
 
     /// Triangles inside a path, mapped to the loop.
-    fn place(&mut self, path: &[Axial], progress: Progress<'_>) -> Result<()> {
+    fn place(&mut self, path: &[Axial], method: Method, progress: Progress<'_>) -> Result<()> {
         let region = assemble(&[path.to_vec()]);
         let n = self.points.len();
         let mut positions: Vec<DVec2> = region.points.iter().map(|&p| Lattice::units(p)).collect();
@@ -218,7 +247,7 @@ impl Contest<'_> {
         if untangle(&rings, &mut positions, 40, progress)? {
             even_out(&rings, &mut positions, 12, 0.02, progress)?;
         }
-        self.enter(positions.split_off(n), region.triangles, Method::Optimal);
+        self.enter(positions.split_off(n), region.triangles, method);
         Ok(())
     }
 
@@ -245,7 +274,7 @@ impl Contest<'_> {
         let n = self.points.len();
         let positions = [self.points, &interior].concat();
         let quality = measure(&positions, &triangles, self.wanted, self.taken);
-        let badness = quality.badness(n);
+        let badness = quality.badness(n, self.even);
         self.candidates += 1;
         if badness < self.best.as_ref().map_or(f64::INFINITY, |b| b.0) {
             let folded = !quality.embedded;
@@ -329,4 +358,146 @@ fn round_loop(points: &[DVec2]) -> Vec<DVec2> {
             length / std::f64::consts::TAU * DVec2::from_angle(angle)
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::{BTreeMap, BTreeSet};
+
+    fn none(_: usize, _: usize) -> bool {
+        false
+    }
+
+    fn fill(polygon: &[DVec2], taken: &dyn Fn(usize, usize) -> bool) -> FlatFill {
+        let wanted = vec![4; polygon.len()];
+        match fill_flat(polygon, &wanted, taken, &FlatOptions::default(), Progress::NONE) {
+            Ok(fill) => fill,
+            Err(error) => panic!("{error}: {polygon:?}"),
+        }
+    }
+
+    /// A disk whose boundary is the loop, counter-clockwise, without an edge that is taken.
+    fn check(polygon: &[DVec2], fill: &FlatFill, taken: &dyn Fn(usize, usize) -> bool) {
+        let n = polygon.len();
+        let vertices = n + fill.interior.len();
+        let mut edges: BTreeMap<(u32, u32), usize> = BTreeMap::new();
+        for t in &fill.triangles {
+            for k in 0..3 {
+                *edges.entry((t[k], t[(k + 1) % 3])).or_default() += 1;
+            }
+        }
+        assert!(edges.values().all(|&count| count == 1), "an edge occurs twice in one direction");
+        let open: BTreeSet<(u32, u32)> =
+            edges.keys().copied().filter(|&(a, b)| !edges.contains_key(&(b, a))).collect();
+        let rim: BTreeSet<(u32, u32)> = (0..n as u32).map(|k| (k, (k + 1) % n as u32)).collect();
+        assert_eq!(open, rim);
+        let used: BTreeSet<u32> = fill.triangles.iter().flatten().copied().collect();
+        assert_eq!(used.len(), vertices);
+        let undirected = (edges.len() + n) / 2;
+        assert_eq!(vertices + fill.triangles.len(), undirected + 1, "not a disk");
+        for &(a, b) in edges.keys().filter(|e| !rim.contains(e) && !rim.contains(&(e.1, e.0))) {
+            let (i, j) = (a.min(b) as usize, a.max(b) as usize);
+            assert!(j >= n || !taken(i, j), "edge {i} {j} is taken");
+        }
+        let positions = [polygon, &fill.interior].concat();
+        let centre = polygon.iter().sum::<DVec2>() / n as f64;
+        let embedded = crate::relax::first_inverted(&positions, &fill.triangles, centre).is_none();
+        assert_eq!(embedded, !fill.folded);
+    }
+
+    /// Loops that wind once around the origin, with edges of very different lengths.
+    fn star_shaped() -> impl Strategy<Value = Vec<DVec2>> {
+        prop::collection::vec((0.05..1.0f64, 0.4..1.6f64), 3..70).prop_map(|parts| {
+            let sum: f64 = parts.iter().map(|p| p.0).sum();
+            let mut angle = 0.0;
+            let point = |(step, radius): &(f64, f64)| {
+                angle += std::f64::consts::TAU * step / sum;
+                DVec2::from_angle(angle) * *radius
+            };
+            parts.iter().map(point).collect()
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn simple_loops_get_disks_that_are_not_folded(polygon in star_shaped(), seed in 0usize..5) {
+            let n = polygon.len();
+            let turns: f64 = Loop::new(&polygon).turning.iter().sum();
+            prop_assume!((turns - std::f64::consts::TAU).abs() < 1e-6);
+            let widest = (0..n).map(|k| polygon[k].angle_to(polygon[(k + 1) % n])).fold(0.0, |a: f64, b| a.max(b.abs()));
+            prop_assume!(widest < 3.0);
+            // About one pair in four has an edge already.
+            let taken = |i: usize, j: usize| seed > 0 && n > 3 && (i * 7 + j * 13 + seed) % 4 == 0;
+            let patch = fill(&polygon, &taken);
+            check(&polygon, &patch, &taken);
+            prop_assert!(!patch.folded);
+        }
+
+        #[test]
+        fn any_points_get_a_disk(
+            points in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64), 3..40), all in any::<bool>()
+        ) {
+            let polygon: Vec<DVec2> = points.into_iter().map(DVec2::from).collect();
+            let taken = |_: usize, _: usize| all;
+            let patch = fill(&polygon, &taken);
+            check(&polygon, &patch, &taken);
+        }
+    }
+
+    #[test]
+    fn even_round_loops_are_regular_inside() {
+        for n in (6..60).filter(|&n| n != 7) {
+            let polygon: Vec<DVec2> =
+                (0..n).map(|k| DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect();
+            let patch = fill(&polygon, &none);
+            check(&polygon, &patch, &none);
+            assert_eq!((patch.folded, patch.quality.irregular), (false, 0), "{n}");
+            assert!(patch.quality.min_angle > 0.35, "{n}: {}", patch.quality.min_angle);
+        }
+    }
+
+    #[test]
+    fn loops_on_a_line_and_points_that_coincide_are_filled_folded() {
+        let line: Vec<DVec2> = (0..7).map(|k| DVec2::new(f64::from(k), 0.0)).collect();
+        let patch = fill(&line, &none);
+        check(&line, &patch, &none);
+        assert!(patch.folded);
+        let point = [DVec2::ZERO; 8];
+        check(&point, &fill(&point, &none), &none);
+    }
+
+    #[test]
+    fn long_edges_beside_short_ones_are_filled() {
+        // One edge of a square is split a hundred times.
+        let mut polygon: Vec<DVec2> = (0..100).map(|k| DVec2::new(0.01 * f64::from(k), 0.0)).collect();
+        polygon.extend([(1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from));
+        let patch = fill(&polygon, &none);
+        check(&polygon, &patch, &none);
+        assert!(!patch.folded);
+        assert!(patch.quality.min_angle > 0.06, "{}", patch.quality.min_angle);
+        assert!(patch.triangles.len() < 2000, "{}", patch.triangles.len());
+    }
+
+    #[test]
+    fn the_same_loop_gives_the_same_bytes() {
+        let polygon: Vec<DVec2> = (0..40)
+            .map(|k| {
+                DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / 40.0 + 0.1 * f64::from(k).sin())
+            })
+            .collect();
+        let (a, b) = (fill(&polygon, &none), fill(&polygon, &none));
+        assert_eq!((a.interior, a.triangles), (b.interior, b.triangles));
+    }
+
+    #[test]
+    fn bad_input_is_refused() {
+        let call =
+            |p: &[DVec2]| fill_flat(p, &vec![4; p.len()], &none, &FlatOptions::default(), Progress::NONE);
+        assert!(matches!(call(&[DVec2::ZERO, DVec2::X]), Err(Error::TooFewPoints { .. })));
+        assert!(matches!(call(&[DVec2::ZERO, DVec2::X, DVec2::NAN]), Err(Error::NotFinite { point: 2, .. })));
+    }
 }

@@ -2,17 +2,17 @@
 //! near by, joined by a constrained Delaunay triangulation. Works for every simple polygon.
 
 use glam::DVec2;
-use rstar::RTree;
-use rstar::primitives::{GeomWithData, Line};
+use rstar::primitives::GeomWithData;
+use rstar::{AABB, RTree};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::flips::improve_valences;
 use super::settle::{Rings, even_out, untangle};
+use super::walls::Walls;
 use crate::axial::Axial;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
 use crate::progress::Progress;
-use crate::segments::{nearest_on_segment, orientation};
 
 /// How much the size of the triangles grows per length, away from the loop.
 const GROWTH: f64 = 0.35;
@@ -163,9 +163,30 @@ impl SizeField {
         found.dedup_by_key(|f| f.0);
         let walls = Walls::new(polygon);
         let place = |p: Axial| origin + fine * Lattice::units(p);
-        let clear = |(p, size): (Axial, f64)| walls.contains(place(p), CLEARANCE * size).then(|| place(p));
-        found.into_iter().filter_map(clear).collect()
+        let clear = |(p, size): (Axial, f64)| (walls.depth(place(p)) > CLEARANCE * size).then(|| place(p));
+        let points = found.into_iter().filter_map(clear).collect();
+        outside_lenses(points, polygon)
     }
+}
+
+/// Leaves out points from which an edge of the loop is seen under more than 110 degrees: its
+/// triangle would be flat. Such points lie beside long edges that have short ones near by.
+fn outside_lenses(points: Vec<DVec2>, polygon: &[DVec2]) -> Vec<DVec2> {
+    const FLAT: f64 = -0.342_020_143_325_668_7; // cos 110
+    const HEIGHT: f64 = 0.36;
+    let place = |(i, p): (usize, &DVec2)| GeomWithData::new(p.to_array(), i);
+    let tree = RTree::bulk_load(points.iter().enumerate().map(place).collect());
+    let mut keep = vec![true; points.len()];
+    for (k, &a) in polygon.iter().enumerate() {
+        let b = polygon[(k + 1) % polygon.len()];
+        let pad = DVec2::splat(HEIGHT * a.distance(b));
+        let near = AABB::from_corners((a.min(b) - pad).to_array(), (a.max(b) + pad).to_array());
+        for found in tree.locate_in_envelope(&near) {
+            let (u, v) = (a - points[found.data], b - points[found.data]);
+            keep[found.data] &= u.dot(v) > FLAT * u.length() * v.length();
+        }
+    }
+    points.into_iter().zip(keep).filter_map(|(p, keep)| keep.then_some(p)).collect()
 }
 
 /// Distance of a vertex from the loop, in sizes, at least.
@@ -211,38 +232,5 @@ impl Descent<'_> {
         self.visit(corner + a, half, up, &near);
         self.visit(corner + b, half, up, &near);
         self.visit(corner + a + b, half, -up, &near);
-    }
-}
-
-/// The polygon's edges, to ask for the nearest.
-struct Walls<'a> {
-    polygon: &'a [DVec2],
-    tree: RTree<GeomWithData<Line<[f64; 2]>, usize>>,
-}
-
-impl<'a> Walls<'a> {
-    fn new(polygon: &'a [DVec2]) -> Walls<'a> {
-        let n = polygon.len();
-        let line = |k: usize| Line::new(polygon[k].to_array(), polygon[(k + 1) % n].to_array());
-        Walls { polygon, tree: RTree::bulk_load((0..n).map(|k| GeomWithData::new(line(k), k)).collect()) }
-    }
-
-    /// True for points inside that are further than `distance` from the edges.
-    fn contains(&self, x: DVec2, distance: f64) -> bool {
-        let Some(k) = self.tree.nearest_neighbor(&x.to_array()).map(|line| line.data) else { return false };
-        let n = self.polygon.len();
-        let corner = |k: usize| self.polygon[k % n];
-        let (a, b) = (corner(k), corner(k + 1));
-        let (t, squared) = nearest_on_segment(x, a, b);
-        let convex = |k: usize| orientation(corner(k + n - 1), corner(k), corner(k + 1)) > 0.0;
-        // Next to a corner, a point lies inside if the corner is reflex.
-        let inside = if t <= 0.0 {
-            !convex(k)
-        } else if t >= 1.0 {
-            !convex(k + 1)
-        } else {
-            orientation(a, b, x) > 0.0
-        };
-        inside && squared > distance * distance
     }
 }

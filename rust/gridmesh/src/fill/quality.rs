@@ -66,8 +66,9 @@ pub(super) fn measure(
 }
 
 impl Quality {
-    /// One number to choose by; less is better, infinite for patches that must not be used.
-    pub fn badness(&self, n_loop: usize) -> f64 {
+    /// One number to choose by; less is better, infinite for patches that must not be used. For an
+    /// `even` loop, irregular vertices weigh more than all else but folds.
+    pub fn badness(&self, n_loop: usize, even: bool) -> f64 {
         if self.repeated > 0 {
             return f64::INFINITY;
         }
