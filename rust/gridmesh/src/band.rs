@@ -68,7 +68,13 @@ impl Band {
     /// Collects the nodes whose nearest distance is at most `max_distance`; runs reach out to
     /// `max_distance + SLACK`.
     pub fn new(target: &Target, max_distance: f64) -> Self {
-        Scan::new(target, max_distance + SLACK).finish(max_distance)
+        Scan::new(&target.points, true, max_distance + SLACK).finish(max_distance)
+    }
+
+    /// Likewise for the open line through some points: runs do not go round its ends, and no link
+    /// does.
+    pub(crate) fn along(points: &[DVec2], max_distance: f64) -> Self {
+        Scan::new(points, false, max_distance + SLACK).finish(max_distance)
     }
 
     /// Number of samples of the target: parameters are taken modulo this.
@@ -112,6 +118,7 @@ struct Scan {
     /// Nodes active on segment 0 are the first so many.
     heads: usize,
     n_samples: usize,
+    closed: bool,
 }
 
 /// The latest node of each point near the segment at hand: a square of slots that the axial
@@ -122,12 +129,9 @@ struct Window {
 }
 
 impl Window {
-    fn new(target: &Target, reach: f64) -> Self {
-        let longest = (0..target.len())
-            .map(|i| {
-                let (a, b) = target.segment(i);
-                a.distance_squared(b)
-            })
+    fn new(points: &[DVec2], n_segments: usize, reach: f64) -> Self {
+        let longest = (0..n_segments)
+            .map(|i| points[i].distance_squared(points[(i + 1) % points.len()]))
             .fold(0.0, f64::max)
             .sqrt();
         let width = (2.0 * reach + longest) / ROW_HEIGHT + 2.0;
@@ -142,14 +146,14 @@ impl Window {
 }
 
 impl Scan {
-    fn new(target: &Target, reach: f64) -> Self {
-        let n = target.len();
-        let mut window = Window::new(target, reach);
+    fn new(points: &[DVec2], closed: bool, reach: f64) -> Self {
+        let n = if closed { points.len() } else { points.len().saturating_sub(1) };
+        let mut window = Window::new(points, n, reach);
         let mut nodes: Vec<Node> = Vec::with_capacity(2 * n);
         let mut pairs = Vec::with_capacity(6 * n);
         let mut heads = 0;
         for segment in 0..n {
-            let (a, b) = target.segment(segment);
+            let (a, b) = (points[segment], points[(segment + 1) % points.len()]);
             let at = segment as u32;
             let fresh = nodes.len();
             points_near(a, b, reach, |point, t, squared| {
@@ -191,14 +195,16 @@ impl Scan {
                 heads = nodes.len();
             }
         }
-        Self { nodes, pairs, heads, n_samples: n }
+        Self { nodes, pairs, heads, n_samples: n, closed }
     }
 
     /// Joins the runs across the end, drops the nodes that are too far, numbers and links the rest.
     fn finish(mut self, max_distance: f64) -> Band {
         // Where a node went: to itself or to the one it was joined to, and how many turns on.
         let mut rep: Vec<(u32, i8)> = (0..self.nodes.len() as u32).map(|i| (i, 0)).collect();
-        self.join_ends(&mut rep);
+        if self.closed {
+            self.join_ends(&mut rep);
+        }
         let near = max_distance * max_distance;
         let mut number = vec![NONE; self.nodes.len()];
         let mut nodes = Vec::with_capacity(self.nodes.len());

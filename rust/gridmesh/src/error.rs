@@ -60,6 +60,17 @@ pub enum Error {
         /// What is wrong with it, such as `crosses the outline`.
         reason: String,
     },
+    /// A mirror-symmetric mesh was asked for, of a drawing that is not symmetric.
+    NotSymmetric {
+        /// What is not, such as `outline` or `hole 2`.
+        what: String,
+        /// How far a point is from the mirror image of its partner; infinite if it has none.
+        distance: f64,
+        /// The distance allowed.
+        allowed: f64,
+        /// Where, in the units of the drawing.
+        at: [f64; 2],
+    },
     /// An option has a value that is not allowed.
     InvalidOption {
         /// Name of the option.
@@ -195,6 +206,7 @@ impl Error {
             Error::SelfIntersecting { .. } => "self_intersecting",
             Error::Disconnected { .. } => "disconnected",
             Error::HoleMisplaced { .. } => "hole_misplaced",
+            Error::NotSymmetric { .. } => "not_symmetric",
             Error::InvalidOption { .. } => "invalid_option",
             Error::TooCoarse { .. } => "too_coarse",
             Error::TooLarge { .. } => "too_large",
@@ -249,6 +261,19 @@ impl fmt::Display for Error {
                 write!(
                     f,
                     "hole {hole} {reason}; each hole must lie inside the outline and apart from the others"
+                )
+            }
+            Error::NotSymmetric { what, distance, allowed, at: [x, y] } => {
+                write!(f, "the {what} is not its own mirror image: near ({x:.6}, {y:.6}) ")?;
+                if distance.is_finite() {
+                    write!(f, "it is {distance:.3e} off")?;
+                } else {
+                    write!(f, "it has no partner across the axis")?;
+                }
+                write!(
+                    f,
+                    "; allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
+                     or mesh it without mirror"
                 )
             }
             Error::InvalidOption { name, value, allowed } => {

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::axial::Axial;
+use crate::reflection::Reflection;
 
 /// Half the square root of three: the height of an equilateral triangle of edge one.
 pub const ROW_HEIGHT: f64 = 0.866_025_403_784_438_6;
@@ -26,6 +27,14 @@ impl Lattice {
     /// The position of a lattice point, in lattice units.
     pub fn units(point: Axial) -> DVec2 {
         DVec2::new(f64::from(point.q) + 0.5 * f64::from(point.r), ROW_HEIGHT * f64::from(point.r))
+    }
+
+    /// The mirror image of a position in lattice units, exact.
+    pub fn reflected(axis: Reflection, units: DVec2) -> DVec2 {
+        match axis {
+            Reflection::Along => DVec2::new(units.x, -units.y),
+            Reflection::Across => DVec2::new(-units.x, units.y),
+        }
     }
 
     /// The real axial coordinates `(q, r)` of a position in lattice units.

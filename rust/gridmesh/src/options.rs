@@ -62,7 +62,7 @@ pub struct SketchOptions {
     pub angle: Option<f64>,
     /// Corners that turn by more than this (radians, 0 to pi) get a vertex of their own.
     pub corner_angle: f64,
-    /// Mirror axis.
+    /// Mirror axis: the mesh is its own mirror image, topology and positions.
     pub mirror: Option<Mirror>,
     /// What to do with an outline that crosses itself.
     pub self_crossing: SelfCrossing,
@@ -134,11 +134,11 @@ impl SketchOptions {
         if !(0.0..=std::f64::consts::PI).contains(&self.corner_angle) {
             return refuse("corner_angle", self.corner_angle, "0 to pi radians");
         }
-        if self.mirror.is_some() {
+        if self.mirror.is_some() && self.boundary == BoundaryMethod::Grown {
             return Err(Error::InvalidOption {
                 name: "mirror",
-                value: "given".to_owned(),
-                allowed: "none: mirror-symmetric meshes are not made yet",
+                value: "given, with boundary grown".to_owned(),
+                allowed: "none, or boundary optimal: growth has no symmetric form",
             });
         }
         Ok(())
@@ -158,7 +158,7 @@ pub struct SketchReport {
     pub turns: usize,
     /// `turns` before the grown boundary was straightened (section IV-D); they only fall.
     pub turns_before: Option<usize>,
-    /// Lower bound of `turns` for this lattice and distance, if it was computed.
+    /// No traced boundary for this lattice and distance turns less, conflicts or not.
     pub turns_bound: Option<usize>,
     /// Turns plus `closeness` times the squared distances of the path, in edges.
     pub cost: f64,
@@ -182,6 +182,9 @@ pub struct SketchReport {
     pub released_corners: usize,
     /// Input points dropped because they repeat their predecessor.
     pub repaired: usize,
+    /// Greatest distance of a vertex from the mirror image of its partner, in edges: rounding, if the
+    /// drawing is exactly symmetric. `None` without `mirror`.
+    pub mirror_error: Option<f64>,
     /// Lattice placements tried before one gave a valid patch.
     pub placements: usize,
     /// Seconds spent in each stage.

@@ -14,7 +14,7 @@ use crate::options::SketchOptions;
 use crate::progress::Progress;
 use crate::raster::Raster;
 use crate::target::Target;
-use crate::trace::{TraceFailure, TraceOptions, trace};
+use crate::trace::{TraceFailure, TraceOptions, fewest_turns, trace};
 
 /// Narrow parts are widened to this many edges before growing; wider than two rows of triangles.
 const NECK_WIDTH: f64 = 2.4;
@@ -30,7 +30,8 @@ pub(crate) struct Outline {
     pub(crate) arcs: Vec<Vec<f64>>,
     /// Turns of the grown path before it was straightened.
     pub(crate) turns_before: Option<usize>,
-    pub(crate) turns_bound: Option<usize>,
+    /// What the paths follow, if they are traced.
+    pub(crate) targets: Vec<Target>,
     pub(crate) cost: f64,
     pub(crate) cost_bound: Option<f64>,
     pub(crate) optimal: bool,
@@ -63,6 +64,12 @@ impl Outline {
     /// Sum of absolute turns.
     pub(crate) fn turns(&self) -> usize {
         self.paths.iter().map(|path| turns(path).map(|t| t.unsigned_abs() as usize).sum::<usize>()).sum()
+    }
+
+    /// A lower bound of the turns of any traced path at this distance.
+    pub(crate) fn turns_bound(&self) -> Option<usize> {
+        let fewest = fewest_turns(&self.targets, self.max_distance_used);
+        fewest.filter(|_| !self.targets.is_empty())
     }
 
     /// Number of boundary vertices that turn: irregular after stitching.
@@ -161,11 +168,11 @@ pub(crate) fn traced(
     Ok(Ok(Outline {
         arcs: arcs.collect(),
         turns_before: None,
-        turns_bound: Some(traced.turns_bound),
         cost: traced.cost,
         cost_bound: Some(traced.cost_bound),
         optimal: traced.optimal,
         max_distance_used: traced.max_distance_used,
         paths: traced.paths.into_iter().map(|path| path.points).collect(),
+        targets,
     }))
 }

@@ -10,6 +10,7 @@ use crate::contours::read_contours;
 use crate::curve::ClosedCurve;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
+use crate::mirror;
 use crate::options::{
     BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SelfCrossing, SketchOptions, SketchReport,
 };
@@ -18,6 +19,7 @@ use crate::outline::{Obstacle, Outline, grown, traced};
 use crate::patch::Patch;
 use crate::place::{Placed, min_angle, min_angle_off_corners, place};
 use crate::progress::Progress;
+use crate::symmetry::Symmetry;
 use crate::target::Target;
 use crate::union::{nearest_source, outer_outline};
 
@@ -94,8 +96,12 @@ pub fn mesh_sketch(
     if expected.is_nan() || expected > MAX_TRIANGLES {
         return Err(Error::TooLarge { triangles: expected, limit: MAX_TRIANGLES });
     }
+    let find = |mirror| Symmetry::find(&contours, mirror, edge_length);
+    let symmetry = options.mirror.map(find).transpose()?;
+    mirror::check_angle(symmetry.as_ref(), options.angle)?;
     let centre = centroid(contours[0].points());
-    let mut job = Job { contours, options, area, centre, seconds: Vec::new(), placements: 0 };
+    let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
+    let mut job = Job { contours, symmetry, options, area, centre, seconds: Vec::new(), placements: 0 };
     job.lap("curve", started);
     let asked = match options.edge_length {
         Some(h) => Asked::EdgeLength(h),
@@ -140,6 +146,7 @@ enum Effort {
 
 struct Job<'a> {
     contours: Vec<ClosedCurve>,
+    symmetry: Option<Symmetry>,
     options: &'a SketchOptions,
     area: f64,
     centre: DVec2,
@@ -166,10 +173,10 @@ impl Job<'_> {
         progress: Progress<'_>,
     ) -> Result<Result<Sketch, Obstacle>> {
         let started = Instant::now();
-        let angles = self.angles(asked, effort);
-        let found: Vec<Result<Result<(Lattice, Outline), Obstacle>>> = angles
+        let lattices = self.placements_to_try(asked, effort);
+        let found: Vec<Result<Result<(Lattice, Outline), Obstacle>>> = lattices
             .par_iter()
-            .map(|&angle| self.outline(asked, angle, DVec2::ZERO, progress.part(0.0, 0.3)))
+            .map(|&(angle, shift)| self.outline(asked, angle, shift, progress.part(0.0, 0.3)))
             .collect();
         let mut obstacle = None;
         let mut outlines = Vec::new();
@@ -181,10 +188,10 @@ impl Job<'_> {
         }
         outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
         self.lap("boundary", started);
-        let shifts = if effort == Effort::Full { SHIFTS.len() } else { 1 };
+        let shifts = if effort == Effort::Full && self.symmetry.is_none() { SHIFTS.len() } else { 1 };
         let mut shifts = SHIFTS[..shifts].iter().enumerate().skip(1);
         let mut outlines = outlines.into_iter();
-        let mut best: Option<(f64, Outline, Placed)> = None;
+        let mut best: Option<(f64, Outline, Placed, Option<f64>)> = None;
         loop {
             let (lattice, outline) = match outlines.next() {
                 Some(next) => next,
@@ -193,7 +200,7 @@ impl Job<'_> {
                     let Some((k, shift)) = shifts.next() else { break };
                     let started = Instant::now();
                     let part = progress.part(0.3 + 0.1 * k as f64, 0.4 + 0.1 * k as f64);
-                    let found = self.outline(asked, angles[0], DVec2::from_array(*shift), part)?;
+                    let found = self.outline(asked, lattices[0].0, DVec2::from_array(*shift), part)?;
                     self.lap("boundary", started);
                     match found {
                         Ok(found) => found,
@@ -206,13 +213,13 @@ impl Job<'_> {
             };
             self.placements += 1;
             let started = Instant::now();
-            let placed = place(&self.contours, &lattice, &outline, self.options, progress.part(0.3, 0.9))?;
+            let placed = self.place(&lattice, &outline, progress.part(0.3, 0.9))?;
             self.lap("placement", started);
             match placed {
-                Ok(placed) => {
+                Ok((placed, mirror_error)) => {
                     let faults = faults(&placed);
                     if best.as_ref().is_none_or(|(least, ..)| faults < *least) {
-                        best = Some((faults, outline, placed));
+                        best = Some((faults, outline, placed, mirror_error));
                     }
                     if faults == 0.0 {
                         break;
@@ -221,11 +228,38 @@ impl Job<'_> {
                 Err(found) => obstacle = Some(found),
             }
         }
-        if let Some((_, outline, placed)) = best {
-            return Ok(Ok(self.report(&outline, placed)));
+        if let Some((_, outline, placed, mirror_error)) = best {
+            return Ok(Ok(self.report(&outline, placed, mirror_error)));
         }
         let none = || Obstacle { reason: "no lattice was tried".to_owned(), at: DVec2::ZERO };
         Ok(Err(obstacle.unwrap_or_else(none)))
+    }
+
+    /// The patch of an outline, symmetric if that was asked for; and by how much it is not.
+    fn place(
+        &self,
+        lattice: &Lattice,
+        outline: &Outline,
+        progress: Progress<'_>,
+    ) -> Result<Result<(Placed, Option<f64>), Obstacle>> {
+        let placed = place(&self.contours, lattice, outline, self.options, progress)?;
+        Ok(match &self.symmetry {
+            None => placed.map(|placed| (placed, None)),
+            Some(symmetry) => placed
+                .and_then(|p| mirror::symmetrised(&self.contours, symmetry, outline, p, self.options))
+                .map(|(placed, error)| (placed, Some(error))),
+        })
+    }
+
+    /// The lattices to try: angles, and shifts of the origin in edges.
+    fn placements_to_try(&self, asked: Asked, effort: Effort) -> Vec<(f64, DVec2)> {
+        if let Some(symmetry) = &self.symmetry {
+            const QUICK: usize = 2;
+            let mut lattices = mirror::placements(symmetry, self.options.angle);
+            lattices.truncate(if effort == Effort::Full { lattices.len() } else { QUICK });
+            return lattices;
+        }
+        self.angles(asked, effort).into_iter().map(|angle| (angle, DVec2::ZERO)).collect()
     }
 
     /// The lattice angles to try: the one asked for, or those with the fewest turns predicted.
@@ -301,6 +335,9 @@ impl Job<'_> {
     }
 
     fn path(&self, lattice: &Lattice, progress: Progress<'_>) -> Result<Result<Outline, Obstacle>> {
+        if let Some(symmetry) = &self.symmetry {
+            return mirror::traced(&self.contours, symmetry, lattice, self.options, progress);
+        }
         match self.options.boundary {
             BoundaryMethod::Grown => grown(&self.contours[0], lattice, self.options, progress),
             BoundaryMethod::Optimal => traced(&self.contours, lattice, self.options, progress),
@@ -385,7 +422,7 @@ impl Job<'_> {
     }
 
     /// The patch with its numbers.
-    fn report(&mut self, outline: &Outline, placed: Placed) -> Sketch {
+    fn report(&mut self, outline: &Outline, placed: Placed, mirror_error: Option<f64>) -> Sketch {
         let started = Instant::now();
         let patch = placed.patch;
         let mut report = SketchReport {
@@ -394,7 +431,7 @@ impl Job<'_> {
             minimum_irregular: 6 + 3 * (self.contours.len() - 1),
             turns: outline.turns(),
             turns_before: outline.turns_before,
-            turns_bound: outline.turns_bound,
+            turns_bound: outline.turns_bound(),
             cost: outline.cost,
             cost_bound: outline.cost_bound,
             optimal: outline.optimal,
@@ -405,6 +442,7 @@ impl Job<'_> {
             corners: placed.corners,
             released_corners: placed.released_corners,
             repaired: self.contours.iter().map(ClosedCurve::repaired).sum(),
+            mirror_error,
             placements: self.placements,
             seconds: Vec::new(),
         };

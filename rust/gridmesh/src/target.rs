@@ -7,7 +7,7 @@ use crate::lattice::Lattice;
 use crate::segments::SegmentGrid;
 
 /// Spacing of the samples in lattice edges.
-const SPACING: f64 = 0.4;
+pub(crate) const SPACING: f64 = 0.4;
 /// Standard deviation of the smoothing in lattice edges.
 const SIGMA: f64 = 0.5;
 
@@ -45,7 +45,13 @@ impl Target {
             let (a, b) = (drawn[segment], drawn[(segment + 1) % drawn.len()]);
             sampled.push(a.lerp(b, ((s - from) / (to - from)).clamp(0.0, 1.0)));
         }
-        Self { points: smooth(&sampled, SIGMA / step), step }
+        Self::faired(&sampled, step)
+    }
+
+    /// Smooths evenly spaced samples of a closed curve, in lattice units. Where they are symmetric, so is
+    /// the result, to the last bit.
+    pub(crate) fn faired(samples: &[DVec2], step: f64) -> Self {
+        Self { points: smooth(samples, SIGMA / step), step }
     }
 
     /// Number of samples.

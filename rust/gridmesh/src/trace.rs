@@ -10,6 +10,8 @@
 mod conflicts;
 mod dive;
 mod graph;
+mod half;
+mod mirrored;
 mod parameters;
 mod prices;
 mod proof;
@@ -32,6 +34,7 @@ use crate::target::Target;
 use conflicts::Vertex;
 use dive::{Contour, Dive};
 use graph::{Graph, TURN};
+pub use mirrored::{Part, trace_mirrored};
 use prices::Prices;
 use proof::Proof;
 use search::{Search, Walk};
@@ -85,9 +88,6 @@ pub struct Traced {
     pub cost_bound: f64,
     /// Number of turns by 60 degrees; turns by 120 count twice. The paper's `err_dc`.
     pub turns: usize,
-    /// Number of turns of the paths that are cheapest regardless of conflicts, or `turns` if that
-    /// is less or the paths are optimal.
-    pub turns_bound: usize,
     /// The paths are proved to be the cheapest.
     pub optimal: bool,
     /// The distance that was allowed: `max_distance`, or 2 if there was no boundary within it.
@@ -195,13 +195,41 @@ pub fn trace(
     options: &TraceOptions,
     progress: Progress<'_>,
 ) -> Result<Traced, TraceFailure> {
-    let first = options.max_distance.min(MOST_DISTANCE);
-    match attempt(targets, options, first, progress.part(0.0, 0.5)) {
+    over_distances(options.max_distance, progress, |distance, progress| {
+        attempt(targets, options, distance, progress)
+    })
+}
+
+/// Tries the distance asked for, then a greater one.
+fn over_distances(
+    max_distance: f64,
+    progress: Progress<'_>,
+    mut attempt: impl FnMut(f64, Progress<'_>) -> Result<Traced, TraceFailure>,
+) -> Result<Traced, TraceFailure> {
+    let first = max_distance.min(MOST_DISTANCE);
+    match attempt(first, progress.part(0.0, 0.5)) {
         Err(failure) if failure != TraceFailure::Cancelled && first < SECOND_DISTANCE => {
-            attempt(targets, options, SECOND_DISTANCE, progress.part(0.5, 1.0))
+            attempt(SECOND_DISTANCE, progress.part(0.5, 1.0))
         }
         result => result,
     }
+}
+
+/// No closed lattice paths near the targets turn less often than this: the fewest turns regardless of
+/// distances and conflicts. `None` if there are no paths.
+///
+/// `max_distance` is the one that was used. O(n log n) in the total length in edges.
+pub fn fewest_turns(targets: &[Target], max_distance: f64) -> Option<usize> {
+    let mut search = Search::new();
+    let mut turns = 0;
+    for target in targets {
+        let graph = Graph::of_turns(&Band::new(target, max_distance));
+        let potential = search.potential(&graph);
+        let prices = Prices::none(graph.n_nodes());
+        let (_, cost) = search.closed(&graph, &potential, &prices, u32::MAX)?;
+        turns += (cost / TURN) as usize;
+    }
+    Some(turns)
 }
 
 fn attempt(
@@ -244,7 +272,6 @@ fn attempt(
         cost,
         cost_bound: if proof.optimal { cost } else { bound.min(cost) },
         turns,
-        turns_bound: if proof.optimal { turns } else { turns.min(self::turns(&roots)) },
         optimal: proof.optimal,
         max_distance_used: max_distance,
         rounds: dive.rounds,

@@ -10,7 +10,7 @@ use gridmesh::curve::{ClosedCurve, Winding};
 use gridmesh::lattice::Lattice;
 use gridmesh::progress::Progress;
 use gridmesh::target::Target;
-use gridmesh::trace::{Path, TraceFailure, TraceOptions, Traced, trace};
+use gridmesh::trace::{Path, TraceFailure, TraceOptions, Traced, fewest_turns, trace};
 use proptest::prelude::*;
 
 struct Drawing {
@@ -176,7 +176,8 @@ fn check(paths: &[Path]) -> usize {
 
 fn check_traced(traced: &Traced, targets: &[Target], name: &str) {
     assert!(traced.cost_bound <= traced.cost, "{name}");
-    assert!(traced.turns_bound <= traced.turns, "{name}");
+    let fewest = fewest_turns(targets, traced.max_distance_used).unwrap();
+    assert!(fewest <= traced.turns && fewest >= 6 * targets.len(), "{name}");
     assert!(!traced.optimal || traced.cost_bound == traced.cost, "{name}");
     let mut turns = 0;
     for (contour, (path, target)) in traced.paths.iter().zip(targets).enumerate() {

@@ -13,13 +13,13 @@ use super::search::{Potential, Search, Walk};
 use super::sides::wrong_sides;
 
 /// What both sides of a conflict are charged in each round.
-const STEP: u32 = TURN / 4;
+pub(super) const STEP: u32 = TURN / 4;
 /// Greatest number of rounds.
-const ROUNDS: usize = 100;
+pub(super) const ROUNDS: usize = 100;
 /// What it costs to be where another wall is nearer, in a second dive.
-const APART: u32 = 2 * TURN;
+pub(super) const APART: u32 = 2 * TURN;
 /// Rounds without fewer conflicts than ever before after which it is no use.
-const PATIENCE: usize = 25;
+pub(super) const PATIENCE: usize = 25;
 /// Vertices on each side of a conflict that are free to move when it is priced.
 const REACH: usize = 16;
 
@@ -113,13 +113,7 @@ pub(super) fn keep_apart(
     prices: &mut [Prices],
     search: &mut Search,
 ) {
-    let mut nearest: FxHashMap<Axial, f64> = FxHashMap::default();
-    for Contour { graph, .. } in contours {
-        for (&point, &squared) in graph.points.iter().zip(&graph.squared) {
-            let least = nearest.entry(point).or_insert(squared);
-            *least = least.min(squared);
-        }
-    }
+    let nearest = nearest_squared(contours);
     for ((contour, prices), walk) in contours.iter().zip(prices).zip(walks) {
         let Contour { graph, potential } = contour;
         prices.clear();
@@ -133,6 +127,18 @@ pub(super) fn keep_apart(
             *walk = found;
         }
     }
+}
+
+/// The squared distance of each point to the nearest of all stretches.
+pub(super) fn nearest_squared(contours: &[Contour]) -> FxHashMap<Axial, f64> {
+    let mut nearest: FxHashMap<Axial, f64> = FxHashMap::default();
+    for Contour { graph, .. } in contours {
+        for (&point, &squared) in graph.points.iter().zip(&graph.squared) {
+            let least = nearest.entry(point).or_insert(squared);
+            *least = least.min(squared);
+        }
+    }
+    nearest
 }
 
 /// True if the outer walk turns by +6 and each hole's by -6.

@@ -3,6 +3,7 @@
 use crate::axial::Axial;
 use crate::band::Band;
 use crate::dir::Dir;
+use crate::reflection::Reflection;
 
 /// Search cost of one turn of 60 degrees. Powers of two keep sums readable in reports.
 pub(super) const TURN: u32 = 1024;
@@ -40,7 +41,6 @@ impl Graph {
     /// Squared distances always count for a little, so that of two paths that cost the same the
     /// closer one is taken.
     pub fn new(band: &Band, closeness: f64) -> Self {
-        const LEAST: f64 = 1.0 / 256.0;
         let n = band.nodes.len();
         let n_samples = band.n_samples() as u32;
         let cut = cut(band);
@@ -64,15 +64,12 @@ impl Graph {
             n_second: 0,
             n_samples: n_samples as usize,
         };
-        // So that no sum overflows.
-        let most = f64::from(BLOCKED / 64).min(1e9 / (n as f64 + 1.0));
         for i in 0..n {
             let o = old(i);
             let node = &band.nodes[o];
             let squared = node.distance * node.distance;
-            let turns = closeness.clamp(LEAST, 100.0) * squared;
             graph.points.push(node.point);
-            graph.cost.push((turns * f64::from(TURN)).round().min(most) as u32);
+            graph.cost.push(cost(squared, closeness, n));
             graph.squared.push(squared);
             graph.parameter.push(node.parameter + f64::from(turned(o)) * f64::from(n_samples));
             if (node.first + n_samples - cut) % n_samples < overhang {
@@ -92,6 +89,76 @@ impl Graph {
         }
         graph.starts.push(graph.links.len() as u32);
         graph
+    }
+
+    /// Likewise, but turns alone cost something.
+    pub fn of_turns(band: &Band) -> Self {
+        let mut graph = Self::new(band, 0.0);
+        graph.cost.fill(0);
+        graph
+    }
+
+    /// Both sides of an axis, from the band beside the half of a symmetric curve that begins and ends
+    /// on it: the nodes on the axis and on its positive side, then the mirror images of all of them.
+    ///
+    /// Only the first have links, and to each other only. Also returns their number, and for each
+    /// the node of the band.
+    pub fn unfolded(band: &Band, axis: Reflection, closeness: f64) -> (Self, Vec<u32>) {
+        let kept: Vec<u32> =
+            (0..band.nodes.len() as u32).filter(|&i| axis.side(band.nodes[i as usize].point) >= 0).collect();
+        let n = kept.len();
+        let mut number = vec![u32::MAX; band.nodes.len()];
+        for (new, &old) in (0..).zip(&kept) {
+            number[old as usize] = new;
+        }
+        let whole = 2.0 * band.n_samples() as f64;
+        let nodes = || kept.iter().map(|&i| &band.nodes[i as usize]);
+        let squared: Vec<f64> = nodes().map(|node| node.distance * node.distance).collect();
+        let parameter = |image: bool| {
+            nodes().map(move |node| match (axis.side(node.point) == 0, image) {
+                (true, _) if node.first == 0 => 0.0,
+                (true, _) => 0.5 * whole,
+                (false, true) => whole - node.parameter,
+                (false, false) => node.parameter,
+            })
+        };
+        let mut graph = Self {
+            points: nodes()
+                .map(|node| node.point)
+                .chain(nodes().map(|node| axis.point(node.point)))
+                .collect(),
+            cost: squared.iter().chain(&squared).map(|&d| cost(d, closeness, 2 * n)).collect(),
+            parameter: parameter(false).chain(parameter(true)).collect(),
+            squared: squared.repeat(2),
+            starts: Vec::with_capacity(12 * n + 1),
+            links: Vec::with_capacity(6 * n),
+            n_second: 0,
+            n_samples: 2 * band.n_samples(),
+        };
+        for &old in &kept {
+            for dir in Dir::ALL {
+                graph.starts.push(graph.links.len() as u32);
+                let known = band.links(old as usize, dir).iter().map(|link| number[link.node as usize]);
+                graph.links.extend(known.filter(|&to| to != u32::MAX).map(|to| 4 * to + 1));
+            }
+        }
+        graph.starts.resize(12 * n + 1, graph.links.len() as u32);
+        (graph, kept)
+    }
+
+    /// The mirror image, without links.
+    pub fn image(&self, axis: Reflection) -> Self {
+        let whole = self.n_samples as f64;
+        Self {
+            points: self.points.iter().map(|&p| axis.point(p)).collect(),
+            cost: self.cost.clone(),
+            squared: self.squared.clone(),
+            parameter: self.parameter.iter().map(|s| whole - s).collect(),
+            starts: vec![0; 6 * self.n_nodes() + 1],
+            links: Vec::new(),
+            n_second: 0,
+            n_samples: self.n_samples,
+        }
     }
 
     pub fn n_nodes(&self) -> usize {
@@ -137,6 +204,14 @@ impl Graph {
         }
         found
     }
+}
+
+/// What it costs to pass one of `n` nodes at a squared distance from the curve.
+fn cost(squared: f64, closeness: f64, n: usize) -> u32 {
+    const LEAST: f64 = 1.0 / 256.0;
+    // So that no sum overflows.
+    let most = f64::from(BLOCKED / 64).min(1e9 / (n as f64 + 1.0));
+    (closeness.clamp(LEAST, 100.0) * squared * f64::from(TURN)).round().min(most) as u32
 }
 
 /// The segment before which the fewest runs continue.

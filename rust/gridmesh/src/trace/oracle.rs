@@ -6,10 +6,14 @@ use std::collections::BinaryHeap;
 use glam::DVec2;
 
 use super::graph::{Graph, TURN};
+use super::half::{Half, Memory};
 use super::prices::Prices;
 use super::search::Search;
+use crate::axial::Axial;
 use crate::band::Band;
 use crate::dir::Dir;
+use crate::lattice::Lattice;
+use crate::reflection::Reflection;
 use crate::target::Target;
 
 const SHEETS: i64 = 4;
@@ -195,6 +199,175 @@ fn windows_give_the_same_as_the_whole() {
             let mut other = walk.clone();
             other.splice(from, to, &steps);
             assert_eq!(other.base_cost(&graph), walk.cost, "{name} {from} {to} {cost}");
+        }
+    }
+}
+
+/// The least cost of a symmetric closed path: half of it, through the band of the whole curve, on three
+/// sheets, from every way to begin on the axis.
+fn brute_force_symmetric(
+    target: &Target,
+    axis: Reflection,
+    max_distance: f64,
+    closeness: f64,
+) -> Option<u32> {
+    let band = Band::new(target, max_distance);
+    let (n, samples) = (band.nodes.len() as i64, band.n_samples() as i64);
+    let cost = |node: usize| {
+        let distance = band.nodes[node].distance;
+        (closeness * distance * distance * f64::from(TURN)).round() as u32
+    };
+    let runs_through = |node: usize, sheet: i64, segment: i64| {
+        let run = (i64::from(band.nodes[node].first), i64::from(band.nodes[node].last));
+        (run.0 + sheet * samples..=run.1 + sheet * samples).contains(&segment)
+    };
+    let meets = |node: usize, sheet: i64, sample: i64| {
+        runs_through(node, sheet, sample - 1) && runs_through(node, sheet, sample)
+    };
+    let point = |node: usize| band.nodes[node].point;
+    let passes = |enter: Dir, leave: Dir| Some(enter.turn_to(leave)).filter(|turn| (-2..=1).contains(turn));
+    let onward = |dir: Dir| axis.dir(dir).opposite();
+    // Whether the edge from a point to its image lies inside the patch.
+    let is_chord = |p: Axial, leave: Dir, turn: i32| {
+        (1..=2 - turn).any(|k| axis.side(p) == 1 && p + leave.rotate(k) == axis.point(p))
+    };
+    let state = |node: usize, sheet: i64, dir: Dir| 6 * (node as i64 + (sheet + 1) * n) + dir.index() as i64;
+    let mut reached = vec![u32::MAX; 18 * n as usize];
+    let mut heap = BinaryHeap::new();
+    for node in 0..n as usize {
+        for sheet in -1..=1 {
+            if !meets(node, sheet, 0) {
+                continue;
+            }
+            if axis.side(point(node)) == 1 {
+                for dir in Dir::ALL.into_iter().filter(|&dir| point(node) - dir == axis.point(point(node))) {
+                    heap.push(Reverse((2 * cost(node), state(node, sheet, dir))));
+                }
+            }
+            if axis.side(point(node)) != 0 {
+                continue;
+            }
+            for leave in Dir::ALL {
+                let Some(turn) = passes(onward(leave), leave) else { continue };
+                for link in band.links(node, leave) {
+                    let (to, on) = (link.node as usize, sheet + i64::from(link.wrap));
+                    if axis.side(point(to)) > 0 && (-1..=1).contains(&on) {
+                        let cost = cost(node) + turn.unsigned_abs() * TURN + 2 * cost(to);
+                        heap.push(Reverse((cost, state(to, on, leave))));
+                    }
+                }
+            }
+        }
+    }
+    let mut best: Option<u32> = None;
+    while let Some(Reverse((so_far, at))) = heap.pop() {
+        if reached[at as usize] <= so_far {
+            continue;
+        }
+        reached[at as usize] = so_far;
+        let (place, enter) = (at / 6, Dir::new((at % 6) as i32));
+        let (node, sheet) = ((place % n) as usize, place / n - 1);
+        for leave in Dir::ALL {
+            let Some(turn) = passes(enter, leave) else { continue };
+            if is_chord(point(node), leave, turn) {
+                continue;
+            }
+            let through = so_far + 2 * turn.unsigned_abs() * TURN;
+            let mut finish = |cost: u32| best = Some(best.map_or(cost, |best| best.min(cost)));
+            let crosses = axis.side(point(node)) == 1 && point(node) + leave == axis.point(point(node));
+            if crosses && meets(node, sheet, samples / 2) {
+                finish(through);
+            }
+            for link in band.links(node, leave) {
+                let (to, on) = (link.node as usize, sheet + i64::from(link.wrap));
+                if !(-1..=1).contains(&on) {
+                    continue;
+                }
+                if axis.side(point(to)) > 0 {
+                    heap.push(Reverse((through + 2 * cost(to), state(to, on, leave))));
+                } else if axis.side(point(to)) == 0 && meets(to, on, samples / 2) {
+                    if let Some(turn) = passes(leave, onward(leave)) {
+                        finish(through + cost(to) + turn.unsigned_abs() * TURN);
+                    }
+                }
+            }
+        }
+    }
+    best
+}
+
+/// A symmetric target from the half of it on the positive side of an axis.
+fn symmetric_target(half: &[DVec2], axis: Reflection) -> Target {
+    let mut points = Vec::new();
+    for pair in half.windows(2) {
+        let pieces = (pair[0].distance(pair[1]) / 0.3).ceil().max(1.0) as usize;
+        points.extend((0..pieces).map(|k| pair[0].lerp(pair[1], k as f64 / pieces as f64)));
+    }
+    points.extend(half.last());
+    let inner = 1..points.len() - 1;
+    let images: Vec<DVec2> = points[inner].iter().rev().map(|&p| Lattice::reflected(axis, p)).collect();
+    points.extend(images);
+    Target { points, step: 0.3 }
+}
+
+/// Halves of curves left of the axis, which runs upwards (or east), begun at its lower end.
+fn halves() -> Vec<(String, Vec<DVec2>)> {
+    let mut found: Vec<(String, Vec<DVec2>)> = Vec::new();
+    for seed in 1..25u64 {
+        let mut state = seed;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as f64 / (1u64 << 31) as f64
+        };
+        let phase = [random(), random()].map(|x| std::f64::consts::TAU * x);
+        let shift = random();
+        let size = 4.0 + 3.0 * random();
+        let half = (0..=24)
+            .map(|i| {
+                let t = std::f64::consts::PI * f64::from(i) / 24.0;
+                let radius =
+                    size * (1.0 + 0.25 * (3.0 * t + phase[0]).cos() + 0.25 * (5.0 * t + phase[1]).cos());
+                radius * DVec2::new(t.sin(), -t.cos()) + DVec2::new(0.0, shift)
+            })
+            .map(|p| if p.x.abs() < 1e-9 { DVec2::new(0.0, p.y) } else { p })
+            .collect();
+        found.push((format!("blob {seed}"), half));
+    }
+    found
+}
+
+#[test]
+fn the_symmetric_search_finds_what_brute_force_finds() {
+    let mut memory = Memory::new();
+    for (name, half) in halves() {
+        for axis in [Reflection::Along, Reflection::Across] {
+            // Counter-clockwise: from the lower end along the right; along the axis: from the right end.
+            let half: Vec<DVec2> = match axis {
+                Reflection::Across => half.clone(),
+                Reflection::Along => half.iter().map(|p| DVec2::new(-p.y, p.x)).collect(),
+            };
+            let target = symmetric_target(&half, axis);
+            for (max_distance, closeness) in [(1.5, 0.3), (1.0, 1.0), (2.0, 0.05)] {
+                let (search, graph) = Half::new(&target, axis, max_distance, closeness, &mut memory);
+                let walk = search.cheapest(&graph, &Prices::none(graph.n_nodes()), &mut memory);
+                let found = walk.as_ref().map(|walk| walk.cost);
+                let expected = brute_force_symmetric(&target, axis, max_distance, closeness);
+                assert_eq!(found, expected, "{name} {axis:?} {max_distance} {closeness}");
+                let Some(walk) = walk else { continue };
+                let points: Vec<Axial> = walk.points(&graph).collect();
+                for (i, &p) in points.iter().enumerate() {
+                    assert_eq!(p.distance(points[(i + 1) % points.len()]), 1);
+                    assert!(points.contains(&axis.point(p)));
+                }
+                let turns: i32 = (0..walk.len()).map(|i| walk.turn(i)).sum();
+                assert_eq!(turns, 6, "{name} {axis:?}");
+                // No boundary costs less without the symmetry.
+                let closed = Graph::new(&Band::new(&target, max_distance), closeness);
+                let mut search = Search::new();
+                let potential = search.potential(&closed);
+                let free = search.closed(&closed, &potential, &Prices::none(closed.n_nodes()), u32::MAX);
+                assert!(free.is_some_and(|(_, cost)| cost <= walk.cost), "{name} {axis:?}");
+            }
         }
     }
 }

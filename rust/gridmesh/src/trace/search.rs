@@ -49,6 +49,7 @@ impl Rules for &Prices {
 }
 
 /// Lower bounds on the cost from each state to the end of a closed path.
+#[derive(Default)]
 pub(super) struct Potential {
     bound: Vec<u32>,
     /// The starts, best first, with their bounds.
@@ -66,7 +67,7 @@ pub(super) struct Search {
 }
 
 #[inline]
-fn turned(dir: u32, turn: i32) -> u32 {
+pub(super) fn turned(dir: u32, turn: i32) -> u32 {
     let d = dir as i32 + turn + 6;
     (if d >= 12 {
         d - 12
