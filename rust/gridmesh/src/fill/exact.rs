@@ -39,16 +39,6 @@ pub(super) struct Wishes<'a> {
     pub reach: i32,
 }
 
-/// A closed path, counter-clockwise, vertex k for target k.
-#[derive(Clone, Debug)]
-pub(super) struct Route {
-    pub points: Vec<Axial>,
-    /// Without what pricing added.
-    pub cost: u64,
-    /// Times the search ran again with prices.
-    pub rounds: usize,
-}
-
 /// The layers with the bounds and prices on them.
 ///
 /// A *cell* is a lattice point of a layer; a *state* is a cell with the direction in which the path
@@ -275,21 +265,20 @@ fn hexagon_cut(reach: i32, r: i32) -> i32 {
     reach * (reach + 1) / 2 + (r - 1) * r / 2
 }
 
-/// The cheapest closed path that does not meet itself, and across whose inside no edge runs that
-/// the mesh has already (`taken`). `None` if prices did not lead to one within `rounds`.
+/// The cheapest closed path, vertex k for target k, that does not meet itself, and across whose
+/// inside no edge runs that the mesh has already (`taken`). `None` if prices did not lead to one within `rounds`.
 pub(super) fn route(
     wishes: &Wishes<'_>,
     taken: &dyn Fn(usize, usize) -> bool,
     starts: usize,
     rounds: usize,
-) -> Option<Route> {
+) -> Option<Vec<Axial>> {
     let mut layers = Layers::new(wishes);
     for round in 0..=rounds {
-        let (points, cost) = layers.solve(if round == 0 { starts } else { REPAIR_STARTS })?;
+        let (points, _) = layers.solve(if round == 0 { starts } else { REPAIR_STARTS })?;
         let conflicts = conflicts(&points, taken);
         if conflicts.is_empty() && turning(&points) == 6 {
-            let cost = cost_of(wishes, &points).unwrap_or(u64::from(cost));
-            return Some(Route { points, cost, rounds: round });
+            return Some(points);
         }
         for &(i, j) in &conflicts {
             // Ever dearer, so that stubborn conflicts do not come round and round.
@@ -306,20 +295,7 @@ pub(super) fn route(
     None
 }
 
-fn cost_of(wishes: &Wishes<'_>, points: &[Axial]) -> Option<u64> {
-    let n = points.len();
-    let mut sum = 0;
-    for k in 0..n {
-        let enter = points[(k + n - 1) % n].step_to(points[k])?;
-        let leave = points[k].step_to(points[(k + 1) % n])?;
-        let turn = wishes.turns[k].get((enter.turn_to(leave) + 2) as usize)?;
-        let d = Lattice::units(points[k]).distance_squared(wishes.target[k]);
-        sum += u64::from(*turn) + (f64::from(TURN) * wishes.closeness * d) as u64;
-    }
-    Some(sum)
-}
-
-/// The sum of turns of a closed path; 3 stands for a step that is none.
+/// The sum of turns of a closed path; 100 stands for a step that is none.
 pub(super) fn turning(points: &[Axial]) -> i32 {
     let n = points.len();
     (0..n)
@@ -390,15 +366,15 @@ mod tests {
         for n in (8..120).chain([6, 300]) {
             let (target, turns) = (circle(n), plain(n));
             let wishes = Wishes { target: &target, turns: &turns, closeness: 0.1, reach: 2 };
-            let route = route(&wishes, &|_, _| true, 1000, 60);
-            let Some(route) = route else { panic!("no path for {n}") };
-            assert_eq!(route.points.len(), n);
-            assert_eq!(turning(&route.points), 6);
+            let path = route(&wishes, &|_, _| true, 1000, 60);
+            let Some(path) = path else { panic!("no path for {n}") };
+            assert_eq!(path.len(), n);
+            assert_eq!(turning(&path), 6);
             for k in 0..n {
-                assert_eq!(route.points[k].distance(route.points[(k + 1) % n]), 1);
+                assert_eq!(path[k].distance(path[(k + 1) % n]), 1);
             }
             // All pairs count as taken: no edge joins two vertices of the path.
-            assert!(conflicts(&route.points, &|_, _| true).is_empty());
+            assert!(conflicts(&path, &|_, _| true).is_empty());
         }
     }
 }

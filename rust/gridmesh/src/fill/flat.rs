@@ -149,10 +149,9 @@ struct Contest<'a> {
 impl Contest<'_> {
     fn run(&mut self, options: &FlatOptions, progress: Progress<'_>) -> Result<()> {
         let n = self.points.len();
-        if n <= SMALL && (n > 3 || options.single) {
-            if let Some(triangles) = without_interior(self.points, self.taken) {
-                self.enter(Vec::new(), triangles, Method::NoInterior);
-            }
+        let bare = n <= SMALL && (n > 3 || options.single);
+        if let Some(triangles) = bare.then(|| without_interior(self.points, self.taken)).flatten() {
+            self.enter(Vec::new(), triangles, Method::NoInterior);
         }
         if n <= SMALL {
             let (centre, triangles) = around_centre(self.points);
@@ -213,8 +212,8 @@ impl Contest<'_> {
                     Wishes { target, turns: &turns, closeness: options.closeness, reach: options.reach };
                 match options.boundary {
                     BoundaryMethod::Optimal => {
-                        if let Some(route) = route(&wishes, self.taken, STARTS, ROUNDS) {
-                            self.place(&route.points, Method::Optimal, progress)?;
+                        if let Some(path) = route(&wishes, self.taken, STARTS, ROUNDS) {
+                            self.place(&path, Method::Optimal, progress)?;
                         }
                     }
                     BoundaryMethod::Grown => {
@@ -261,10 +260,10 @@ impl Contest<'_> {
         let n = self.points.len();
         let mut positions = self.points.to_vec();
         positions.extend(interior);
-        if let Some(rings) = Rings::new(&triangles, n, positions.len()) {
-            if untangle(&rings, &mut positions, 40, progress)? {
-                even_out(&rings, &mut positions, 12, 0.02, progress)?;
-            }
+        if let Some(rings) = Rings::new(&triangles, n, positions.len())
+            && untangle(&rings, &mut positions, 40, progress)?
+        {
+            even_out(&rings, &mut positions, 12, 0.02, progress)?;
         }
         self.enter(positions.split_off(n), triangles, method);
         Ok(())
@@ -431,7 +430,7 @@ mod tests {
             let widest = (0..n).map(|k| polygon[k].angle_to(polygon[(k + 1) % n])).fold(0.0, |a: f64, b| a.max(b.abs()));
             prop_assume!(widest < 3.0);
             // About one pair in four has an edge already.
-            let taken = |i: usize, j: usize| seed > 0 && n > 3 && (i * 7 + j * 13 + seed) % 4 == 0;
+            let taken = |i: usize, j: usize| seed > 0 && n > 3 && (i * 7 + j * 13 + seed).is_multiple_of(4);
             let patch = fill(&polygon, &taken);
             check(&polygon, &patch, &taken);
             prop_assert!(!patch.folded);

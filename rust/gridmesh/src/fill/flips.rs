@@ -39,8 +39,8 @@ pub(super) fn improve_valences(
                 let off = |v: u32, by: i32| (valence[v as usize] + by - ideal(v)).pow(2);
                 let now = off(a, 0) + off(b, 0) + off(c, 0) + off(d, 0);
                 let then = off(a, -1) + off(b, -1) + off(c, 1) + off(d, 1);
-                let least_valence = |v: u32| valence[v as usize] - 1 >= if (v as usize) < n { 2 } else { 4 };
-                if then >= now || !least_valence(a) || !least_valence(b) {
+                let can_spare = |v: u32| valence[v as usize] > if (v as usize) < n { 2 } else { 4 };
+                if then >= now || !can_spare(a) || !can_spare(b) {
                     continue;
                 }
                 let [pa, pb, pc, pd] = [a, b, c, d].map(|v| positions[v as usize]);

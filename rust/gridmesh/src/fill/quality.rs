@@ -72,7 +72,8 @@ impl Quality {
         if self.repeated > 0 {
             return f64::INFINITY;
         }
-        let irregular = self.irregular as f64 / self.interior.max(6) as f64;
+        let weight = if even && n_loop > 5 && n_loop != 7 { 20.0 } else { 1.0 };
+        let irregular = weight * self.irregular as f64 / self.interior.max(6) as f64;
         let sharp = (1.0 - self.min_angle.to_degrees() / 25.0).clamp(0.0, 2.0);
         let folded = if self.embedded { 0.0 } else { 100.0 };
         folded
