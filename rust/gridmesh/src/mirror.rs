@@ -231,7 +231,7 @@ pub(crate) fn symmetrised(
             best = Some((angle, found));
         }
     }
-    let exact = symmetry.difference <= 1e-9 * lattice.edge_length;
+    let exact = is_exact(symmetry, lattice.edge_length);
     let mut placed = match best {
         Some((_, placed)) => placed,
         None if exact => return Err(Obstacle { reason: "a triangle stays inverted".to_owned(), at }),
@@ -247,6 +247,11 @@ pub(crate) fn symmetrised(
     let angle = lattice.angle.rem_euclid(FRAC_PI_3);
     placed.patch.lattice.angle = if angle < FRAC_PI_3 { angle } else { 0.0 };
     Ok((placed, error / lattice.edge_length))
+}
+
+/// True if the sides of a drawing differ by rounding only.
+fn is_exact(symmetry: &Symmetry, edge_length: f64) -> bool {
+    symmetry.difference <= 1e-9 * edge_length
 }
 
 /// The vertex at the mirror image of each vertex.
@@ -431,7 +436,10 @@ impl Both<'_> {
         let is_end = (turns - 0.5).abs() < 0.25;
         let s = contour.wrap(if is_end { start + left } else { *start });
         let gap = nearest_lap((old - s) / contour.length()).abs() * contour.length();
-        let on_corner = angle != 0.0 && gap <= CORNER_REACH * self.placed.patch.lattice.edge_length;
+        // Of an exactly symmetric drawing only a corner on the axis leaves the mesh symmetric.
+        let h = self.placed.patch.lattice.edge_length;
+        let reach = if is_exact(self.symmetry, h) { 1e-9 } else { CORNER_REACH };
+        let on_corner = angle != 0.0 && gap <= reach * h;
         Some(if on_corner { (old, angle) } else { (s, 0.0) })
     }
 
