@@ -60,7 +60,11 @@ use crate::watch::Watch;
 /// corner_angle : float
 ///     A vertex is placed on points where the outline turns by more than this (radians).
 /// mirror : "auto" or (point, direction), optional
-///     An axis, two pairs of numbers, for a mesh that is its own mirror image.
+///     An axis, two pairs of numbers, for a mesh that is its own mirror image: the lattice is laid on
+///     the axis and the boundary of least cost taken among the symmetric ones. "auto" finds the axis of
+///     the outline, the most upright one if there are several. The sides may differ by 2 % of the
+///     drawing's size and by 1.5 edge lengths; then the topology is symmetric, and each side keeps its
+///     own line. Only with boundary="optimal"; `angle`, if given, must fit the axis.
 /// self_crossing : {"error", "union"}
 ///     "error": an outline that crosses itself is refused. "union": its outer outline is taken.
 /// proof_nodes : int
@@ -82,7 +86,8 @@ use crate::watch::Watch;
 ///     boundary's, before it is straightened), "turns_bound", "cost", "cost_bound" (None where none
 ///     was computed), "optimal", "max_distance_used", "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
 ///     (radians), "corners" (drawn ones), "released_corners" (those without a vertex of their own),
-///     "repaired" (repeated points dropped), "placements" (of the lattice, tried) and "seconds" (per
+///     "repaired" (repeated points dropped), "mirror_error" (greatest distance of a vertex from the
+///     image of its partner, in edge lengths; None without `mirror`), "placements" (of the lattice, tried) and "seconds" (per
 ///     stage).
 ///
 /// Raises
