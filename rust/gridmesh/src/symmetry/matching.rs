@@ -90,12 +90,12 @@ fn warp(a: &[DVec2], b: &[DVec2]) -> Vec<[f64; 2]> {
     let before = |i: usize, j: usize, (di, dj): (usize, usize)| -> Option<usize> {
         slot(i.checked_sub(di)?, j.checked_sub(dj)?)
     };
-    for i in 0..=n {
-        for j in i.saturating_sub(width)..=(i + width).min(n) {
+    for (i, p) in a.iter().enumerate().take(n + 1) {
+        for (j, q) in b.iter().enumerate().take((i + width).min(n) + 1).skip(i.saturating_sub(width)) {
             let Some(here) = slot(i, j) else { continue };
             let least = steps.iter().filter_map(|&step| before(i, j, step)).map(|k| cost[k]);
             let least = if i + j == 0 { 0.0 } else { least.fold(f64::INFINITY, f64::min) };
-            cost[here] = least + a[i].distance_squared(b[j]);
+            cost[here] = least + p.distance_squared(*q);
         }
     }
     let mut path = vec![(n, n)];

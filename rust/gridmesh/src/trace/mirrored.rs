@@ -91,9 +91,9 @@ fn attempt(
     progress: Progress<'_>,
 ) -> Result<Traced, TraceFailure> {
     let mut job = Job::new(parts, axis, options.closeness, max_distance);
-    for unit in 0..job.units.len() {
+    for (unit, part) in parts.iter().enumerate() {
         if !job.solve(unit) {
-            let (Part::Symmetric(target) | Part::Pair(target)) = &parts[unit];
+            let (Part::Symmetric(target) | Part::Pair(target)) = part;
             let some = target.points.first().copied().unwrap_or_default();
             return Err(TraceFailure::NoPath { contour: job.firsts[unit], at: Lattice::nearest(some) });
         }
@@ -204,11 +204,9 @@ impl Job {
             for vertex in wrong {
                 hot[self.raise(vertex, None)] = true;
             }
-            for unit in 0..hot.len() {
-                if hot[unit] {
-                    // Prices are never so high that there is no path left.
-                    self.solve(unit);
-                }
+            for (unit, _) in hot.into_iter().enumerate().filter(|(_, hot)| *hot) {
+                // Prices are never so high that there is no path left.
+                self.solve(unit);
             }
         }
     }

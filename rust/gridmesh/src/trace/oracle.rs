@@ -285,10 +285,11 @@ fn brute_force_symmetric(
                 }
                 if axis.side(point(to)) > 0 {
                     heap.push(Reverse((through + 2 * cost(to), state(to, on, leave))));
-                } else if axis.side(point(to)) == 0 && meets(to, on, samples / 2) {
-                    if let Some(turn) = passes(leave, onward(leave)) {
-                        finish(through + cost(to) + turn.unsigned_abs() * TURN);
-                    }
+                } else if axis.side(point(to)) == 0
+                    && meets(to, on, samples / 2)
+                    && let Some(turn) = passes(leave, onward(leave))
+                {
+                    finish(through + cost(to) + turn.unsigned_abs() * TURN);
                 }
             }
         }
