@@ -12,13 +12,13 @@ pub enum Smooth {
     Curvature,
 }
 
-/// Options of [`fill_hole`] and [`fill_holes`].
+/// Options of [`fill_hole`](super::fill_hole) and [`fill_holes`](super::fill_holes).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FillOptions {
     /// How the patch continues the surface.
     pub smooth: Smooth,
     /// Refuse fills that meet themselves or the mesh, instead of counting that.
     pub strict: bool,
-    /// Of [`fill_holes`] without given loops: leave holes with more edges open.
+    /// Of [`fill_holes`](super::fill_holes) without given loops: leave holes with more edges open.
     pub max_edges: Option<usize>,
 }
