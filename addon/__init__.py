@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """GridMesh: smooth bodies with clean triangle meshes from drawn strokes.
 
-    operators -> strokes, curves (from Blender) -> outlines, api (numpy only) -> meshes (to Blender)
+    operators.strokes -> strokes, curves (from Blender) -> outlines, api (numpy only) -> meshes (to Blender)
+    operators.fill -> editmesh (from Blender) -> holes, api (no bpy) -> editmesh, attributes (to Blender)
 
 `properties` holds what the redo panel shows, `ui` the sidebar and the menus. The native module `gridmesh` is
 imported when it is first needed, so that the extension registers, and can say what is wrong, without it; and
@@ -41,6 +42,6 @@ def unregister() -> None:
 
 def _classes() -> tuple[type, ...]:
     from . import ui
-    from .operators import strokes
+    from .operators import fill, strokes
 
-    return (*strokes.classes, *ui.classes)
+    return (*strokes.classes, *fill.classes, *ui.classes)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -190,6 +190,59 @@ def _surfaces(
 def _part(progress: Progress | None, begin: float, end: float) -> Progress | None:
     """Progress of a part of the work, from `begin` to `end`."""
     return None if progress is None else lambda fraction: progress(begin + fraction * (end - begin))
+
+
+@dataclass(frozen=True, eq=False)
+class Filled:
+    """A patch for a hole."""
+
+    vertices: np.ndarray
+    """(j, 3) the new ones."""
+    triangles: np.ndarray
+    """(t, 3), the mesh's vertices first, then the new ones."""
+    poses: list[np.ndarray]
+    """(j, 3) the new vertices in every pose."""
+    report: dict[str, Any]
+    extend: Callable[[np.ndarray], np.ndarray]
+    """From values at the loop's vertices (k, c) to values at the new ones (j, c)."""
+
+
+def fill(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    loops: Sequence[Sequence[int]],
+    *,
+    smooth: str,
+    poses: Sequence[np.ndarray] = (),
+    progress: Progress | None = None,
+) -> list[Filled | str]:
+    """Fill loops of a mesh: for each the patch, or the reason why there is none.
+
+    vertices : (n, 3), triangles : (m, 3), the mesh. loops : vertex indices in order. poses : (n, 3) each, other
+    positions of the same mesh. Raises NativeError without the module, and CancelledError if `progress` or
+    Ctrl-C asked to stop.
+    """
+    gridmesh = native("fill_holes")
+    indices = [np.asarray(loop, np.int32) for loop in loops]
+
+    def filled(fill: Any) -> Filled | str:
+        if isinstance(fill, gridmesh.GridMeshError):
+            return str(fill)
+        try:
+            solved = [fill.vertices if pose is vertices else fill.refit(pose) for pose in poses]
+        except gridmesh.GridMeshError as error:
+            return f"in another shape key {error}"
+        return Filled(fill.vertices, fill.triangles, solved, dict(fill.report), fill.extend)
+
+    try:
+        fills = gridmesh.fill_holes(vertices, triangles, indices, smooth=smooth, progress=progress)
+        return [filled(fill) for fill in fills]
+    except KeyboardInterrupt as error:
+        raise CancelledError from error
+    except gridmesh.GridMeshError as error:
+        if error.kind == "cancelled":
+            raise CancelledError from error
+        return [str(error)] * len(indices)
 
 
 def suggested_edge_length(sketches: list[Sketch], triangles: int) -> float | None:

@@ -8,6 +8,7 @@ stops the work where Python gets it, and the operator leaves the scene as it was
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from types import TracebackType
 
 import bpy
@@ -34,6 +35,10 @@ class Pointer:
     ) -> None:
         if self._manager is not None:
             self._manager.progress_end()
+
+    def part(self, begin: float, end: float) -> Callable[[float], bool]:
+        """Progress of a part of the work, from one fraction to another."""
+        return lambda fraction: self(begin + fraction * (end - begin))
 
     def __call__(self, fraction: float) -> bool:
         """Show the fraction. The library's own threads call too: to them Blender's data is closed."""

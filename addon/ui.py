@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import bpy
 
 from . import meshes, strokes
+from .operators.fill import MESH_OT_gridmesh_fill
 from .operators.strokes import OBJECT_OT_gridmesh_from_strokes
 
 # Menus that get an entry; which of them exist depends on the Blender version.
-MENUS = (
+STROKE_MENUS = (
     "VIEW3D_MT_object_convert",
     "VIEW3D_MT_edit_greasepencil",
     "VIEW3D_MT_greasepencil_edit_context_menu",
@@ -20,6 +22,7 @@ MENUS = (
     "VIEW3D_MT_edit_curve_context_menu",
     "VIEW3D_MT_edit_curves",
 )
+FILL_MENUS = ("VIEW3D_MT_edit_mesh_faces", "VIEW3D_MT_edit_mesh_context_menu")
 
 
 class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
@@ -31,7 +34,19 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
     bl_category = "GridMesh"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw a button for each kind of drawing that is there."""
+        """Draw a button for each thing that can be done here."""
+        if context.mode == "EDIT_MESH":
+            self._draw_fill()
+        else:
+            self._draw_strokes(context)
+
+    def _draw_fill(self) -> None:
+        idname = MESH_OT_gridmesh_fill.bl_idname
+        column = self.layout.column()
+        column.operator(idname, icon="MESH_GRID").holes = "SELECTED"
+        column.operator(idname, text="Fill All Holes").holes = "ALL"
+
+    def _draw_strokes(self, context: bpy.types.Context) -> None:
         idname = OBJECT_OT_gridmesh_from_strokes.bl_idname
         column = self.layout.column()
         drawings, bodies = strokes.source_objects(context), meshes.selected_bodies(context)
@@ -48,26 +63,36 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
             self.layout.label(text="Select a drawing or a curve", icon="INFO")
 
 
-def _entry(menu: Any, context: bpy.types.Context) -> None:
+def _stroke_entry(menu: Any, context: bpy.types.Context) -> None:
     if strokes.source_objects(context):
         menu.layout.separator()
         menu.layout.operator(OBJECT_OT_gridmesh_from_strokes.bl_idname).source = "OBJECTS"
 
 
+def _fill_entry(menu: Any, _context: bpy.types.Context) -> None:
+    menu.layout.separator()
+    menu.layout.operator(MESH_OT_gridmesh_fill.bl_idname).holes = "SELECTED"
+
+
+def _entries() -> Iterator[tuple[Any, Any]]:
+    """Menus of this version, and what is drawn at their end."""
+    for names, entry in ((STROKE_MENUS, _stroke_entry), (FILL_MENUS, _fill_entry)):
+        for name in names:
+            menu = getattr(bpy.types, name, None)
+            if menu is not None:
+                yield menu, entry
+
+
 def add_menus() -> None:
-    """Add the entry to the menus that this version has."""
-    for name in MENUS:
-        menu = getattr(bpy.types, name, None)
-        if menu is not None:
-            menu.append(_entry)
+    """Add the entries to the menus that this version has."""
+    for menu, entry in _entries():
+        menu.append(entry)
 
 
 def remove_menus() -> None:
-    """Take the entry out again."""
-    for name in MENUS:
-        menu = getattr(bpy.types, name, None)
-        if menu is not None:
-            menu.remove(_entry)
+    """Take the entries out again."""
+    for menu, entry in _entries():
+        menu.remove(entry)
 
 
 classes = (VIEW3D_PT_gridmesh,)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from time import perf_counter
-from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
@@ -12,9 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from .. import api, meshes, outlines, strokes
 from ..progress import Pointer
 from ..properties import ShapeOptions, SketchOptions
-
-_NAMED = 3
-"""A message names this many strokes; the others are counted."""
+from .messages import counted, listed
 
 
 class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Operator):  # noqa: N801
@@ -140,7 +137,7 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
         self.result = self._summary(bodies, perf_counter() - started)
         self.report({"INFO"}, self.result)
         if notes:
-            self.report({"INFO"}, _listed(notes))
+            self.report({"INFO"}, listed(notes))
         for warning in _warnings(bodies, failures):
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
@@ -188,7 +185,7 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
 
     def _refuse(self, *reasons: str) -> set[str]:
         """Report why nothing was made, and leave the scene alone."""
-        self.report({"ERROR"}, _listed(reasons))
+        self.report({"ERROR"}, listed(reasons))
         return {"CANCELLED"}
 
     def _summary(self, bodies: list[api.Body], seconds: float) -> str:
@@ -196,11 +193,11 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
         triangles = sum(len(body.triangles) for body in bodies)
         irregular = sum(body.report["irregular"] for body in bodies)
         text = (
-            f"{_counted(len(bodies), kind)}: {triangles} triangles, "
-            f"{_counted(irregular, 'irregular vertex')}, {1000 * seconds:.0f} ms"
+            f"{counted(len(bodies), kind)}: {triangles} triangles, "
+            f"{counted(irregular, 'irregular vertex')}, {1000 * seconds:.0f} ms"
         )
         gaps = sum(body.sketch.closed_gap > 0 for body in bodies)
-        return f"{text}; {_counted(gaps, 'gap')} closed" if gaps else text
+        return f"{text}; {counted(gaps, 'gap')} closed" if gaps else text
 
 
 def _read_for(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> strokes.Reading:
@@ -239,21 +236,6 @@ def _only(
     return sketches, refused + [api.Failure(label, reason) for label in sorted(labels)]
 
 
-_PLURALS = {"body": "bodies", "irregular vertex": "irregular vertices"}
-
-
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what if number == 1 else _PLURALS.get(what, what + 's')}"
-
-
-def _listed(reasons: Any) -> str:
-    """Join reasons into a message of bounded length."""
-    reasons = list(reasons)
-    more = len(reasons) - _NAMED
-    text = "\n".join(reason[:1].upper() + reason[1:] for reason in reasons[:_NAMED])
-    return f"{text}\n... and {more} more" if more > 0 else text
-
-
 def _none_chosen(found: list[outlines.Stroke]) -> str:
     """Say why none of the strokes is used."""
     if any(stroke.selected is None for stroke in found):
@@ -275,7 +257,7 @@ def _warnings(bodies: list[api.Body], failures: list[api.Failure]) -> list[str]:
     crossed = sum(body.report.get("self_intersections", 0) > 0 for body in bodies)
     if crossed:
         cut = "cuts through itself" if crossed == 1 else "cut through themselves"
-        warnings.append(f"{_counted(crossed, 'body')} {cut}; use a smaller depth or more triangles")
+        warnings.append(f"{counted(crossed, 'body')} {cut}; use a smaller depth or more triangles")
     painted = sum(body.sketch.stroke.painted for body in bodies)
     if painted:
         whose = "a stroke is" if painted == 1 else f"{painted} strokes are"
@@ -283,7 +265,7 @@ def _warnings(bodies: list[api.Body], failures: list[api.Failure]) -> list[str]:
             f"{whose[0].upper()}{whose[1:]} painted; bodies have the colour of the material instead"
         )
     if failures:
-        warnings.append(f"{_counted(len(failures), 'stroke')} left out:\n{_listed(map(str, failures))}")
+        warnings.append(f"{counted(len(failures), 'stroke')} left out:\n{listed(map(str, failures))}")
     return warnings
 
 

@@ -17,7 +17,7 @@ def stroke(points, *, cyclic=True, index=0, layer="Lines", source="Drawing"):
 
 def test_no_bpy_is_needed():
     """A plain Python can import what is promised to work without Blender."""
-    code = "import sys; sys.modules['bpy'] = None; import addon.api, addon.creases, addon.outlines, addon.sampling"
+    code = "import sys; sys.modules['bpy'] = None; import addon.api, addon.attributes, addon.creases, addon.holes, addon.outlines, addon.sampling"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 

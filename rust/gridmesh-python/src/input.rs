@@ -39,7 +39,8 @@ impl<'py> Argument<'_, 'py> {
         )
     }
 
-    fn wrong_shape(&self, found: &str) -> PyErr {
+    /// A `GridMeshError` of kind `invalid_shape`; `found` says what the value is like.
+    pub fn wrong_shape(&self, found: &str) -> PyErr {
         error(self.value.py(), "invalid_shape", format!("{} {found}; allowed: {}", self.name, self.allowed))
     }
 
@@ -121,7 +122,7 @@ impl<'py> Argument<'_, 'py> {
     }
 
     /// `numpy.asarray` of the value, if it holds real numbers.
-    fn array(&self) -> PyResult<Bound<'py, PyUntypedArray>> {
+    pub fn array(&self) -> PyResult<Bound<'py, PyUntypedArray>> {
         static AS_ARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
         let py = self.value.py();
         let as_array = AS_ARRAY.import(py, "numpy", "asarray")?;

@@ -1,13 +1,15 @@
 //! The Python module `gridmesh._native`: conversions only, no algorithm.
 //!
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `arrays`
-//! and `reports` hand results back, `patch` and `surface` are the two classes, `batch` is the parallel map.
+//! and `reports` hand results back, `patch`, `surface` and `fill` are the classes, `batch` is the parallel map.
 #![forbid(unsafe_code)]
 
 mod arrays;
 mod batch;
 mod error;
+mod fill;
 mod input;
+mod mesh;
 mod options;
 mod patch;
 mod reports;
@@ -409,6 +411,11 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(flat, module)?)?;
     module.add_function(wrap_pyfunction!(inflate, module)?)?;
     module.add_function(wrap_pyfunction!(map_sketches, module)?)?;
+    module.add_class::<fill::Fill>()?;
+    module.add_function(wrap_pyfunction!(fill::fill_hole, module)?)?;
+    module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;
+    module.add_class::<fill::Regrid>()?;
+    module.add_function(wrap_pyfunction!(fill::regrid, module)?)?;
     module.add_function(wrap_pyfunction!(patch::_patch, module)?)?;
     module.add_function(wrap_pyfunction!(surface::_surface, module)?)?;
     Ok(())

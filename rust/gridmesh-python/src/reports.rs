@@ -46,7 +46,8 @@ pub fn surface(py: Python<'_>, report: &SurfaceReport) -> PyResult<Py<PyDict>> {
     Ok(dict.unbind())
 }
 
-fn seconds<'py>(py: Python<'py>, stages: &[(&'static str, f64)]) -> PyResult<Bound<'py, PyDict>> {
+/// Times per stage.
+pub fn seconds<'py>(py: Python<'py>, stages: &[(&'static str, f64)]) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for &(stage, seconds) in stages {
         dict.set_item(stage, seconds)?;

@@ -229,7 +229,7 @@ impl ClosedCurve {
     }
 
     /// The arc length whose [`input_arc`](Self::input_arc) is `s`.
-    pub(crate) fn arc_of_input(&self, s: f64) -> f64 {
+    pub(crate) fn own_arc(&self, s: f64) -> f64 {
         self.wrap(s + self.first)
     }
 

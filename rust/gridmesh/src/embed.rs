@@ -27,7 +27,7 @@ pub fn count_self_intersections(vertices: &[DVec3], triangles: &[[u32; 3]]) -> u
 }
 
 /// Whether two triangles meet outside the vertices and edges that they share.
-fn triangles_meet(vertices: &[DVec3], t: [u32; 3], u: [u32; 3]) -> bool {
+pub(crate) fn triangles_meet(vertices: &[DVec3], t: [u32; 3], u: [u32; 3]) -> bool {
     let shared = t.iter().filter(|v| u.contains(v)).count();
     let at = |v: u32| vertices[v as usize];
     let (p, q) = (t.map(at), u.map(at));

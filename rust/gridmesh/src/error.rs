@@ -110,6 +110,89 @@ pub enum Error {
     },
     /// The caller asked to stop.
     Cancelled,
+    /// A vertex number that does not exist.
+    IndexOutOfRange {
+        /// What names it, such as `loop` or `triangle 7`.
+        what: String,
+        /// The number given.
+        index: i32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A loop names a vertex twice in a row.
+    RepeatedVertex {
+        /// The vertex.
+        vertex: u32,
+        /// Its first place in the loop.
+        first: usize,
+        /// Its second place in the loop.
+        second: usize,
+    },
+    /// A loop passes through a vertex twice.
+    FigureEight {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// Edges that should form loops meet three or more in a vertex.
+    Branching {
+        /// The vertex.
+        vertex: u32,
+        /// The number of edges there.
+        edges: usize,
+    },
+    /// Edges that should form a loop end.
+    OpenChain {
+        /// Two vertices with one edge each.
+        ends: [u32; 2],
+    },
+    /// Two neighbours on a loop lie on the same point.
+    ZeroLengthEdge {
+        /// The two vertices.
+        edge: [u32; 2],
+    },
+    /// Two vertices of a loop that are not neighbours lie on the same point, or a vertex lies on or an
+    /// edge crosses an edge that it does not belong to.
+    SelfTouching {
+        /// A vertex, or the first vertex of an edge, of the loop.
+        first: u32,
+        /// Another one.
+        second: u32,
+        /// Where they meet.
+        at: [f64; 3],
+    },
+    /// An edge of a loop has faces on both sides already.
+    FacesOnBothSides {
+        /// The two vertices.
+        edge: [u32; 2],
+    },
+    /// An edge joins more than two faces, or more than two would result.
+    NonManifold {
+        /// The two vertices.
+        edge: [u32; 2],
+        /// Where the border ends because of it.
+        vertex: u32,
+    },
+    /// Two loops of one call use the same edge.
+    SharedEdge {
+        /// The two vertices.
+        edge: [u32; 2],
+        /// The loop that came first.
+        first: usize,
+        /// The loop that is refused.
+        second: usize,
+    },
+    /// Faces that were to be replaced do not form a disk.
+    NotADisk {
+        /// Their number of borders.
+        borders: usize,
+    },
+    /// The fill meets itself or the mesh, which was not to be.
+    FillIntersects {
+        /// Pairs of triangles that meet.
+        pairs: usize,
+        /// A point of one of them.
+        at: [f64; 3],
+    },
 }
 
 impl Error {
@@ -130,6 +213,18 @@ impl Error {
             Error::NoPatch { .. } => "no_patch",
             Error::Solver { .. } => "solver",
             Error::Cancelled => "cancelled",
+            Error::IndexOutOfRange { .. } => "index_out_of_range",
+            Error::RepeatedVertex { .. } => "repeated_vertex",
+            Error::FigureEight { .. } => "figure_eight",
+            Error::Branching { .. } => "branching",
+            Error::OpenChain { .. } => "open_chain",
+            Error::ZeroLengthEdge { .. } => "zero_length_edge",
+            Error::SelfTouching { .. } => "self_touching",
+            Error::FacesOnBothSides { .. } => "faces_on_both_sides",
+            Error::NonManifold { .. } => "non_manifold",
+            Error::SharedEdge { .. } => "shared_edge",
+            Error::FillIntersects { .. } => "fill_intersects",
+            Error::NotADisk { .. } => "not_a_disk",
         }
     }
 }
@@ -203,6 +298,61 @@ impl fmt::Display for Error {
                 write!(f, "the linear solve of the {stage} failed: {reason}")
             }
             Error::Cancelled => write!(f, "cancelled"),
+            Error::IndexOutOfRange { what, index, vertices } => write!(
+                f,
+                "the {what} names vertex {index}; allowed: 0 to {}, one of the {vertices} vertices given",
+                vertices.saturating_sub(1)
+            ),
+            Error::RepeatedVertex { vertex, first, second } => write!(
+                f,
+                "the loop names vertex {vertex} twice in a row (places {first} and {second}); \
+                 name each vertex once"
+            ),
+            Error::FigureEight { vertex } => write!(
+                f,
+                "the loop passes through vertex {vertex} twice, like a figure eight; fill its parts one by one"
+            ),
+            Error::Branching { vertex, edges } => write!(
+                f,
+                "{edges} of the edges meet in vertex {vertex}; a loop has two at each vertex, deselect the others"
+            ),
+            Error::OpenChain { ends: [a, b] } => write!(
+                f,
+                "the edges form an open chain from vertex {a} to vertex {b}; join its ends to a closed loop"
+            ),
+            Error::ZeroLengthEdge { edge: [a, b] } => write!(
+                f,
+                "the loop's edge from vertex {a} to vertex {b} has no length; merge the two vertices"
+            ),
+            Error::SelfTouching { first, second, at: [x, y, z] } => write!(
+                f,
+                "the loop touches itself at vertices {first} and {second}, near ({x:.6}, {y:.6}, {z:.6}); \
+                 merge or move apart what meets there"
+            ),
+            Error::FacesOnBothSides { edge: [a, b] } => write!(
+                f,
+                "the loop's edge from vertex {a} to vertex {b} has faces on both sides; \
+                 there is no hole, choose edges of one face"
+            ),
+            Error::NonManifold { edge: [a, b], vertex } => write!(
+                f,
+                "the border stops at vertex {vertex} after the edge from vertex {a} to vertex {b}: \
+                 an edge there joins more than two faces; delete the surplus ones"
+            ),
+            Error::SharedEdge { edge: [a, b], first, second } => write!(
+                f,
+                "loop {second} uses the edge from vertex {a} to vertex {b} like loop {first}; \
+                 give each loop edge to one loop"
+            ),
+            Error::NotADisk { borders } => write!(
+                f,
+                "the faces have {borders} borders or touch themselves; choose one connected region without holes"
+            ),
+            Error::FillIntersects { pairs, at: [x, y, z] } => write!(
+                f,
+                "the fill would meet itself or the mesh in {pairs} pairs of triangles, \
+                 first near ({x:.6}, {y:.6}, {z:.6}); split the loop there, or allow it"
+            ),
         }
     }
 }

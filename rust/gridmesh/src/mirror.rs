@@ -383,10 +383,10 @@ impl Both<'_> {
                 Side::Mean => (own + 0.5 * nearest_lap(other - own), 2),
             };
             let (s, angle) = if v == w {
-                let old_s = contour.arc_of_input(old[contour_number].arc[i]);
+                let old_s = contour.own_arc(old[contour_number].arc[i]);
                 self.on_axis(pairing, contour, own, (old_s, corner[0]))?
             } else if from == 0 {
-                (contour.arc_of_input(old[contour_number].arc[i]), corner[0])
+                (contour.own_arc(old[contour_number].arc[i]), corner[0])
             } else {
                 let right = matches!(pairing, Pairing::Own { .. }) && !is_left
                     || matches!(pairing, Pairing::Two { .. }) && of == 1;
@@ -413,7 +413,7 @@ impl Both<'_> {
         let loops = &self.placed.patch.loops;
         let s = |contour: usize| {
             let arc = loops[contour].arc[v - loops[contour].start as usize];
-            self.contours[contour].arc_of_input(arc)
+            self.contours[contour].own_arc(arc)
         };
         match pairing {
             Pairing::Own { contour, start, left, right, matching } => {

@@ -28,9 +28,9 @@ use crate::union::{nearest_source, outer_outline};
 const SHIFTS: [[f64; 2]; 6] =
     [[0.0, 0.0], [0.5, 0.29], [0.5, -0.29], [0.25, 0.43], [0.25, -0.14], [0.75, 0.14]];
 
-/// With triangles of this angle, away from drawn corners, a placement is good enough not to try
-/// another lattice angle; 14 degrees.
-const ENOUGH: f64 = 14.0 * std::f64::consts::PI / 180.0;
+/// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies
+/// this close to the drawing, in edges, is good enough not to try another lattice angle.
+const ENOUGH: (f64, f64) = (14.0 * std::f64::consts::PI / 180.0, 1.0);
 
 /// A flat patch with the numbers of its making.
 #[derive(Clone, Debug)]
@@ -165,7 +165,7 @@ impl Job<'_> {
 
     /// Tries lattice placements until one gives a valid patch of the size asked for: the angles
     /// first, cheapest boundary first, then shifts of the lattice. Where the cheapest boundary
-    /// starves triangles, the other angles are tried too, and the best is taken.
+    /// starves triangles or cuts off a tip, the other angles are tried too, and the best is taken.
     fn attempt(
         &mut self,
         asked: Asked,
@@ -219,11 +219,11 @@ impl Job<'_> {
             self.lap("placement", started);
             match placed {
                 Ok((placed, mirror_error)) => {
-                    let angle = min_angle_off_corners(&placed.patch);
-                    if best.as_ref().is_none_or(|(least, ..)| angle > *least) {
-                        best = Some((angle, outline, placed, mirror_error));
+                    let faults = faults(&placed);
+                    if best.as_ref().is_none_or(|(least, ..)| faults < *least) {
+                        best = Some((faults, outline, placed, mirror_error));
                     }
-                    if angle >= ENOUGH {
+                    if faults == 0.0 {
                         break;
                     }
                 }
@@ -346,12 +346,12 @@ impl Job<'_> {
         }
     }
 
-    /// The edge length at which a grown patch has about `n` triangles: growth stops inside the
-    /// curve, on average 0.28 triangles for each edge length of curve short of its area.
+    /// The edge length at which a patch has about `n` triangles. The lattice path cuts off what it
+    /// cannot follow, and growth stops inside the curve: on average a patch is so many triangles for
+    /// each edge length of curve short of its area.
     fn first_guess(&self, n: usize) -> f64 {
-        const SHORT: f64 = 0.28;
         let area = self.area / (0.5 * crate::lattice::ROW_HEIGHT);
-        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.0 } else { SHORT };
+        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.09 } else { 0.28 };
         let short = short * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
         2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
     }
@@ -452,6 +452,13 @@ impl Job<'_> {
         report.seconds = self.seconds.clone();
         Sketch { patch, report }
     }
+}
+
+/// How far a placement is from being good enough: zero if it is.
+fn faults(placed: &Placed) -> f64 {
+    let (angle, distance) = ENOUGH;
+    let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
+    4.0 * starved + (placed.max_deviation - distance).max(0.0)
 }
 
 /// The centroid of the enclosed area.

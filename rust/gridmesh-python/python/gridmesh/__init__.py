@@ -1,31 +1,42 @@
-"""Semi-regular triangle meshes from drawn closed curves.
+"""Semi-regular triangle meshes from drawn closed curves, and grid patches for holes.
 
-``mesh_sketch`` meshes the inside of a drawing, ``inflate`` makes a smooth watertight body of it, ``stitch`` a
-flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. Positions are float64, indices
-int32, angles radians, options keyword-only. The same input gives the same bytes. The one exception for what
-cannot be done is ``GridMeshError``.
+``mesh_sketch`` meshes the inside of a drawing, ``inflate`` makes a smooth watertight body of it, ``stitch``
+a flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. ``fill_hole`` and
+``fill_holes`` close holes of a mesh with patches that fit their boundaries vertex for vertex, ``regrid``
+replaces a region by one. Positions are float64, indices int32, angles radians, options keyword-only. The
+same input gives the same bytes. The one exception for what cannot be done is ``GridMeshError``.
 """
 
 from gridmesh._native import (
+    Fill,
     GridMeshError,
     Patch,
+    Regrid,
     Surface,
     __version__,
+    fill_hole,
+    fill_holes,
     flat,
     inflate,
     map_sketches,
     mesh_sketch,
+    regrid,
     stitch,
 )
 
 __all__ = [
+    "Fill",
     "GridMeshError",
     "Patch",
+    "Regrid",
     "Surface",
     "__version__",
+    "fill_hole",
+    "fill_holes",
     "flat",
     "inflate",
     "map_sketches",
     "mesh_sketch",
+    "regrid",
     "stitch",
 ]

@@ -5,16 +5,21 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "Fill",
     "GridMeshError",
     "Patch",
+    "Regrid",
     "Surface",
     "__version__",
     "_patch",
     "_surface",
+    "fill_hole",
+    "fill_holes",
     "flat",
     "inflate",
     "map_sketches",
     "mesh_sketch",
+    "regrid",
     "stitch",
 ]
 
@@ -85,6 +90,21 @@ class Surface:
     def __copy__(self) -> Surface: ...
     def __deepcopy__(self, _memo: object, /) -> Surface: ...
 
+@final
+class Fill:
+    @property
+    def loop(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def triangles(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+    def extend(self, values: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
+    def refit(self, vertices: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
+    def __copy__(self) -> Fill: ...
+    def __deepcopy__(self, _memo: object, /) -> Fill: ...
+
 def mesh_sketch(
     outline: _Points,
     holes: Sequence[_Points] = (),
@@ -114,6 +134,51 @@ def inflate(
     corner_angle: float = 0.6981317007977318,
     progress: _Progress | None = None,
 ) -> Surface: ...
+
+@final
+class Regrid:
+    @property
+    def fill(self) -> Fill: ...
+    @property
+    def source_faces(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def source_weights(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def unused(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def off(self) -> float: ...
+    def __copy__(self) -> Regrid: ...
+    def __deepcopy__(self, _memo: object, /) -> Regrid: ...
+
+def fill_hole(
+    vertices: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    loop: npt.ArrayLike,
+    *,
+    smooth: Literal["flat", "tangent", "curvature"] = "tangent",
+    strict: bool = False,
+    progress: _Progress | None = None,
+) -> Fill: ...
+def fill_holes(
+    vertices: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    loops: Iterable[npt.ArrayLike] | None = None,
+    *,
+    max_edges: int | None = None,
+    smooth: Literal["flat", "tangent", "curvature"] = "tangent",
+    strict: bool = False,
+    progress: _Progress | None = None,
+) -> list[Fill | GridMeshError]: ...
+def regrid(
+    vertices: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    faces: npt.ArrayLike,
+    *,
+    keep_shape: bool = True,
+    smooth: Literal["flat", "tangent", "curvature"] = "tangent",
+    strict: bool = False,
+    progress: _Progress | None = None,
+) -> Regrid: ...
 def map_sketches(
     outlines: Iterable[_Points | tuple[_Points, Sequence[_Points]]],
     *,

@@ -6,22 +6,25 @@
 //! 8/3 and `det` is linear, so a 2 x 2 Newton step costs a few operations for each triangle; and
 //! stretch / det is convex where det is positive (a square over a linear function).
 
+use std::ops::Mul;
+
 use glam::DVec2;
+use wide::{CmpGt, f64x2};
 
 use crate::lattice::ROW_HEIGHT;
 
 /// Second derivative of `stretch` in one vertex, times the identity.
 const STRETCH_HESSIAN: f64 = 8.0 / 3.0;
 
-/// Value and derivatives of an energy by `stretch` (u) and `det` (d).
+/// Value and derivatives of an energy by `stretch` (u) and `det` (d), for two triangles.
 #[derive(Clone, Copy)]
 pub(super) struct Derivatives {
-    pub value: f64,
-    pub u: f64,
-    pub d: f64,
-    pub uu: f64,
-    pub ud: f64,
-    pub dd: f64,
+    pub value: f64x2,
+    pub u: f64x2,
+    pub d: f64x2,
+    pub uu: f64x2,
+    pub ud: f64x2,
+    pub dd: f64x2,
 }
 
 /// An energy of a triangle: a function of `stretch` and `det`.
@@ -29,7 +32,7 @@ pub(super) trait Energy {
     /// True if the energy is infinite where `det` is not positive, and convex elsewhere.
     const BARRIER: bool;
     fn value(&self, stretch: f64, det: f64) -> f64;
-    fn derivatives(&self, stretch: f64, det: f64) -> Derivatives;
+    fn derivatives(&self, stretch: f64x2, det: f64x2) -> Derivatives;
 }
 
 /// A high power, 2^`SQUARINGS`, of |J|^2 / det with a little weight on the area, one for a unit
@@ -47,8 +50,9 @@ impl<const SQUARINGS: usize> Power<SQUARINGS> {
     const EXPONENT: f64 = (1u32 << SQUARINGS) as f64;
 
     /// The powers `EXPONENT - 2` and `EXPONENT - 1`.
-    fn powers(base: f64) -> (f64, f64) {
-        (1..SQUARINGS).fold((1.0, base), |(second, first), _| (second * first * base, first * first * base))
+    fn powers<T: Copy + From<f64> + Mul<Output = T>>(base: T) -> (T, T) {
+        (1..SQUARINGS)
+            .fold((T::from(1.0), base), |(second, first), _| (second * first * base, first * first * base))
     }
 }
 
@@ -65,16 +69,17 @@ impl<const SQUARINGS: usize> Energy for Power<SQUARINGS> {
         first * (low + Self::EXPONENT * (e - low))
     }
 
-    fn derivatives(&self, stretch: f64, det: f64) -> Derivatives {
+    fn derivatives(&self, stretch: f64x2, det: f64x2) -> Derivatives {
         let inverse = 1.0 / det;
         let ratio = (stretch + AREA) * inverse;
-        let e = (ratio + AREA * det) * SCALE;
+        let e = (ratio + det * AREA) * SCALE;
         let (eu, ed) = (inverse * SCALE, (AREA - ratio * inverse) * SCALE);
-        let (eud, edd) = (-inverse * eu, 2.0 * ratio * inverse * eu);
-        let low = e.min(LINEAR);
+        let (eud, edd) = (-inverse * eu, ratio * inverse * eu * 2.0);
+        let low = e.fast_min(f64x2::splat(LINEAR));
         let (second, power) = Self::powers(low);
-        let first = Self::EXPONENT * power;
-        let second = if e > low { 0.0 } else { Self::EXPONENT * (Self::EXPONENT - 1.0) * second };
+        let first = power * Self::EXPONENT;
+        let curved = second * (Self::EXPONENT * (Self::EXPONENT - 1.0));
+        let second = e.cmp_gt(low).blend(f64x2::ZERO, curved);
         let (su, sd) = (second * eu, second * ed);
         Derivatives {
             value: power * low + first * (e - low),
@@ -101,20 +106,20 @@ impl Energy for Regularised {
         (stretch + 0.5 * (det * det + 1.0)) / chi
     }
 
-    fn derivatives(&self, stretch: f64, det: f64) -> Derivatives {
+    fn derivatives(&self, stretch: f64x2, det: f64x2) -> Derivatives {
         let root = (det * det + self.eps * self.eps).sqrt();
-        let chi = 0.5 * (det + root);
+        let chi = (det + root) * 0.5;
         let (chi1, chi2) = (chi / root, 0.5 * self.eps * self.eps / (root * root * root));
         let inverse = 1.0 / chi;
-        let value = (stretch + 0.5 * (det * det + 1.0)) * inverse;
+        let value = (stretch + (det * det + 1.0) * 0.5) * inverse;
         Derivatives {
             value,
             u: inverse,
             d: det * inverse - value * chi1 * inverse,
-            uu: 0.0,
+            uu: f64x2::ZERO,
             ud: -chi1 * inverse * inverse,
-            dd: inverse - 2.0 * det * chi1 * inverse * inverse
-                + value * (2.0 * chi1 * chi1 * inverse * inverse - chi2 * inverse),
+            dd: inverse - det * chi1 * inverse * inverse * 2.0
+                + value * (chi1 * chi1 * inverse * inverse * 2.0 - chi2 * inverse),
         }
     }
 }
@@ -156,30 +161,60 @@ pub(super) fn value<E: Energy>(energy: &E, x: DVec2, ring: &[u32], positions: &[
 }
 
 /// The energy of the triangles (x, ring[i], ring[i + 1]) with gradient and Hessian in x.
+///
+/// Triangles are taken in pairs; a last one without a partner is taken twice at half its weight.
 pub(super) fn local<E: Energy>(energy: &E, x: DVec2, ring: &[u32], positions: &[DVec2]) -> Local {
-    let mut sum =
-        Local { value: 0.0, gradient: DVec2::ZERO, xx: 0.0, xy: 0.0, yy: 0.0, det: f64::INFINITY, edge: 0.0 };
-    let mut a = positions[ring[0] as usize] - x;
-    for &v in &ring[1..] {
-        let b = positions[v as usize] - x;
-        let e = b - a;
-        let det = a.perp_dot(b) * (1.0 / ROW_HEIGHT);
-        let edge = e.dot(e);
-        let d = energy.derivatives((2.0 / 3.0) * (a.dot(a) + b.dot(b) + edge), det);
-        let up = (-4.0 / 3.0) * (a + b);
-        let n = e.perp() * (1.0 / ROW_HEIGHT);
-        sum.value += d.value;
-        sum.gradient += d.u * up + d.d * n;
-        let (pu, pn) = (d.uu * up + d.ud * n, d.ud * up + d.dd * n);
-        let identity = STRETCH_HESSIAN * d.u;
-        sum.xx += identity + pu.x * up.x + pn.x * n.x;
-        sum.xy += pu.x * up.y + pn.x * n.y;
-        sum.yy += identity + pu.y * up.y + pn.y * n.y;
-        sum.det = sum.det.min(det);
-        sum.edge = sum.edge.max(edge);
-        a = b;
+    let zero = f64x2::ZERO;
+    let (mut value, mut gx, mut gy, mut xx, mut xy, mut yy) = (zero, zero, zero, zero, zero, zero);
+    let (mut least, mut most) = (f64x2::splat(f64::INFINITY), zero);
+    let at = |i: usize| positions[ring[i] as usize] - x;
+    let n = ring.len() - 1;
+    let mut p = at(0);
+    for i in (0..n).step_by(2) {
+        let single = i + 1 == n;
+        let q = at(i + 1);
+        let r = if single { q } else { at(i + 2) };
+        let (ax, ay) = (
+            f64x2::new([p.x, if single { p.x } else { q.x }]),
+            f64x2::new([p.y, if single { p.y } else { q.y }]),
+        );
+        let (bx, by) = (f64x2::new([q.x, r.x]), f64x2::new([q.y, r.y]));
+        p = r;
+        let (ex, ey) = (bx - ax, by - ay);
+        let det = (ax * by - ay * bx) * (1.0 / ROW_HEIGHT);
+        let edge = ex * ex + ey * ey;
+        let stretch = (ax * ax + ay * ay + bx * bx + by * by + edge) * (2.0 / 3.0);
+        let mut d = energy.derivatives(stretch, det);
+        if single {
+            for part in [&mut d.value, &mut d.u, &mut d.d, &mut d.uu, &mut d.ud, &mut d.dd] {
+                *part = *part * 0.5;
+            }
+        }
+        let (ux, uy) = ((ax + bx) * (-4.0 / 3.0), (ay + by) * (-4.0 / 3.0));
+        let (nx, ny) = (ey * (-1.0 / ROW_HEIGHT), ex * (1.0 / ROW_HEIGHT));
+        value += d.value;
+        gx += d.u * ux + d.d * nx;
+        gy += d.u * uy + d.d * ny;
+        let (pux, puy) = (d.uu * ux + d.ud * nx, d.uu * uy + d.ud * ny);
+        let (pnx, pny) = (d.ud * ux + d.dd * nx, d.ud * uy + d.dd * ny);
+        let identity = d.u * STRETCH_HESSIAN;
+        xx += identity + pux * ux + pnx * nx;
+        xy += pux * uy + pnx * ny;
+        yy += identity + puy * uy + pny * ny;
+        least = least.fast_min(det);
+        most = most.fast_max(edge);
     }
-    sum
+    let [det, other_det] = least.to_array();
+    let [edge, other_edge] = most.to_array();
+    Local {
+        value: value.reduce_add(),
+        gradient: DVec2::new(gx.reduce_add(), gy.reduce_add()),
+        xx: xx.reduce_add(),
+        xy: xy.reduce_add(),
+        yy: yy.reduce_add(),
+        det: det.min(other_det),
+        edge: edge.max(other_edge),
+    }
 }
 
 impl Local {

@@ -100,7 +100,7 @@ impl Motion<'_> {
     /// Moves every vertex to where its triangles are best, the worse ones counting more.
     pub fn improve(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<usize> {
         let all = &mut Active::all(self.band.n_free);
-        self.settle(&Power::<2>, all, 12, tolerance, progress)
+        self.settle(&Power::<2>, all, 8, tolerance, progress)
     }
 
     /// Lets the surroundings of some boundary vertices settle.
@@ -135,7 +135,7 @@ impl Motion<'_> {
             .flat_map(|(t, _)| *t)
             .collect();
         let mut active = Active::near(&self.band, worst, 1);
-        self.settle(&Power::<4>, &mut active, 10, tolerance, progress)
+        self.settle(&Power::<4>, &mut active, 6, tolerance, progress)
     }
 
     /// Frees the pinned vertices at which a triangle starves, and lets their surroundings settle.

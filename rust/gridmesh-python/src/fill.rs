@@ -1,0 +1,452 @@
+//! `fill_hole`, `fill_holes` and the Python class `Fill`.
+
+use glam::DVec3;
+use gridmesh::fill::{Fill as CoreFill, FillOptions, FillReport, Smooth};
+use numpy::{
+    AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods, PyUntypedArrayMethods,
+};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::error::{detached, from_core};
+use crate::input::Argument;
+use crate::mesh::{Mesh, as_positions, indices, loop_argument, positions_argument, read_positions};
+use crate::watch::Watch;
+use crate::{arrays, reports};
+
+/// Fill a hole with a grid patch whose boundary is the hole's, vertex for vertex.
+///
+/// Parameters
+/// ----------
+/// vertices : (n, 3) array of real numbers
+///     Positions of the mesh, in any units. Not modified.
+/// triangles : (m, 3) array of int
+///     Its triangles; (0, 3) for a loop of edges without a mesh. Only those near the loop matter.
+/// loop : (k,) array of int, k >= 3
+///     The vertices of the hole's boundary in order, either way round, each once.
+/// smooth : {"flat", "tangent", "curvature"}
+///     "flat": a soap film in the loop. "tangent": continues the slope of the surface around. "curvature":
+///     its slope and curvature.
+/// strict : bool
+///     True: a fill that meets itself or the mesh is refused. False: this is counted in the report.
+/// progress : callable, optional
+///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
+///
+/// Returns
+/// -------
+/// Fill
+///     The loop's vertices are neither moved nor added to; each loop edge gets exactly one new triangle,
+///     wound against its neighbour (against most of them where the neighbours disagree); the patch is a
+///     disk; no new edge or face repeats one of the mesh. The same input gives the same bytes, for any
+///     number of threads.
+///
+/// Raises
+/// ------
+/// GridMeshError
+///     If the loop, the mesh near it or an option is not fit (see `GridMeshError.kind`), or when
+///     cancelled.
+/// TypeError
+///     If an argument has a type that is not allowed.
+///
+/// Notes
+/// -----
+/// Nealen, Pett, Alexa, Igarashi: GridMesh, section V. Arrays of float64 and int32 in C order are read in
+/// place: leave them alone meanwhile. Other Python threads run.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, gridmesh
+/// >>> t = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+/// >>> ring = np.c_[np.cos(t), np.sin(t), 0 * t]
+/// >>> fill = gridmesh.fill_hole(ring, np.zeros((0, 3), int), np.arange(24))
+/// >>> mesh = np.vstack([ring, fill.vertices])[fill.triangles]
+/// >>> bool((np.cross(mesh[:, 1] - mesh[:, 0], mesh[:, 2] - mesh[:, 0])[:, 2] > 0).all())
+/// True
+#[pyfunction]
+#[pyo3(
+    signature = (vertices, triangles, r#loop, *, smooth = None, strict = None, progress = None),
+    text_signature = "(vertices, triangles, loop, *, smooth='tangent', strict=False, progress=None)"
+)]
+pub fn fill_hole(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    triangles: &Bound<'_, PyAny>,
+    r#loop: &Bound<'_, PyAny>,
+    smooth: Option<&Bound<'_, PyAny>>,
+    strict: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Fill> {
+    let mesh = Mesh::read(vertices, triangles)?;
+    let indices = indices(&loop_argument("loop", r#loop))?;
+    let options = options(smooth, strict)?;
+    let (positions, faces) = (mesh.positions()?, mesh.faces()?);
+    let fill = Watch::new(progress)?
+        .run(py, |progress| gridmesh::fill::fill_hole(&positions, &faces, &indices, &options, progress))?;
+    Fill::new(py, fill)
+}
+
+/// Fill every hole of a mesh, or the given ones, in parallel.
+///
+/// Parameters
+/// ----------
+/// vertices, triangles
+///     The mesh, as `fill_hole` takes it.
+/// loops : iterable of (k,) arrays of int, optional
+///     Loops as `fill_hole` takes them; None: all boundary loops of the mesh.
+/// max_edges : int, optional
+///     Without `loops`: holes with more edges are left open (an open sheet's own border, say).
+/// smooth, strict, progress
+///     As in `fill_hole`.
+///
+/// Returns
+/// -------
+/// list of Fill or GridMeshError
+///     In the order of the loops (found ones: of their least vertices). A loop that cannot be filled gives
+///     its error as its item and does not stop the others. The triangles of every item number the new
+///     vertices of that item from n on. No new edge or face repeats one of another fill.
+///
+/// Raises
+/// ------
+/// GridMeshError
+///     If the mesh or an option is not fit, or when cancelled.
+/// TypeError
+///     If an argument has a type that is not allowed.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, gridmesh
+/// >>> a, b = np.meshgrid(np.arange(9), np.arange(9), indexing="ij")
+/// >>> grid = np.c_[a.ravel(), b.ravel(), 0 * a.ravel()].astype(float)
+/// >>> quad = np.array([[9 * i + j for j in range(8)] for i in range(8) if not 2 < i < 5]).ravel()
+/// >>> faces = np.r_[np.c_[quad, quad + 9, quad + 1], np.c_[quad + 9, quad + 10, quad + 1]]
+/// >>> [len(fill.loop) for fill in gridmesh.fill_holes(grid, faces, max_edges=30)]
+/// [22, 22]
+#[pyfunction]
+#[pyo3(
+    signature = (vertices, triangles, loops = None, *, max_edges = None, smooth = None, strict = None, progress = None),
+    text_signature = "(vertices, triangles, loops=None, *, max_edges=None, smooth='tangent', strict=False, progress=None)"
+)]
+#[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
+pub fn fill_holes(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    triangles: &Bound<'_, PyAny>,
+    loops: Option<&Bound<'_, PyAny>>,
+    max_edges: Option<&Bound<'_, PyAny>>,
+    smooth: Option<&Bound<'_, PyAny>>,
+    strict: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Py<PyList>> {
+    let mesh = Mesh::read(vertices, triangles)?;
+    let mut options = options(smooth, strict)?;
+    if let Some(value) = max_edges {
+        let it = Argument { name: "max_edges", value, allowed: "a whole number not below 0, or None" };
+        options.max_edges = Some(it.count()?);
+    }
+    let loops = match loops {
+        None => None,
+        Some(value) => {
+            let allowed = "a sequence of (k,) arrays of whole numbers, or None";
+            let all = Argument { name: "loops", value, allowed };
+            let mut read = vec![];
+            for item in value.try_iter().map_err(|_| all.wrong_type())? {
+                let name = format!("loop {}", read.len());
+                read.push(indices(&loop_argument(&name, &item?))?);
+            }
+            Some(read)
+        }
+    };
+    let (positions, faces) = (mesh.positions()?, mesh.faces()?);
+    let fills = Watch::new(progress)?.run(py, |progress| {
+        gridmesh::fill::fill_holes(&positions, &faces, loops.as_deref(), &options, progress)
+    })?;
+    let items = PyList::empty(py);
+    for fill in fills {
+        match fill {
+            Ok(fill) => items.append(Fill::new(py, fill)?)?,
+            Err(err) => items.append(from_core(py, &err).into_value(py))?,
+        }
+    }
+    Ok(items.unbind())
+}
+
+/// Replace a region of a mesh by a grid patch on the same boundary.
+///
+/// Parameters
+/// ----------
+/// vertices, triangles
+///     The mesh, as `fill_hole` takes it.
+/// faces : (f,) array of int
+///     The triangles of the region, which must be a disk: connected, one border, not touching itself.
+/// keep_shape : bool
+///     True: the new vertices are laid on the old surface. False: the hole is filled as by `fill_hole`.
+/// smooth, strict, progress
+///     As in `fill_hole`; `smooth` matters without `keep_shape` only.
+///
+/// Returns
+/// -------
+/// Regrid
+///     A fill of the hole that the region leaves, with all guarantees of `fill_hole`.
+///
+/// Raises
+/// ------
+/// GridMeshError
+///     If the faces are no disk, or as `fill_hole`.
+/// TypeError
+///     If an argument has a type that is not allowed.
+///
+/// Notes
+/// -----
+/// Nealen, Pett, Alexa, Igarashi: GridMesh, section VII, names the task.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, gridmesh
+/// >>> a, b = np.meshgrid(np.arange(9), np.arange(9), indexing="ij")
+/// >>> sheet = np.c_[a.ravel(), b.ravel(), np.sin(a).ravel()]
+/// >>> quad = np.array([[9 * i + j for j in range(8)] for i in range(8)]).ravel()
+/// >>> faces = np.r_[np.c_[quad, quad + 9, quad + 1], np.c_[quad + 9, quad + 10, quad + 1]]
+/// >>> done = gridmesh.regrid(sheet, faces, np.arange(128))
+/// >>> len(done.fill.loop), done.off < 1e-9
+/// (32, True)
+#[pyfunction]
+#[pyo3(
+    signature = (vertices, triangles, faces, *, keep_shape = None, smooth = None, strict = None, progress = None),
+    text_signature = "(vertices, triangles, faces, *, keep_shape=True, smooth='tangent', strict=False, progress=None)"
+)]
+#[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
+pub fn regrid(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    triangles: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    keep_shape: Option<&Bound<'_, PyAny>>,
+    smooth: Option<&Bound<'_, PyAny>>,
+    strict: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Regrid> {
+    let mesh = Mesh::read(vertices, triangles)?;
+    let allowed = "an (f,) array of whole numbers";
+    let region = indices(&Argument { name: "faces", value: faces, allowed })?;
+    let options = options(smooth, strict)?;
+    let keep = keep_shape
+        .map_or(Ok(true), |value| Argument { name: "keep_shape", value, allowed: "True or False" }.bool())?;
+    let (positions, all) = (mesh.positions()?, mesh.faces()?);
+    let done = Watch::new(progress)?
+        .run(py, |progress| gridmesh::fill::regrid(&positions, &all, &region, keep, &options, progress))?;
+    let (numbers, weights) = done
+        .sources
+        .into_iter()
+        .map(|(face, w)| (face, DVec3::from_array(w)))
+        .unzip::<_, _, Vec<_>, Vec<_>>();
+    Ok(Regrid {
+        source_faces: arrays::indices(py, numbers.into_iter()),
+        source_weights: arrays::space_points(py, &weights)?,
+        unused: arrays::indices(py, done.unused.into_iter()),
+        off: done.off,
+        fill: Py::new(py, Fill::new(py, done.fill)?)?,
+    })
+}
+
+/// A region that was replaced; made by `regrid`.
+///
+/// Attributes
+/// ----------
+/// fill : Fill
+///     The patch; its triangles take the place of the region's.
+/// source_faces : (j,) int32
+///     For each new vertex the old triangle that it lies on, or that is nearest.
+/// source_weights : (j, 3) float64
+///     Weights of that triangle's corners: carries over data of any kind.
+/// unused : (u,) int32
+///     Vertices of the mesh that only the region used.
+/// off : float
+///     Largest distance of a new vertex from the old surface.
+#[pyclass(frozen, module = "gridmesh")]
+pub struct Regrid {
+    #[pyo3(get)]
+    fill: Py<Fill>,
+    #[pyo3(get)]
+    source_faces: Py<PyArray1<i32>>,
+    #[pyo3(get)]
+    source_weights: Py<PyArray2<f64>>,
+    #[pyo3(get)]
+    unused: Py<PyArray1<i32>>,
+    #[pyo3(get)]
+    off: f64,
+}
+
+#[pymethods]
+impl Regrid {
+    // It cannot change: a copy is the thing itself.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+}
+
+/// A filled hole; made by `fill_hole` and `fill_holes`.
+///
+/// All arrays are read-only and C-contiguous; copy them to change them.
+///
+/// Attributes
+/// ----------
+/// loop : (k,) int32
+///     The loop, as it was given.
+/// vertices : (j, 3) float64
+///     The new vertices only.
+/// triangles : (t, 3) int32
+///     The new triangles only. Numbers below n are those of the mesh; n + i is the new vertex i.
+/// report : dict
+///     Plain numbers: "triangles", "vertices", "irregular" (new vertices whose valence is not 6),
+///     "irregular_loop" (loop vertices whose valence is not 6 now), "grid" ("lattice", "grown", "graded",
+///     "centre" or "no_interior": how the patch was made), "folded" (True if it could not be laid out in the
+///     plane), "rim_angle" (mean angle between the surface and a film in the loop, radians: near zero where
+///     the surface goes on, about pi / 2 at the end of a tube), "unrolling" ("projected", "developed",
+///     "evened" or "circle": how the loop was laid out in the plane), "distortion" (largest relative change
+///     of a loop edge thereby), "winding_conflicts" (loop edges whose neighbour is wound against most
+///     others), "wire_edges" (loop edges without a neighbour), "min_angle" (radians), "folds" (edges with
+///     more than 120 degrees between new triangles), "self_intersections" (pairs of triangles that meet, at
+///     least one of them new), "repaired" (fallbacks taken), and "seconds", a dict of times per stage.
+#[pyclass(frozen, module = "gridmesh")]
+pub struct Fill {
+    inner: CoreFill,
+    #[pyo3(get)]
+    r#loop: Py<PyArray1<i32>>,
+    #[pyo3(get)]
+    vertices: Py<PyArray2<f64>>,
+    #[pyo3(get)]
+    triangles: Py<PyArray2<i32>>,
+    #[pyo3(get)]
+    report: Py<PyDict>,
+}
+
+impl Fill {
+    fn new(py: Python<'_>, inner: CoreFill) -> PyResult<Self> {
+        Ok(Self {
+            r#loop: arrays::indices(py, inner.loop_.iter().copied()),
+            vertices: arrays::space_points(py, &inner.vertices)?,
+            triangles: arrays::triangles(py, &inner.triangles)?,
+            report: report(py, &inner.report)?,
+            inner,
+        })
+    }
+}
+
+#[pymethods]
+impl Fill {
+    fn __repr__(&self) -> String {
+        let (triangles, edges) = (self.inner.triangles.len(), self.inner.loop_.len());
+        format!("<gridmesh.Fill: {triangles} triangles in a loop of {edges} edges>")
+    }
+
+    /// Extend data at the loop into the patch.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : (k, c) or (k,) array of real numbers
+    ///     Data of the loop's vertices, in the order of `loop`: texture coordinates, weights, colours.
+    ///
+    /// Returns
+    /// -------
+    /// (j, c) or (j,) float64
+    ///     Data of the new vertices: harmonic, and within the range of each column.
+    ///
+    /// Raises
+    /// ------
+    /// GridMeshError
+    ///     If there is not one row for each vertex of the loop, or a value is not finite.
+    #[pyo3(text_signature = "($self, values)")]
+    fn extend<'py>(&self, py: Python<'py>, values: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let allowed = "a (k, c) or (k,) array of real numbers, a row for each vertex of the loop";
+        let it = Argument { name: "values", value: values, allowed };
+        let array = it.array()?;
+        let shape = array.shape().to_vec();
+        if array.ndim() > 2 || array.ndim() == 0 || shape[0] != self.inner.loop_.len() {
+            return Err(it.wrong_shape(&format!("has shape {shape:?}")));
+        }
+        let columns = shape.get(1).copied().unwrap_or(1);
+        let flat: Vec<f64> = if array.ndim() == 1 {
+            array.extract::<PyArrayLike1<'_, f64, AllowTypeChange>>()?.as_array().iter().copied().collect()
+        } else {
+            array.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>()?.as_array().iter().copied().collect()
+        };
+        let found = detached(py, || self.inner.extend(&flat, columns)).map_err(|err| err.into_py(py))?;
+        let found = PyArray1::from_vec(py, found);
+        if array.ndim() == 1 {
+            return Ok(found.into_any());
+        }
+        Ok(found.reshape([self.inner.vertices.len(), columns])?.into_any())
+    }
+
+    /// The new vertices for other positions of the mesh's vertices, such as a shape key.
+    ///
+    /// Parameters
+    /// ----------
+    /// vertices : (n, 3) array of real numbers
+    ///     As many as the filled mesh has, in the same order.
+    ///
+    /// Returns
+    /// -------
+    /// (j, 3) float64
+    ///     Positions for the same triangles, solved like the first. Where the mesh around the loop is the
+    ///     same, they are the same.
+    ///
+    /// Raises
+    /// ------
+    /// GridMeshError
+    ///     If the number of vertices differs, or one near the loop is not finite.
+    #[pyo3(text_signature = "($self, vertices)")]
+    fn refit(&self, py: Python<'_>, vertices: &Bound<'_, PyAny>) -> PyResult<Py<PyArray2<f64>>> {
+        let held = read_positions(&positions_argument(vertices))?;
+        let positions = as_positions(&held)?;
+        let found = detached(py, || self.inner.refit(&positions)).map_err(|err| err.into_py(py))?;
+        arrays::space_points(py, &found)
+    }
+
+    // A fill cannot change: a copy is the fill itself.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+}
+
+fn options(smooth: Option<&Bound<'_, PyAny>>, strict: Option<&Bound<'_, PyAny>>) -> PyResult<FillOptions> {
+    let mut options = FillOptions::default();
+    if let Some(value) = smooth {
+        let words = [("flat", Smooth::Flat), ("tangent", Smooth::Tangent), ("curvature", Smooth::Curvature)];
+        let it = Argument { name: "smooth", value, allowed: "'flat', 'tangent' or 'curvature'" };
+        options.smooth = it.word(&words)?;
+    }
+    if let Some(value) = strict {
+        options.strict = Argument { name: "strict", value, allowed: "True or False" }.bool()?;
+    }
+    Ok(options)
+}
+
+fn report(py: Python<'_>, report: &FillReport) -> PyResult<Py<PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("triangles", report.triangles)?;
+    dict.set_item("vertices", report.vertices)?;
+    dict.set_item("irregular", report.irregular)?;
+    dict.set_item("irregular_loop", report.irregular_loop)?;
+    dict.set_item("grid", report.grid.word())?;
+    dict.set_item("folded", report.folded)?;
+    dict.set_item("rim_angle", report.rim_angle)?;
+    dict.set_item("unrolling", report.unrolling.word())?;
+    dict.set_item("distortion", report.distortion)?;
+    dict.set_item("winding_conflicts", report.winding_conflicts)?;
+    dict.set_item("wire_edges", report.wire_edges)?;
+    dict.set_item("min_angle", report.min_angle)?;
+    dict.set_item("folds", report.folds)?;
+    dict.set_item("self_intersections", report.self_intersections)?;
+    dict.set_item("repaired", report.repaired)?;
+    dict.set_item("seconds", reports::seconds(py, &report.seconds)?)?;
+    Ok(dict.unbind())
+}

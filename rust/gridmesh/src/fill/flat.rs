@@ -1,0 +1,369 @@
+//! A patch in the plane for a loop, vertex for vertex.
+//!
+//! Candidates from several methods compete: lattice patches at several angles and with more or
+//! less of the loop's unevenness developed away, tiny patches, and graded ones where a lattice
+//! would be too distorted. What each got wrong is measured, and the best is returned with its name.
+
+use glam::DVec2;
+
+use super::develop::Loop;
+use super::exact::{Layers, TURN, Wishes, conflicts, route};
+use super::graded::graded;
+use super::grown::grown;
+use super::quality::{Quality, measure};
+use super::settle::{Rings, even_out, extend, untangle};
+use super::small::{SMALL, around_centre, without_interior};
+use crate::assemble::assemble;
+use crate::axial::Axial;
+use crate::error::{Error, Result};
+use crate::lattice::Lattice;
+use crate::options::BoundaryMethod;
+use crate::progress::Progress;
+
+/// How a patch was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Method {
+    /// The loop's own vertices, no others.
+    NoInterior,
+    /// One vertex in the middle.
+    Centre,
+    /// Lattice patch bounded by the cheapest path of n steps.
+    Optimal,
+    /// Lattice patch grown as the paper's section V does.
+    Grown,
+    /// Points of nested lattices, constrained Delaunay.
+    Graded,
+}
+
+/// How to fill a loop in the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FlatOptions {
+    /// A loop of three may be one triangle.
+    pub single: bool,
+    /// Where lattice patches get their boundary from.
+    pub boundary: BoundaryMethod,
+    /// Cost of a squared lattice distance from the developed loop, in turns.
+    pub closeness: f64,
+    /// Cost of a squared logarithm of an angle at the loop against 60 degrees, in turns.
+    pub shape: f64,
+    /// Lattice steps that a vertex may be off its place in the developed loop.
+    pub reach: i32,
+    /// Lattice angles compared in the range of 60 degrees.
+    pub angles: usize,
+    /// Of the paths found, how many are placed and measured.
+    pub placed: usize,
+}
+
+impl Default for FlatOptions {
+    fn default() -> Self {
+        FlatOptions {
+            single: true,
+            boundary: BoundaryMethod::Optimal,
+            closeness: 0.3,
+            shape: 2.0,
+            reach: 2,
+            angles: 6,
+            placed: 2,
+        }
+    }
+}
+
+/// A patch in the plane for a loop of n points: vertices `0..n` are the loop's, `n..` are new.
+#[derive(Clone, Debug)]
+pub(crate) struct FlatFill {
+    /// Positions of the new vertices.
+    pub interior: Vec<DVec2>,
+    /// Counter-clockwise.
+    pub triangles: Vec<[u32; 3]>,
+    /// How it was made.
+    pub method: Method,
+    /// What was counted and measured on it.
+    pub quality: Quality,
+    /// The polygon meets itself, or no embedding was found: the patch lies folded in the plane.
+    pub folded: bool,
+    /// Candidates that were made and measured.
+    pub candidates: usize,
+}
+
+/// Fills a loop in the plane.
+///
+/// * `polygon`: n >= 3 points, counter-clockwise, simple if possible.
+/// * `wanted`: for each vertex the patch valence (edges within the patch, its two loop edges
+///   counted) that would make it regular in the mesh; 4 if there is no mesh.
+/// * `taken(i, j)`: the mesh has an edge between these loop vertices already; asked with i < j.
+///
+/// The patch is a disk whose boundary is the loop, without an edge that is taken. If the polygon is
+/// simple, every triangle is counter-clockwise by the exact predicate unless `folded` says
+/// otherwise (points on one line can leave no choice).
+///
+/// # Errors
+/// [`Error::TooFewPoints`], [`Error::NotFinite`], [`Error::Cancelled`].
+pub(crate) fn fill_flat(
+    polygon: &[DVec2],
+    wanted: &[i32],
+    taken: &dyn Fn(usize, usize) -> bool,
+    options: &FlatOptions,
+    progress: Progress<'_>,
+) -> Result<FlatFill> {
+    let n = polygon.len();
+    if n < 3 || wanted.len() != n {
+        return Err(Error::TooFewPoints { what: "loop".into(), distinct: n });
+    }
+    if let Some(point) = polygon.iter().position(|p| !p.is_finite()) {
+        return Err(Error::NotFinite { what: "flattened loop".into(), point });
+    }
+    let centre = polygon.iter().sum::<DVec2>() / n as f64;
+    let length: f64 = (0..n).map(|k| polygon[k].distance(polygon[(k + 1) % n])).sum();
+    let scale = if length > 0.0 { length / n as f64 } else { 1.0 };
+    let points: Vec<DVec2> = polygon.iter().map(|&p| (p - centre) / scale).collect();
+    let lengths = (0..n).map(|k| points[k].distance(points[(k + 1) % n]));
+    let (least, most) = lengths.fold((f64::INFINITY, 0.0f64), |(a, b), l| (a.min(l), b.max(l)));
+    let even = most <= 1.5 * least;
+    let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0, even };
+    contest.run(options, progress)?;
+    let candidates = contest.candidates;
+    let Some((_, mut fill)) = contest.best else {
+        return Err(Error::NoPatch {
+            reason: "no patch without an edge that the mesh has already".into(),
+            at: centre.to_array(),
+        });
+    };
+    fill.interior.iter_mut().for_each(|p| *p = *p * scale + centre);
+    fill.candidates = candidates;
+    Ok(fill)
+}
+
+/// Loops with more vertices are tried with fewer candidates.
+const LARGE: usize = 300;
+
+/// Badness below which no further method is tried.
+const GOOD: f64 = 1.5;
+
+struct Contest<'a> {
+    points: &'a [DVec2],
+    wanted: &'a [i32],
+    taken: &'a dyn Fn(usize, usize) -> bool,
+    best: Option<(f64, FlatFill)>,
+    candidates: usize,
+    /// The loop's edges differ by half at most: the patch should be regular inside.
+    even: bool,
+}
+
+impl Contest<'_> {
+    fn run(&mut self, options: &FlatOptions, progress: Progress<'_>) -> Result<()> {
+        let n = self.points.len();
+        let bare = n <= SMALL && (n > 3 || options.single);
+        if let Some(triangles) = bare.then(|| without_interior(self.points, self.taken)).flatten() {
+            self.enter(Vec::new(), triangles, Method::NoInterior);
+        }
+        if n <= SMALL {
+            let (centre, triangles) = around_centre(self.points);
+            self.settle_and_enter(vec![centre], triangles, Method::Centre, progress)?;
+        }
+        if n >= 5 {
+            self.lattice(options, progress.part(0.0, 0.7))?;
+        }
+        let regular = |fill: &FlatFill| fill.quality.irregular == 0 && !fill.folded;
+        let settled = |(badness, fill): &(f64, FlatFill)| *badness <= GOOD || (self.even && regular(fill));
+        if n > 3 && !self.best.as_ref().is_some_and(settled) {
+            match graded(self.points, self.wanted, self.taken, progress.part(0.7, 1.0)) {
+                Ok((interior, triangles)) => self.enter(interior, triangles, Method::Graded),
+                Err(Error::Solver { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        if self.best.is_none() {
+            // A loop that crosses itself: the triangles of a round loop with the same edges.
+            let round = round_loop(self.points);
+            let (interior, triangles) = graded(&round, self.wanted, self.taken, progress.part(0.7, 1.0))?;
+            let moved: Vec<DVec2> = self.points.iter().zip(&round).map(|(p, r)| *p - *r).collect();
+            let mut all = round;
+            all.extend(interior);
+            if let Some(rings) = Rings::new(&triangles, n, all.len()) {
+                extend(&rings, &mut all, &moved, 60);
+                all[..n].copy_from_slice(self.points);
+                untangle(&rings, &mut all, 30, progress)?;
+            }
+            self.enter(all.split_off(n), triangles, Method::Graded);
+        }
+        Ok(())
+    }
+
+    /// Lattice patches: the cheapest paths over several angles, placed and measured.
+    fn lattice(&mut self, options: &FlatOptions, progress: Progress<'_>) -> Result<()> {
+        let shape = Loop::new(self.points);
+        let turns = turn_costs(&shape.turning, self.wanted, self.taken, options.shape);
+        // The whole flux is right where it is right at all; where the developed loop covers itself,
+        // less of it may not.
+        let rounds = if self.points.len() > LARGE { ROUNDS / 2 } else { ROUNDS };
+        let strengths: &[f64] = if self.points.len() > LARGE { &[1.0] } else { &[1.0, 0.6, 0.2] };
+        for &strength in strengths {
+            let mut found: Vec<(u32, Vec<DVec2>)> = Vec::with_capacity(options.angles);
+            for a in 0..options.angles {
+                let angle = std::f64::consts::FRAC_PI_3 * a as f64 / options.angles as f64;
+                let target = shape.developed(strength, angle);
+                let wishes = Wishes {
+                    target: &target,
+                    turns: &turns,
+                    closeness: options.closeness,
+                    reach: options.reach,
+                };
+                found.push((Layers::new(&wishes).least(), target));
+            }
+            found.sort_by_key(|f| f.0);
+            for (i, (_, target)) in found.iter().take(options.placed).enumerate() {
+                progress.report(i as f64 / options.placed as f64)?;
+                let wishes =
+                    Wishes { target, turns: &turns, closeness: options.closeness, reach: options.reach };
+                match options.boundary {
+                    BoundaryMethod::Optimal => {
+                        if let Some(path) = route(&wishes, self.taken, STARTS, rounds) {
+                            self.place(&path, Method::Optimal, progress)?;
+                        }
+                    }
+                    BoundaryMethod::Grown => {
+                        let path = grown(target).filter(|path| conflicts(path, self.taken).is_empty());
+                        if let Some(path) = path {
+                            self.place(&path, Method::Grown, progress)?;
+                        }
+                    }
+                }
+            }
+            let uneven = shape.flux.iter().map(|f| f.abs()).sum::<f64>() > 1.0;
+            if !uneven || self.best.as_ref().is_some_and(|(badness, _)| *badness < GOOD) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Triangles inside a path, mapped to the loop.
+    fn place(&mut self, path: &[Axial], method: Method, progress: Progress<'_>) -> Result<()> {
+        let region = assemble(&[path.to_vec()]);
+        let n = self.points.len();
+        let mut positions: Vec<DVec2> = region.points.iter().map(|&p| Lattice::units(p)).collect();
+        let fit = Similarity::between(&positions[..n], self.points);
+        positions.iter_mut().for_each(|p| *p = fit.apply(*p));
+        let moved: Vec<DVec2> = self.points.iter().zip(&positions).map(|(p, q)| *p - *q).collect();
+        let Some(rings) = Rings::new(&region.triangles, n, positions.len()) else { return Ok(()) };
+        extend(&rings, &mut positions, &moved, 40);
+        positions[..n].copy_from_slice(self.points);
+        if untangle(&rings, &mut positions, 40, progress)? {
+            even_out(&rings, &mut positions, 12, 0.02, progress)?;
+        }
+        self.enter(positions.split_off(n), region.triangles, method);
+        Ok(())
+    }
+
+    fn settle_and_enter(
+        &mut self,
+        interior: Vec<DVec2>,
+        triangles: Vec<[u32; 3]>,
+        method: Method,
+        progress: Progress<'_>,
+    ) -> Result<()> {
+        let n = self.points.len();
+        let mut positions = self.points.to_vec();
+        positions.extend(interior);
+        if let Some(rings) = Rings::new(&triangles, n, positions.len())
+            && untangle(&rings, &mut positions, 40, progress)?
+        {
+            even_out(&rings, &mut positions, 12, 0.02, progress)?;
+        }
+        self.enter(positions.split_off(n), triangles, method);
+        Ok(())
+    }
+
+    fn enter(&mut self, interior: Vec<DVec2>, triangles: Vec<[u32; 3]>, method: Method) {
+        let n = self.points.len();
+        let positions = [self.points, &interior].concat();
+        let quality = measure(&positions, &triangles, self.wanted, self.taken);
+        let badness = quality.badness(n, self.even);
+        self.candidates += 1;
+        if badness < self.best.as_ref().map_or(f64::INFINITY, |b| b.0) {
+            let folded = !quality.embedded;
+            let fill = FlatFill { interior, triangles, method, quality, folded, candidates: 0 };
+            self.best = Some((badness, fill));
+        }
+    }
+}
+
+/// Starts of the exact search tried at most.
+const STARTS: usize = 24;
+
+/// Times that conflicts are priced.
+const ROUNDS: usize = 8;
+
+/// What each turn costs at each vertex: how far the valence is from the wanted one, and how far the
+/// angles between its edges are from 60 degrees.
+fn turn_costs(
+    turning: &[f64],
+    wanted: &[i32],
+    taken: &dyn Fn(usize, usize) -> bool,
+    shape: f64,
+) -> Vec<[u32; 5]> {
+    let n = turning.len();
+    let cost = |k: usize| {
+        std::array::from_fn(|t| {
+            let valence = 6 - t as i32;
+            let angle = (std::f64::consts::PI - turning[k]).clamp(0.05, 6.2) / f64::from(valence - 1);
+            let off = (angle / std::f64::consts::FRAC_PI_3).ln();
+            let mut cost = f64::from((valence - wanted[k]).abs()) + shape * off * off;
+            if valence == 2 {
+                // A triangle at the tip: no room for it where the loop is straight, and its third
+                // edge joins loop vertices.
+                let (i, j) = ((k + n - 1) % n, (k + 1) % n);
+                let closed = angle > 0.85 * std::f64::consts::PI || taken(i.min(j), i.max(j));
+                cost += if closed { 1000.0 } else { 1.0 };
+            }
+            (f64::from(TURN) * cost).round() as u32
+        })
+    };
+    (0..n).map(cost).collect()
+}
+
+/// Rotation, scale and shift.
+struct Similarity {
+    from: DVec2,
+    to: DVec2,
+    turn: DVec2,
+}
+
+impl Similarity {
+    /// The one that fits best, in least squares.
+    fn between(from: &[DVec2], to: &[DVec2]) -> Similarity {
+        let n = from.len() as f64;
+        let (a, b) = (from.iter().sum::<DVec2>() / n, to.iter().sum::<DVec2>() / n);
+        let (mut sum, mut size) = (DVec2::ZERO, 0.0);
+        for (p, q) in from.iter().zip(to) {
+            let (p, q) = (*p - a, *q - b);
+            sum += DVec2::new(p.dot(q), p.perp_dot(q));
+            size += p.length_squared();
+        }
+        Similarity { from: a, to: b, turn: sum / size }
+    }
+
+    fn apply(&self, p: DVec2) -> DVec2 {
+        self.to + self.turn.rotate(p - self.from)
+    }
+}
+
+/// A convex loop with about the same edge lengths.
+fn round_loop(points: &[DVec2]) -> Vec<DVec2> {
+    let n = points.len();
+    let lengths: Vec<f64> = (0..n).map(|k| points[k].distance(points[(k + 1) % n]).max(1e-6)).collect();
+    let length: f64 = lengths.iter().sum();
+    let mut at = 0.0;
+    lengths
+        .iter()
+        .map(|l| {
+            let angle = std::f64::consts::TAU * at / length;
+            at += l;
+            length / std::f64::consts::TAU * DVec2::from_angle(angle)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+#[path = "flat_tests.rs"]
+mod tests;

@@ -1,0 +1,337 @@
+//! Replaces a region of a mesh by a grid patch on the same boundary and the same surface.
+
+use glam::{DVec2, DVec3};
+use rstar::{AABB, PointDistance, RTree, RTreeObject};
+
+use super::fair::Membrane;
+use super::fit::{LEAST_WEIGHT, folds};
+use super::holes::boundary_loops;
+use super::mesh::{Rim, repeats};
+use super::patchwork::Patchwork;
+use super::sweep::sweep;
+use super::{Fill, FillOptions, Job, Smooth};
+use crate::error::{Error, Result};
+use crate::metrics::min_angle;
+use crate::progress::Progress;
+
+/// Rounds of sweeps and projections.
+const ROUNDS: usize = 6;
+
+/// A region that was replaced.
+#[derive(Clone, Debug)]
+pub struct Regrid {
+    /// The patch. Its triangles are to take the place of the region's.
+    pub fill: Fill,
+    /// For each new vertex the face of the mesh that it lies on (or that is nearest), and weights of that
+    /// face's corners: carries over data of any kind.
+    pub sources: Vec<(u32, [f64; 3])>,
+    /// Vertices that only the region used, ascending.
+    pub unused: Vec<u32>,
+    /// Largest distance of a new vertex from the old surface.
+    pub off: f64,
+}
+
+/// Replaces the triangles `faces` of a mesh, which must be a disk, by a patch on the same boundary.
+///
+/// With `keep_shape` the new vertices are laid on the old surface: first through a harmonic map of the
+/// region into the flat patch, then by rounds of tangential relaxation and projection. Without it the
+/// patch is what [`super::fill_hole`] makes of the hole. The guarantees are those of that function, with the
+/// region's triangles gone.
+///
+/// # Errors
+/// [`Error::NotADisk`] if the faces are none; [`Error::IndexOutOfRange`]; and those of
+/// [`super::fill_hole`].
+///
+/// Source: Nealen et al. 2009, section VII, names remeshing along an enclosed area and leaves open how.
+pub fn regrid(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    faces: &[u32],
+    keep_shape: bool,
+    options: &FillOptions,
+    progress: Progress<'_>,
+) -> Result<Regrid> {
+    let mut chosen = vec![false; triangles.len()];
+    for &face in faces {
+        let mark = chosen.get_mut(face as usize).ok_or(Error::IndexOutOfRange {
+            what: "selection (of faces)".into(),
+            index: face as i32,
+            vertices: triangles.len(),
+        })?;
+        *mark = true;
+    }
+    let pick = |wanted: bool| -> (Vec<u32>, Vec<[u32; 3]>) {
+        let kept = (0..triangles.len()).filter(|&t| chosen[t] == wanted && !repeats(&triangles[t]));
+        kept.map(|t| (t as u32, triangles[t])).unzip()
+    };
+    let ((numbers, region), (_, rest)) = (pick(true), pick(false));
+    let mut loops = boundary_loops(vertices.len(), &region)?;
+    let mut used = region.iter().flatten().copied().collect::<Vec<_>>();
+    used.sort_unstable();
+    used.dedup();
+    let (loop_, others) = (loops.pop(), loops.len());
+    let Some(Ok(border)) = loop_ else { return Err(Error::NotADisk { borders: others }) };
+    // Euler: an edge of the border belongs to one triangle, all others to two.
+    let edges = (3 * region.len() + border.len()) / 2;
+    if others > 0 || used.len() + region.len() != edges + 1 {
+        return Err(Error::NotADisk { borders: others + 1 });
+    }
+    // The patch takes the region's place: it runs as the region does, against the direction of a hole in it.
+    let loop_ = border.iter().rev().copied().collect::<Vec<_>>();
+    // What counts is where the vertices come to lie in the end.
+    let first = FillOptions { smooth: Smooth::Flat, strict: false, max_edges: None };
+    let job = Job { vertices, triangles: &rest, options: if keep_shape { &first } else { options } };
+    let mut fills = job.run(&[Ok(loop_)], progress.part(0.0, 0.5))?;
+    let mut fill = fills.pop().unwrap_or(Err(Error::Cancelled))?;
+
+    let surface = Surface::new(vertices, &numbers, &region);
+    if keep_shape {
+        lay_back(&mut fill, vertices, &region, &surface, progress.part(0.5, 0.9))?;
+        let mut items = [Ok(fill)];
+        Job { options, ..job }.count_meetings(&mut items);
+        let [item] = items;
+        fill = item?;
+    }
+    let mut off = 0.0f64;
+    let sources = fill.vertices.iter().map(|&p| {
+        let (face, weights, foot) = surface.nearest(p);
+        off = off.max(foot.distance(p));
+        (face, weights)
+    });
+    let sources = sources.collect();
+    let mut elsewhere = vec![false; vertices.len()];
+    rest.iter().flatten().chain(&border).for_each(|&v| elsewhere[v as usize] = true);
+    used.retain(|&v| !elsewhere[v as usize]);
+    progress.report(1.0)?;
+    Ok(Regrid { fill, sources, unused: used, off })
+}
+
+/// Moves the new vertices of a fill onto the surface of the region.
+fn lay_back(
+    fill: &mut Fill,
+    vertices: &[DVec3],
+    region: &[[u32; 3]],
+    surface: &Surface,
+    progress: Progress<'_>,
+) -> Result<()> {
+    let shape = fill.shape.as_ref();
+    let work = &shape.work;
+    let mut positions = shape.positions.clone();
+    for (v, p) in work.inner().zip(through_the_plane(shape.loop_.as_slice(), &shape.flat, vertices, region)?)
+    {
+        positions[v] = p.unwrap_or(positions[v]);
+    }
+    for round in 0..ROUNDS {
+        sweep(work, &mut positions);
+        for v in work.inner() {
+            positions[v] = surface.nearest(positions[v]).2;
+        }
+        progress.report((round + 1) as f64 / ROUNDS as f64)?;
+    }
+    fill.vertices = positions[work.inner()].to_vec();
+    fill.report.folds = folds(work, &positions);
+    fill.report.min_angle = min_angle(&positions, &work.triangles[..work.n_patch]);
+    let shape = std::sync::Arc::make_mut(&mut fill.shape);
+    shape.positions = positions;
+    Ok(())
+}
+
+/// Where the patch's inner vertices come to lie on the region if both are laid out in the plane on the same
+/// loop; none where the harmonic map of the region leaves a gap.
+fn through_the_plane(
+    loop_: &[u32],
+    flat: &[DVec2],
+    vertices: &[DVec3],
+    region: &[[u32; 3]],
+) -> Result<Vec<Option<DVec3>>> {
+    let n = loop_.len();
+    let mut on_loop = loop_.iter().enumerate().map(|(k, &v)| (v, k as u32)).collect::<Vec<_>>();
+    on_loop.sort_unstable();
+    let place = |v: u32| on_loop.binary_search_by_key(&v, |p| p.0).ok().map(|k| on_loop[k].1);
+    let mut inner = region.iter().flatten().copied().filter(|&v| place(v).is_none()).collect::<Vec<_>>();
+    inner.sort_unstable();
+    inner.dedup();
+    let number =
+        |v: u32| place(v).unwrap_or_else(|| n as u32 + inner.binary_search(&v).unwrap_or_default() as u32);
+    let old = region.iter().map(|t| t.map(number)).collect::<Vec<_>>();
+    let positions = loop_.iter().chain(&inner).map(|&v| vertices[v as usize]).collect::<Vec<_>>();
+    let work = Patchwork::new(loop_, inner.len(), &old, &Rim::default(), 0);
+    let mut laid = flat[..n].to_vec();
+    if !inner.is_empty() {
+        let weights =
+            work.cotangents(&positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
+        let inside = Membrane::new(&work)?.harmonic(&weights, |v| flat[v].to_array())?;
+        laid.extend(inside.into_iter().map(DVec2::from));
+    }
+    let boxes = old.iter().enumerate().map(|(i, t)| {
+        let [a, b, c] = t.map(|v| laid[v as usize]);
+        let rectangle = rstar::primitives::Rectangle::from_corners(
+            a.min(b).min(c).to_array(),
+            a.max(b).max(c).to_array(),
+        );
+        rstar::primitives::GeomWithData::new(rectangle, i)
+    });
+    let tree = RTree::bulk_load(boxes.collect());
+    let find = |p: &DVec2| {
+        let near = tree.locate_in_envelope_intersecting(&AABB::from_point(p.to_array()));
+        // Where the map folds, the triangle in which the point lies deepest; equal ones by number.
+        let depth = |i: usize| {
+            let [a, b, c] = old[i].map(|v| laid[v as usize] - *p);
+            let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
+            let sum = areas[0] + areas[1] + areas[2];
+            let weights = areas.map(|area| area / sum);
+            (weights[0].min(weights[1]).min(weights[2]), weights)
+        };
+        let hits = near.map(|b| (b.data, depth(b.data))).filter(|(_, (least, _))| *least >= -1e-9);
+        let best = hits.min_by(|a, b| b.1.0.total_cmp(&a.1.0).then(a.0.cmp(&b.0)))?;
+        let corners = old[best.0].map(|v| positions[v as usize]);
+        Some((0..3).map(|k| best.1.1[k] * corners[k]).sum())
+    };
+    Ok(flat[n..].iter().map(find).collect())
+}
+
+/// The region as a set of triangles to project to.
+struct Surface {
+    tree: RTree<Facet>,
+}
+
+struct Facet {
+    face: u32,
+    corners: [DVec3; 3],
+}
+
+impl Surface {
+    fn new(vertices: &[DVec3], numbers: &[u32], region: &[[u32; 3]]) -> Self {
+        let facet = |(&face, t): (&u32, &[u32; 3])| Facet { face, corners: t.map(|v| vertices[v as usize]) };
+        Surface { tree: RTree::bulk_load(numbers.iter().zip(region).map(facet).collect()) }
+    }
+
+    /// The nearest face, weights of its corners, and the point itself.
+    fn nearest(&self, p: DVec3) -> (u32, [f64; 3], DVec3) {
+        match self.tree.nearest_neighbor(&p.to_array()) {
+            Some(facet) => {
+                let weights = facet.closest(p);
+                (facet.face, weights, (0..3).map(|k| weights[k] * facet.corners[k]).sum())
+            }
+            None => (0, [1.0, 0.0, 0.0], p),
+        }
+    }
+}
+
+impl Facet {
+    /// Weights of the corners of the point nearest to `p`.
+    fn closest(&self, p: DVec3) -> [f64; 3] {
+        let [a, b, c] = self.corners;
+        let normal = (b - a).cross(c - a);
+        let squared = normal.length_squared();
+        if squared > 0.0 {
+            let inside = [
+                (c - b).cross(p - b).dot(normal),
+                (a - c).cross(p - c).dot(normal),
+                (b - a).cross(p - a).dot(normal),
+            ];
+            if inside.iter().all(|&x| x >= 0.0) {
+                return inside.map(|x| x / squared);
+            }
+        }
+        let side = |k: usize| {
+            let (from, to) = (self.corners[k], self.corners[(k + 1) % 3]);
+            let along = to - from;
+            let t = ((p - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let mut weights = [0.0; 3];
+            (weights[k], weights[(k + 1) % 3]) = (1.0 - t, t);
+            ((from + t * along).distance_squared(p), weights)
+        };
+        let sides = [side(0), side(1), side(2)];
+        sides.into_iter().min_by(|x, y| x.0.total_cmp(&y.0)).map_or([1.0, 0.0, 0.0], |side| side.1)
+    }
+}
+
+impl RTreeObject for Facet {
+    type Envelope = AABB<[f64; 3]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        let [a, b, c] = self.corners;
+        AABB::from_corners(a.min(b).min(c).to_array(), a.max(b).max(c).to_array())
+    }
+}
+
+impl PointDistance for Facet {
+    fn distance_2(&self, point: &[f64; 3]) -> f64 {
+        let p = DVec3::from_array(*point);
+        let weights = self.closest(p);
+        (0..3).map(|k| weights[k] * self.corners[k]).sum::<DVec3>().distance_squared(p)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::check_mesh;
+
+    /// A bumpy sheet of n x n quads.
+    fn sheet(n: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let at = |i: u32, j: u32| i * (n + 1) + j;
+        let height = |i: u32, j: u32| 0.8 * (0.5 * f64::from(i)).sin() * (0.4 * f64::from(j)).cos();
+        let vertices = (0..=n)
+            .flat_map(|i| (0..=n).map(move |j| DVec3::new(f64::from(i), f64::from(j), height(i, j))))
+            .collect();
+        let mut triangles = vec![];
+        for i in 0..n {
+            for j in 0..n {
+                triangles.push([at(i, j), at(i + 1, j), at(i, j + 1)]);
+                triangles.push([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+            }
+        }
+        (vertices, triangles)
+    }
+
+    #[test]
+    fn a_region_keeps_its_shape_and_border() {
+        let (vertices, triangles) = sheet(16);
+        let inside = |t: &[u32; 3]| {
+            let middle = t.iter().map(|&v| vertices[v as usize]).sum::<DVec3>() / 3.0;
+            middle.truncate().distance(DVec2::new(8.0, 8.0)) < 5.0
+        };
+        let faces =
+            (0..triangles.len() as u32).filter(|&t| inside(&triangles[t as usize])).collect::<Vec<_>>();
+        let options = FillOptions::default();
+        let done = regrid(&vertices, &triangles, &faces, true, &options, Progress::NONE).unwrap();
+        assert!(done.off < 1e-9, "{}", done.off);
+        let mut all = (0..triangles.len() as u32)
+            .filter(|t| !faces.contains(t))
+            .map(|t| triangles[t as usize])
+            .collect::<Vec<_>>();
+        all.extend(&done.fill.triangles);
+        let mut points = vertices.clone();
+        points.extend(&done.fill.vertices);
+        let check = check_mesh(points.len(), &all);
+        assert_eq!((check.bad_edges, check.bad_vertices, check.boundaries), (0, 0, 1), "{check:?}");
+        let used = all.iter().flatten().collect::<std::collections::BTreeSet<_>>();
+        assert!(done.unused.iter().all(|v| !used.contains(v)));
+        for (p, (face, weights)) in done.fill.vertices.iter().zip(&done.sources) {
+            let corners = triangles[*face as usize].map(|v| vertices[v as usize]);
+            let there = (0..3).map(|k| weights[k] * corners[k]).sum::<DVec3>();
+            assert!(there.distance(*p) < 1e-9);
+            assert!(faces.contains(face));
+        }
+    }
+
+    #[test]
+    fn what_is_no_disk_is_refused() {
+        let (vertices, triangles) = sheet(6);
+        let all = (0..triangles.len() as u32).collect::<Vec<_>>();
+        let ring = all.iter().copied().filter(|t| !(28..32).contains(t)).collect::<Vec<_>>();
+        let options = FillOptions::default();
+        let kind = |faces: &[u32]| {
+            regrid(&vertices, &triangles, faces, true, &options, Progress::NONE)
+                .err()
+                .map_or("", |e| e.kind())
+        };
+        assert_eq!(kind(&ring), "not_a_disk");
+        assert_eq!(kind(&[]), "not_a_disk");
+        assert_eq!(kind(&[0, 40]), "not_a_disk");
+        assert_eq!(kind(&[900]), "index_out_of_range");
+        assert_eq!(kind(&all), "");
+    }
+}

@@ -1,0 +1,81 @@
+//! What is told about a fill.
+
+use super::flat::Method;
+use super::unroll::Unrolling;
+
+/// Numbers about a [`super::Fill`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FillReport {
+    /// New triangles.
+    pub triangles: usize,
+    /// New vertices.
+    pub vertices: usize,
+    /// New vertices of valence other than six.
+    pub irregular: usize,
+    /// Loop vertices that have a valence other than six now, edges of the mesh counted.
+    pub irregular_loop: usize,
+    /// How the patch was made.
+    pub grid: Grid,
+    /// True if no patch was found whose triangles are all counter-clockwise in the plane.
+    pub folded: bool,
+    /// Mean angle between the surface at the loop and a film in the loop, in radians: near zero where the
+    /// surface goes on, about a right angle at the end of a tube.
+    pub rim_angle: f64,
+    /// How the loop was laid out in the plane.
+    pub unrolling: Unrolling,
+    /// Largest relative change of a loop edge's length thereby.
+    pub distortion: f64,
+    /// Loop edges whose neighbour is wound against most others.
+    pub winding_conflicts: usize,
+    /// Loop edges without a neighbour.
+    pub wire_edges: usize,
+    /// Smallest angle of a new triangle, in radians.
+    pub min_angle: f64,
+    /// Inner edges of the patch with more than 120 degrees between the triangles.
+    pub folds: usize,
+    /// Pairs of triangles, at least one of them new, that meet where they should not; counted up to 100,000.
+    pub self_intersections: usize,
+    /// Fallbacks: solves that failed and were replaced by simpler ones.
+    pub repaired: usize,
+    /// Seconds spent in each stage.
+    pub seconds: Vec<(&'static str, f64)>,
+}
+
+/// How a patch was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Grid {
+    /// The loop's own vertices, no others.
+    #[default]
+    NoInterior,
+    /// One vertex in the middle.
+    Centre,
+    /// A lattice patch: the cheapest of exactly as many edges as the loop.
+    Lattice,
+    /// A lattice patch grown as in the paper's section V.
+    Grown,
+    /// Points of nested lattices, for loops too uneven for one.
+    Graded,
+}
+
+impl Grid {
+    pub(super) fn of(method: Method) -> Self {
+        match method {
+            Method::NoInterior => Grid::NoInterior,
+            Method::Centre => Grid::Centre,
+            Method::Optimal => Grid::Lattice,
+            Method::Grown => Grid::Grown,
+            Method::Graded => Grid::Graded,
+        }
+    }
+
+    /// A stable word, for programs.
+    pub fn word(self) -> &'static str {
+        match self {
+            Grid::NoInterior => "no_interior",
+            Grid::Centre => "centre",
+            Grid::Lattice => "lattice",
+            Grid::Grown => "grown",
+            Grid::Graded => "graded",
+        }
+    }
+}

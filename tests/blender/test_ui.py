@@ -1,0 +1,148 @@
+"""Panels, menus and redo panels, drawn into a layout that checks names: Blender draws nothing in background."""
+
+import types
+
+import bpy
+import pytest
+from drawings import activate, circle, grease_pencil, run_one
+from holes import cylinder, edit
+
+from addon import ui
+from addon.operators.fill import MESH_OT_gridmesh_fill
+from addon.operators.strokes import OBJECT_OT_gridmesh_from_strokes
+
+
+class Settings:
+    """Properties of a button; those that the operator has not got are refused."""
+
+    def __init__(self, idname):
+        group, name = idname.split(".")
+        object.__setattr__(self, "rna", getattr(getattr(bpy.ops, group), name).get_rna_type())
+
+    def __setattr__(self, name, value):
+        option = self.rna.properties[name]
+        if option.type == "ENUM":
+            assert value in option.enum_items.keys()  # noqa: SIM118
+
+
+class Layout:
+    """What was drawn, in order."""
+
+    def __init__(self, drawn=None):
+        self.drawn = [] if drawn is None else drawn
+
+    def column(self, **_):
+        return Layout(self.drawn)
+
+    row = column
+
+    def panel(self, idname, *, default_closed=False):
+        self.drawn.append(idname)
+        return Layout(self.drawn), Layout(self.drawn)
+
+    def separator(self):
+        pass
+
+    def label(self, *, text, icon="NONE"):
+        check_icon(icon)
+        self.drawn.append(text)
+
+    def operator(self, idname, *, text="", icon="NONE"):
+        check_icon(icon)
+        self.drawn.append(idname)
+        return Settings(idname)
+
+    def prop(self, owner, name):
+        assert hasattr(owner, name)
+        self.drawn.append(name)
+
+
+def check_icon(name):
+    assert name in bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys()  # noqa: SIM118
+
+
+def panel():
+    layout = Layout()
+    own = types.SimpleNamespace(layout=layout)
+    cls = ui.VIEW3D_PT_gridmesh
+    for name in ("_draw_fill", "_draw_strokes"):
+        setattr(own, name, getattr(cls, name).__get__(own))
+    cls.draw(own, bpy.context)
+    return layout.drawn
+
+
+def test_panel_without_anything():
+    activate()
+    assert "Select a drawing or a curve" in panel()
+
+
+def test_panel_with_a_drawing_and_with_a_body():
+    grease_pencil([circle()])
+    assert "object.gridmesh_from_strokes" in panel()
+    run_one()
+    assert "object.gridmesh_from_strokes" in panel()
+
+
+def test_panel_in_edit_mode():
+    edit(cylinder())
+    assert panel() == ["mesh.gridmesh_fill", "mesh.gridmesh_fill"]
+
+
+@pytest.mark.parametrize("entry", [ui._fill_entry, ui._stroke_entry])
+def test_menu_entries(entry):
+    grease_pencil([circle()])
+    menu = types.SimpleNamespace(layout=Layout())
+    entry(menu, bpy.context)
+    assert len(menu.layout.drawn) == 1
+
+
+def options(cls, **changed):
+    """Stand for an operator with its default options."""
+    rna = Settings(cls.bl_idname).rna
+    own = types.SimpleNamespace(layout=Layout(), bl_idname=cls.bl_idname)
+    for option in rna.properties:
+        if option.identifier != "rna_type":
+            setattr(own, option.identifier, getattr(option, "default", None))
+    for name in ("draw_shape_options", "draw_sketch_options"):
+        if hasattr(cls, name):
+            setattr(own, name, getattr(cls, name).__get__(own))
+    for name, value in changed.items():
+        assert hasattr(own, name)
+        setattr(own, name, value)
+    cls.draw(own, bpy.context)
+    return own.layout.drawn
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {},
+        {"result": "1 body: 4 triangles, 3 ms"},
+        {"shape": "SHEET"},
+        {"use_sides": True, "angle_mode": "FIXED", "resolution": "EDGE_LENGTH"},
+    ],
+)
+def test_redo_panel_of_strokes(changed):
+    drawn = options(OBJECT_OT_gridmesh_from_strokes, **changed)
+    assert {"shape", "boundary", "use_holes", "collection"} <= set(drawn)
+    assert ("edge_length" in drawn) == ("resolution" in changed)
+
+
+def test_redo_panel_of_fill():
+    drawn = options(MESH_OT_gridmesh_fill, result="Filled 1 hole: 4 triangles, 0 irregular vertices, 1 ms")
+    assert drawn[:2] == ["Filled 1 hole: 4 triangles", "0 irregular vertices, 1 ms"]
+    assert {"holes", "smooth", "use_quads", "close_chains"} <= set(drawn)
+    assert "max_edges" in options(MESH_OT_gridmesh_fill, holes="ALL")
+
+
+@pytest.mark.parametrize("cls", [MESH_OT_gridmesh_fill, OBJECT_OT_gridmesh_from_strokes])
+def test_every_option_has_a_name_and_a_description(cls):
+    for option in Settings(cls.bl_idname).rna.properties:
+        if option.identifier == "rna_type" or option.is_hidden:
+            continue
+        assert option.name
+        assert option.description
+        assert not option.description.endswith(".")
+        for item in getattr(option, "enum_items", ()):
+            assert item.description
+            assert not item.description.endswith(".")
