@@ -103,6 +103,7 @@ pub(crate) fn traced(
         arcs: vec![Vec::new(); contours.len()],
         cost: traced.cost,
         cost_bound: Some(traced.cost_bound),
+        turns_bound: Some(traced.turns_bound),
         optimal: traced.optimal,
         max_distance_used: traced.max_distance_used,
         ..Outline::default()
@@ -116,7 +117,6 @@ pub(crate) fn traced(
             let arc = |u: &f64| arc_at(contours, pairing, side, u / whole) / lattice.edge_length;
             outline.arcs[contour] = path.parameters.iter().map(arc).collect();
             outline.paths[contour] = path.points;
-            outline.targets.push(target);
         }
     }
     Ok(Ok(outline))

@@ -265,10 +265,9 @@ fn sharpest(patch: &Patch, counts: impl Fn(&[u32; 3]) -> bool) -> f64 {
     let mut most = -f64::INFINITY;
     for t in patch.triangles.iter().filter(|t| counts(t)) {
         let p = t.map(|v| patch.vertices[v as usize]);
-        for i in 0..3 {
-            let (a, b) = (p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
-            most = most.max(a.dot(b) / a.perp_dot(b));
-        }
+        let [a, b, c] = [p[2] - p[1], p[0] - p[2], p[1] - p[0]];
+        let dot = (-a.dot(b)).max(-b.dot(c)).max(-c.dot(a));
+        most = most.max(dot / a.perp_dot(b));
     }
     1f64.atan2(most)
 }

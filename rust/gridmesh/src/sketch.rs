@@ -433,7 +433,7 @@ impl Job<'_> {
             minimum_irregular: 6 + 3 * (self.contours.len() - 1),
             turns: outline.turns(),
             turns_before: outline.turns_before,
-            turns_bound: outline.turns_bound(),
+            turns_bound: outline.turns_bound,
             cost: outline.cost,
             cost_bound: outline.cost_bound,
             optimal: outline.optimal,
