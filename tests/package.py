@@ -8,6 +8,7 @@
 """Build the wheel and the extension's zip, and check both.
 
     uv run tests/package.py                          # this platform: wheel and zip, in dist/
+    uv run tests/package.py --wheel-only             # the wheel alone
     uv run tests/package.py --wheels DIR             # zips of wheels that are there, one for each platform
 
 The zip is built and validated by Blender's own builder, out of the pinned `bpy` wheel unless `--builder` names another
@@ -66,6 +67,7 @@ def main() -> None:
     """Build, check, and say what was made."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--wheels", type=Path, metavar="DIR", help="bundle these instead of building one")
+    parser.add_argument("--wheel-only", action="store_true", help="build the wheel and no zip")
     parser.add_argument("--builder", metavar="PATH", help="blender_ext.py or a Blender; fetched if not given")
     parser.add_argument("--out", type=Path, default=ROOT / "dist", help="folder for what is built")
     arguments = parser.parse_args()
@@ -75,6 +77,9 @@ def main() -> None:
         wheels = sorted(arguments.wheels.glob("*.whl")) if arguments.wheels else [build_wheel(arguments.out)]
         if not wheels:
             raise PackageError(f"there are no wheels in {arguments.wheels}")
+        if arguments.wheel_only:
+            print(wheels[0])
+            return
         for package in build_zips(wheels, arguments.out, builder(arguments.builder)):
             print(f"{package}  {package.stat().st_size / 2**20:.1f} MiB")
     except (PackageError, subprocess.CalledProcessError) as error:
