@@ -227,9 +227,7 @@ def test_missing_module(monkeypatch):
     grease_pencil([circle()])
     monkeypatch.setitem(sys.modules, "gridmesh", None)
     before = fingerprint()
-    with pytest.raises(
-        RuntimeError, match=r"native module 'gridmesh' is missing; install the GridMesh zip"
-    ):
+    with pytest.raises(RuntimeError, match=r"native module 'gridmesh' is missing; install the GridMesh zip"):
         bpy.ops.object.gridmesh_from_strokes()
     assert fingerprint() == before
 
