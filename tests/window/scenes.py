@@ -56,6 +56,7 @@ def grease_pencil(strokes, name="Drawing"):
     bpy.context.scene.collection.objects.link(ob)
     material = bpy.data.materials.new("Ink")
     bpy.data.materials.create_gpencil_data(material)
+    material.grease_pencil.color = (0.07, 0.36, 0.62, 1)
     data.materials.append(material)
     drawing = data.layers.new("Lines").frames.new(1).drawing
     drawing.add_strokes([len(stroke) for stroke in strokes])
@@ -66,6 +67,7 @@ def grease_pencil(strokes, name="Drawing"):
         stroke.cyclic = True
     drawing.tag_positions_changed()
     select(ob)
+    bpy.ops.ed.undo_push(message="Drawing")  # the redo panel goes back to it
     return ob
 
 
@@ -148,9 +150,8 @@ def redo_panel():
     (body,) = mesh_objects()
     before = len(body.data.polygons), max(body.dimensions)
     turn_view()
+    hud = yield from stage.open_redo_panel()
     yield from stage.picture("redo_1_before")
-    hud = stage.region("HUD")
-    assert hud.height > 50, "there is no redo panel"
     fields = yield from numbers_of(hud, "triangles", "800")
     assert fields, "the number of triangles could not be changed in the redo panel"
     (body,) = mesh_objects()
@@ -159,20 +160,20 @@ def redo_panel():
 
 
 def numbers_of(hud, name, value):
-    """Type a value into the field of an option: fields are tried from the top until the option has it."""
+    """Type a value into the field of an option, found by what Ctrl-C copies from it; whether the option has it."""
+    manager = bpy.context.window_manager
     for y in range(hud.y + hud.height - 30, hud.y + 10, -11):
+        manager.clipboard = ""
         yield from stage.move(hud.x + int(hud.width * 0.72), y)
         yield 0.1
-        yield from stage.key("C", ctrl=True)  # copies the value of a field; of nothing else
-        copied = bpy.context.window_manager.clipboard
-        last = bpy.context.window_manager.operators[-1]
-        if copied != f"{getattr(last, name)}":
-            bpy.context.window_manager.clipboard = ""
-            continue
-        bpy.context.window_manager.clipboard = value
-        yield from stage.key("V", ctrl=True)
-        yield 1.0
-        return f"{getattr(bpy.context.window_manager.operators[-1], name)}" == value
+        yield from stage.key("C", ctrl=True)
+        if manager.clipboard == f"{getattr(manager.operators[-1], name)}":
+            yield from stage.click(*stage.mouse)
+            yield from stage.key("A", ctrl=True)
+            yield from stage.write(value)
+            yield from stage.key("RET")
+            yield 1.5
+            return f"{getattr(manager.operators[-1], name)}" == value
     return False
 
 
@@ -186,10 +187,7 @@ def menus():
         bpy.ops.wm.call_menu(name="VIEW3D_MT_object_convert")
     yield 0.5
     yield from stage.picture("menu_convert")
-    yield from stage.write("Strokes to")
-    yield 0.5
-    yield from stage.key("RET")
-    yield 1.0
+    yield from stage.choose("Strokes to Mesh")
     assert len(mesh_objects()) == 1, "the menu made nothing"
     yield from fresh()
     grease_pencil([whale()])
@@ -207,13 +205,11 @@ def sprites():
         bpy.ops.wm.call_menu(name="VIEW3D_MT_gridmesh_presets")
     yield 0.5
     yield from stage.picture("sprite_1_presets")
-    yield from stage.write("Sprite Standard")
-    yield 0.5
-    yield from stage.key("RET")
-    yield 1.0
+    yield from stage.choose("Sprite Standard")
     (sheet,) = mesh_objects()
     assert np.ptp([vertex.co.z for vertex in sheet.data.vertices]) < 1e-5
     stage.view.spaces.active.overlay.show_wireframes = True
+    assert len(sheet.data.polygons) < 250
     yield from stage.picture("sprite_2_sheet")
 
 
@@ -265,10 +261,7 @@ def fill():
     yield from stage.key("F", ctrl=True)
     yield 0.5
     yield from stage.picture("fill_3_menu")
-    yield from stage.write("Grid Patch")
-    yield 0.5
-    yield from stage.key("RET")
-    yield 1.0
+    yield from stage.choose("Grid Patch Fill")
     assert faces() == filled, "the Face menu filled nothing"
 
 

@@ -94,6 +94,14 @@ class Stage:
             self.window.event_simulate(name, "RELEASE", x=self.mouse[0], y=self.mouse[1])
             yield STEP
 
+    def choose(self, text):
+        """Find an entry of the open menu by its name, and take it."""
+        yield from self.key("SPACE")
+        yield from self.write(text)
+        yield 0.8
+        yield from self.key("RET")
+        yield 1.0
+
     def search(self, text):
         """Find an operator by its name, as F3 does, and run it."""
         yield from self.move(*self.middle())
@@ -156,6 +164,16 @@ class Stage:
         assert at.active_panel_category == "GridMesh", at.active_panel_category
 
     # -------------------------------------------------------------------------------------------------- looking
+
+    def open_redo_panel(self):
+        """Open the panel at the lower left by a click on its header; return its region."""
+        yield 0.5
+        hud = self.region("HUD")
+        if hud.height < 50:
+            yield from self.click(hud.x + hud.width // 2, hud.y + hud.height // 2)
+            yield 1.0
+        assert hud.height > 50, "there is no redo panel"
+        return hud
 
     def picture(self, name):
         """Take a picture of the whole window, after Blender has drawn it."""
