@@ -51,7 +51,8 @@ def clover(size=150, n=60):
 
 def grease_pencil(strokes, name="Drawing"):
     """A grease pencil object with strokes (n, 3), selected."""
-    data = bpy.data.grease_pencils.new(name)
+    v3 = hasattr(bpy.data, "grease_pencils_v3")  # before Blender 5.0
+    data = (bpy.data.grease_pencils_v3 if v3 else bpy.data.grease_pencils).new(name)
     ob = bpy.data.objects.new(name, data)
     bpy.context.scene.collection.objects.link(ob)
     material = bpy.data.materials.new("Ink")
