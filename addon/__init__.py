@@ -5,24 +5,27 @@
     operators.fill -> editmesh (from Blender) -> holes, api (no bpy) -> editmesh, attributes (to Blender)
 
 `properties` holds what the redo panel shows, `ui` the sidebar and the menus. The native module `gridmesh` is
-imported when it is first needed, so that the extension registers, and can say what is wrong, without it; and
-bpy only in `register`, so that `outlines` and `api` run in plain Python.
+imported by `native` when it is first needed, so that the extension registers, and can say what is wrong, without it;
+and bpy only in `register`, so that `outlines` and `api` run in plain Python.
 """
+
+from types import ModuleType
 
 
 def register() -> None:
-    """Register all classes and menu entries; if one fails, none stays."""
+    """Register all classes, menu entries and the like; if one fails, none stays."""
     import bpy
-
-    from . import ui
 
     done = []
     try:
         for cls in _classes():
             bpy.utils.register_class(cls)
             done.append(cls)
-        ui.add_menus()
+        for part in _parts():
+            part.register()
     except BaseException:
+        for part in reversed(_parts()):
+            part.unregister()
         for cls in reversed(done):
             bpy.utils.unregister_class(cls)
         raise
@@ -32,9 +35,8 @@ def unregister() -> None:
     """Undo `register`, also where it was undone in part."""
     import bpy
 
-    from . import ui
-
-    ui.remove_menus()
+    for part in reversed(_parts()):
+        part.unregister()
     for cls in reversed(_classes()):
         if cls.is_registered:
             bpy.utils.unregister_class(cls)
@@ -45,3 +47,10 @@ def _classes() -> tuple[type, ...]:
     from .operators import fill, strokes
 
     return (*strokes.classes, *fill.classes, *ui.classes)
+
+
+def _parts() -> tuple[ModuleType, ...]:
+    """Modules with more to register than classes; their `unregister` may be called at any time."""
+    from . import keys, preset_files, translations, ui
+
+    return (translations, preset_files, ui, keys)
