@@ -12,6 +12,7 @@ mod deviation;
 pub mod dir;
 pub mod embed;
 pub mod error;
+mod expel;
 pub mod fill;
 pub mod growth;
 pub mod inflate;
