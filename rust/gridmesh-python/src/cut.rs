@@ -141,7 +141,9 @@ fn sweep(
     };
     let given = |value: Option<&Bound<'_, PyAny>>| value.is_some_and(|v| !v.is_none());
     match (direction, eye) {
-        (Some(value), other) if given(direction) && !given(other) => Ok(Sweep::Along(vector("direction", value)?)),
+        (Some(value), other) if given(direction) && !given(other) => {
+            Ok(Sweep::Along(vector("direction", value)?))
+        }
         (other, Some(value)) if given(eye) && !given(other) => Ok(Sweep::Through(vector("eye", value)?)),
         _ => {
             let found = if given(direction) { "both are given" } else { "neither is given" };

@@ -90,7 +90,8 @@ pub fn cut(
     let sides = [(Keep::Left, 0.5 * options.gap), (Keep::Right, -0.5 * options.gap)];
     for (k, (keep, shift)) in sides.into_iter().filter(|(k, _)| options.keep.has(*k)).enumerate() {
         let half = CutOptions { keep, ..options.clone() };
-        let sheet = Sheet::new(vertices, &offset::shifted(vertices, stroke, options.sweep, shift)?, options.sweep)?;
+        let sheet =
+            Sheet::new(vertices, &offset::shifted(vertices, stroke, options.sweep, shift)?, options.sweep)?;
         let here = progress.part(0.5 * k as f64, 0.5 * (k + 1) as f64);
         let one = divide(vertices, faces, sheet, &half, here)?;
         both = Some(match both {
@@ -131,7 +132,16 @@ fn divide(
     tally.report.open_lines = loops.open;
     tally.report.loops = loops.closed.len();
     let caps = if options.cap {
-        let caps = cap::close(vertices, faces, &parted, &sheet, &loops, options, &mut tally, progress.part(0.4, 0.9))?;
+        let caps = cap::close(
+            vertices,
+            faces,
+            &parted,
+            &sheet,
+            &loops,
+            options,
+            &mut tally,
+            progress.part(0.4, 0.9),
+        )?;
         tally.stage("caps");
         caps
     } else {

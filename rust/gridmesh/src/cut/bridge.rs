@@ -29,7 +29,12 @@ impl Bridges {
         Some(pieces)
     }
 
-    fn open_sheet(&mut self, outline: Vec<Spot>, mut holes: Vec<Vec<Spot>>, pieces: &mut Vec<Vec<Spot>>) -> Option<()> {
+    fn open_sheet(
+        &mut self,
+        outline: Vec<Spot>,
+        mut holes: Vec<Vec<Spot>>,
+        pieces: &mut Vec<Vec<Spot>>,
+    ) -> Option<()> {
         if holes.is_empty() {
             pieces.push(outline);
             return Some(());
@@ -96,42 +101,31 @@ impl Bridges {
         holes: Vec<Vec<Spot>>,
         width: f64,
     ) -> Option<Vec<(Vec<Spot>, Vec<Vec<Spot>>)>> {
-        // Both forward, beginning at about the same place, twice around.
+        // Both forward, beginning at about the same place, three times around.
         let upper = upper.into_iter().rev().collect::<Vec<_>>();
         let begin = lower[0].at.x;
-        let twice = |around: &[Spot]| {
-            let mut all = around.to_vec();
-            let base = (begin - around[0].at.x) / width;
-            all.iter_mut().for_each(|s| s.at.x += width * base.round());
-            let next = all.clone().into_iter().map(|mut s| {
-                s.at.x += width;
-                s
-            });
-            all.extend(next);
-            all
+        let thrice = |around: &[Spot]| {
+            let base = width * ((begin - around[0].at.x) / width).round();
+            let turn = |k: f64| {
+                around.iter().map(move |s| Spot { at: DVec2::new(s.at.x + (base + k * width), s.at.y), ..*s })
+            };
+            turn(-1.0).chain(turn(0.0)).chain(turn(1.0)).collect::<Vec<_>>()
         };
-        let before = |around: &[Spot]| {
-            let first = around.iter().map(|s| Spot { at: s.at - DVec2::new(width, 0.0), ..*s });
-            first.chain(around.iter().copied()).collect::<Vec<_>>()
-        };
-        let low = twice(&lower);
-        let high = before(&twice(&upper));
-        let mut walls = edges_open(&before(&low));
+        let (low, high) = (thrice(&lower), thrice(&upper));
+        let mut walls = edges_open(&low);
         walls.extend(edges_open(&high));
-        walls.extend(holes.iter().flat_map(|h| edges(h)));
         for h in &holes {
-            for shift in [-width, width] {
+            for shift in [0.0, -width, width] {
                 walls.extend(edges(h).into_iter().map(|e| e.map(|p| p + DVec2::new(shift, 0.0))));
             }
         }
         let n = lower.len();
         let nearest = |i: usize| {
-            let best = (0..high.len()).min_by(|&a, &b| {
-                low[i].at.distance(high[a].at).total_cmp(&low[i].at.distance(high[b].at))
-            })?;
+            let best = (0..high.len())
+                .min_by(|&a, &b| low[i].at.distance(high[a].at).total_cmp(&low[i].at.distance(high[b].at)))?;
             is_clear(&walls, low[i].at, high[best].at).then(|| (low[i].at.distance(high[best].at), i, best))
         };
-        let links = (0..n).filter_map(nearest).collect::<Vec<_>>();
+        let links = (n..2 * n).filter_map(nearest).collect::<Vec<_>>();
         let first = *links.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         let middle = low[first.1].at.x + 0.5 * width;
         // Another one about half around.
@@ -161,8 +155,9 @@ impl Bridges {
                     break;
                 }
             }
-            let shift = |spot: Spot, x: f64| {
-                Spot { at: DVec2::new(spot.at.x + width * ((x - spot.at.x) / width).round(), spot.at.y), ..spot }
+            let shift = |spot: Spot, x: f64| Spot {
+                at: DVec2::new(spot.at.x + width * ((x - spot.at.x) / width).round(), spot.at.y),
+                ..spot
             };
             for &spot in down {
                 let spot = shift(spot, x);
@@ -188,7 +183,8 @@ impl Bridges {
         for hole in holes {
             let at = |shift: f64| hole[0].at + DVec2::new(shift, 0.0);
             let place = [0.0, -width, width].into_iter().find_map(|shift| {
-                let k = sheets.iter().position(|s: &(Vec<Spot>, Vec<Vec<Spot>>)| is_within(&s.0, at(shift)))?;
+                let k =
+                    sheets.iter().position(|s: &(Vec<Spot>, Vec<Vec<Spot>>)| is_within(&s.0, at(shift)))?;
                 Some((k, shift))
             });
             let (k, shift) = place?;
@@ -257,8 +253,9 @@ fn walk(
 /// For each vertex of the hole the nearest one of the outline: distance, there, here.
 fn links(outline: &[Spot], hole: &[Spot]) -> Vec<(f64, usize, usize)> {
     let nearest = |(j, h): (usize, &Spot)| {
-        let best = (0..outline.len())
-            .min_by(|&a, &b| outline[a].at.distance_squared(h.at).total_cmp(&outline[b].at.distance_squared(h.at)));
+        let best = (0..outline.len()).min_by(|&a, &b| {
+            outline[a].at.distance_squared(h.at).total_cmp(&outline[b].at.distance_squared(h.at))
+        });
         best.map(|i| (outline[i].at.distance(h.at), i, j))
     };
     hole.iter().enumerate().filter_map(nearest).collect()

@@ -79,12 +79,7 @@ pub(super) fn cross(
         .with_min_len(64)
         .map_init(Vec::new, |near, &(a, b)| edge_hits(vertices, sheet, locator, a, b, near))
         .collect();
-    let mut crossed = Crossed {
-        triangles: parts,
-        edges: FxHashMap::default(),
-        hits: vec![],
-        nodes: vec![],
-    };
+    let mut crossed = Crossed { triangles: parts, edges: FxHashMap::default(), hits: vec![], nodes: vec![] };
     for (&(a, b), mut hits) in keys.iter().zip(found) {
         if hits.is_empty() {
             continue;

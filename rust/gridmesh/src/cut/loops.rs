@@ -1,6 +1,5 @@
 //! The cut line: closed loops and open lines of edges between the two sides.
 
-use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::input::Polygons;
@@ -93,11 +92,6 @@ impl Loop {
         let winding = if sheet.closed { ((places[n] - places[0]) / width).round() as i32 } else { 0 };
         places[n] = places[0] + width * f64::from(winding);
         Loop { nodes, places, winding }
-    }
-
-    /// Its vertices' positions.
-    pub fn positions(&self, vertices: &[DVec3], parted: &Parted) -> Vec<DVec3> {
-        self.nodes.iter().map(|&v| parted.position(vertices, v)).collect()
     }
 }
 

@@ -22,7 +22,9 @@ pub(super) fn shifted(vertices: &[DVec3], stroke: &[DVec3], sweep: Sweep, by: f6
     if n < 2 {
         return Err(Error::StrokeTooShort { distinct: n });
     }
-    let closed = n > 3 && stroke[0].distance(stroke[stroke.len() - 1]) <= 1e-9 * stroke[0].distance(stroke[stroke.len() / 2]);
+    let closed = n > 3
+        && stroke[0].distance(stroke[stroke.len() - 1])
+            <= 1e-9 * stroke[0].distance(stroke[stroke.len() / 2]);
     let at = |k: usize| seen[k].0;
     if closed {
         let area: f64 = (0..n - 1).map(|k| at(k).perp_dot(at(k + 1))).sum();

@@ -189,11 +189,8 @@ fn double(corners: &mut [u32], offsets: &[u32], watched: &[bool], nodes: &mut Ve
         from = end;
         // Faces that share an edge at the vertex are of one fan.
         let mut fan_of = (0..fan.len()).collect::<Vec<_>>();
-        let mut by_neighbour = fan
-            .iter()
-            .enumerate()
-            .flat_map(|(i, c)| [(c.2, i), (c.3, i)])
-            .collect::<Vec<_>>();
+        let mut by_neighbour =
+            fan.iter().enumerate().flat_map(|(i, c)| [(c.2, i), (c.3, i)]).collect::<Vec<_>>();
         by_neighbour.sort_unstable();
         for pair in by_neighbour.windows(2).filter(|p| p[0].0 == p[1].0) {
             let [a, b] = [root(&fan_of, pair[0].1), root(&fan_of, pair[1].1)];

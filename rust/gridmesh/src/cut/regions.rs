@@ -28,12 +28,7 @@ pub(super) struct Regions {
     pub uncapped: usize,
 }
 
-pub(super) fn find(
-    vertices: &[glam::DVec3],
-    parted: &Parted,
-    sheet: &Sheet,
-    loops: &Loops,
-) -> Regions {
+pub(super) fn find(vertices: &[glam::DVec3], parted: &Parted, sheet: &Sheet, loops: &Loops) -> Regions {
     let spots = |l: &Loop| {
         let spot = |(&node, &place): (&u32, &f64)| {
             let height = sheet.view.height(parted.position(vertices, node));
@@ -129,7 +124,8 @@ impl Region {
             }
             Region::Tube { lower, upper, .. } => {
                 let width = sheet.width();
-                most(&|p| height_at(lower, p.x, width) < p.y && p.y < height_at(upper, p.x, width)).then_some(0.0)
+                most(&|p| height_at(lower, p.x, width) < p.y && p.y < height_at(upper, p.x, width))
+                    .then_some(0.0)
             }
         }
     }

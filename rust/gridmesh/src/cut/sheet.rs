@@ -147,7 +147,8 @@ impl Sheet {
         }
         let mut sheet = Sheet { view, points, closed, around: vec![], arc: vec![], size, low, high, seen };
         if closed {
-            let area: f64 = (0..sheet.points.len()).map(|k| sheet.point(k).perp_dot(sheet.point(k + 1))).sum();
+            let area: f64 =
+                (0..sheet.points.len()).map(|k| sheet.point(k).perp_dot(sheet.point(k + 1))).sum();
             if area < 0.0 {
                 sheet.points.reverse();
             }
@@ -239,7 +240,11 @@ impl Sheet {
         self.arc = vec![0.0];
         for k in 0..self.n_segments() {
             let [a, b] = self.segment(k);
-            at += if self.view.central { self.view.ray(a).angle_between(self.view.ray(b)) } else { a.distance(b) };
+            at += if self.view.central {
+                self.view.ray(a).angle_between(self.view.ray(b))
+            } else {
+                a.distance(b)
+            };
             self.arc.push(at);
         }
     }
@@ -331,14 +336,26 @@ pub(super) fn orient(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 fn side_moved(p: DVec2, q: DVec2, v: DVec2) -> f64 {
     let side = orient(p, q, v);
     // The line moves to the left of segments that run forward.
-    if side != 0.0 { side } else if is_forward(p, q) { -1.0 } else { 1.0 }
+    if side != 0.0 {
+        side
+    } else if is_forward(p, q) {
+        -1.0
+    } else {
+        1.0
+    }
 }
 
 /// Side of the stroke's point `p` from the mesh's edge from `a` to `b`, which differ: positive on the left,
 /// never zero.
 pub(super) fn side_of_edge(a: DVec2, b: DVec2, p: DVec2) -> f64 {
     let side = orient(a, b, p);
-    if side != 0.0 { side } else if is_forward(a, b) { 1.0 } else { -1.0 }
+    if side != 0.0 {
+        side
+    } else if is_forward(a, b) {
+        1.0
+    } else {
+        -1.0
+    }
 }
 
 fn is_forward(a: DVec2, b: DVec2) -> bool {

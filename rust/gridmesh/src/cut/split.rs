@@ -68,9 +68,7 @@ impl Parted {
     pub fn source(&self, vertices: &[DVec3], v: u32) -> Node {
         match (v as usize).checked_sub(self.n_old) {
             Some(k) => self.nodes[k],
-            None => {
-                Node { position: vertices[v as usize], source: [v; 3], weights: [1.0, 0.0, 0.0] }
-            }
+            None => Node { position: vertices[v as usize], source: [v; 3], weights: [1.0, 0.0, 0.0] },
         }
     }
 }
@@ -98,8 +96,7 @@ pub(super) fn split(
         parts: vec![],
         cut: FxHashMap::default(),
     };
-    let mut left: Vec<bool> =
-        (0..faces.len()).map(|f| met.left[faces.face(f)[0] as usize]).collect();
+    let mut left: Vec<bool> = (0..faces.len()).map(|f| met.left[faces.face(f)[0] as usize]).collect();
     let mut divided = vec![false; faces.len()];
     let mut cut_faces = 0;
     let mut at = 0;
@@ -258,7 +255,8 @@ impl Divider<'_> {
             return Err(self.failed(corners, "the line enters a face and does not leave it"));
         }
         for pair in 0..count / 2 {
-            let (first, second) = (events[(start + 2 * pair) % count], events[(start + 2 * pair + 1) % count]);
+            let (first, second) =
+                (events[(start + 2 * pair) % count], events[(start + 2 * pair + 1) % count]);
             let mut stops = vec![first.1];
             let steps = (second.0 + n - first.0) % n;
             for step in 1..=steps {
@@ -401,7 +399,8 @@ impl Divider<'_> {
             let Some(edge) = edge else { return Err(failed("an edge of a face is missing")) };
             stack.push((edge.face().fix(), left != is_odd(node, next)));
         }
-        let border = (0..ring.len()).map(|k| (ring[k].0, ring[(k + 1) % ring.len()].0)).collect::<FxHashSet<_>>();
+        let border =
+            (0..ring.len()).map(|k| (ring[k].0, ring[(k + 1) % ring.len()].0)).collect::<FxHashSet<_>>();
         let mut new = vec![];
         while let Some((face_handle, left)) = stack.pop() {
             match sides[face_handle.index()] {
