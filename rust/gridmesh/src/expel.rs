@@ -75,7 +75,7 @@ mod tests {
     #[test]
     fn a_vertex_leaves_the_inlet_and_its_triangles_stay_in_shape() {
         let rim: Vec<DVec2> =
-            (0..6).map(|i| DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
+            (0..6).map(|i| MIDDLE + DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
         let mut vertices = rim.clone();
         vertices.push(MIDDLE);
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn a_vertex_without_a_good_place_stays() {
         let rim: Vec<DVec2> =
-            (0..6).map(|i| DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
+            (0..6).map(|i| MIDDLE + DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
         let mut vertices = rim.clone();
         vertices.push(MIDDLE);
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
