@@ -20,6 +20,9 @@ const TOLERANCE: f64 = 0.045;
 /// The line keeps its vertices where it turns by more.
 const CORNER: f64 = 0.6;
 
+/// Vertices nearer to the line than this, in edge lengths, are taken out where the surface allows it.
+const BESIDE: f64 = 0.45;
+
 /// Angles below this are worked on.
 const SMALL: f64 = 0.52;
 
@@ -40,6 +43,8 @@ pub(super) fn even_out(
     let kept = resample(&mut strip, length);
     for round in 0..ROUNDS {
         let mut changes = thin_out(&mut strip, &kept);
+        changes += clear_beside(&mut strip, BESIDE * length);
+        changes += thin_out(&mut strip, &kept);
         changes += improve(&mut strip, &kept, length, round);
         if changes == 0 {
             break;
@@ -272,6 +277,33 @@ fn thin_out(strip: &mut Strip<'_>, kept: &FxHashSet<u32>) -> usize {
         if beside.into_iter().any(|v| strip.collapse(u, v, 0.0)) {
             changes += 1;
         }
+    }
+    changes
+}
+
+/// Collapses vertices that lie close to the line into it.
+fn clear_beside(strip: &mut Strip<'_>, distance: f64) -> usize {
+    let mut near: BTreeSet<u32> = BTreeSet::new();
+    for &(a, b) in strip.parted.cut.keys() {
+        let (p, q) = (strip.position(a), strip.position(b));
+        for v in [a, b] {
+            let corners = strip.triangles_at(v).iter().filter_map(|&t| strip.part(t)).flat_map(|t| t.corners);
+            near.extend(corners.filter(|&x| {
+                strip.on_line(x).is_empty() && closest(strip.position(x), [p, q, q]).0 < distance
+            }));
+        }
+    }
+    let mut changes = 0;
+    for x in near {
+        let p = strip.position(x);
+        let own = strip.triangles_at(x).iter().filter_map(|&t| strip.part(t)).flat_map(|t| t.corners);
+        let mut line = own.filter(|&v| !strip.on_line(v).is_empty()).collect::<Vec<_>>();
+        line.sort_by(|&a, &b| {
+            let far = |v: u32| strip.position(v).distance_squared(p);
+            far(a).total_cmp(&far(b)).then(a.cmp(&b))
+        });
+        line.dedup();
+        changes += usize::from(line.into_iter().any(|v| strip.collapse(x, v, 0.0)));
     }
     changes
 }
