@@ -188,6 +188,12 @@ fn part(
                 let crossed = edges.named(vertices, tolerance, &released);
                 match split::split(vertices, faces, &sheet, &met, crossed, tolerance) {
                     Ok(parted) => {
+                        let touching = if tolerance.length > 0.0 { parted.touching() } else { vec![] };
+                        let before = released.len();
+                        released.extend(touching);
+                        if released.len() > before {
+                            continue;
+                        }
                         tally.stage("faces");
                         tally.report.cut_faces = parted.cut_faces;
                         tally.report.repeated += released.len();

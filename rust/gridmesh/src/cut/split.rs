@@ -58,6 +58,17 @@ impl Parted {
         }
     }
 
+    /// Old vertices in which the cut touches itself.
+    pub fn touching(&self) -> Vec<u32> {
+        let mut ends = FxHashMap::<u32, u32>::default();
+        for v in self.cut.keys().flat_map(|&(a, b)| [a, b]).filter(|&v| (v as usize) < self.n_old) {
+            *ends.entry(v).or_default() += 1;
+        }
+        let mut found = ends.into_iter().filter(|e| e.1 > 2).map(|e| e.0).collect::<Vec<_>>();
+        found.sort_unstable();
+        found
+    }
+
     /// Of every vertex: an end of an edge of the cut.
     pub fn on_cut(&self) -> Vec<bool> {
         let mut on = vec![false; self.n_old + self.nodes.len()];
