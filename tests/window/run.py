@@ -1,7 +1,7 @@
 """The zip in a real Blender in a window, with mouse and keyboard; and the pictures of the documentation.
 
     python tests/window/run.py ZIP [SCENE ...]              # pictures go to out/tests/window/pictures
-    python tests/window/run.py ZIP --documentation          # and from there into docs/pictures
+    python tests/window/run.py ZIP --documentation          # and from there into docs/pictures/windows
 
 The window is on a screen in memory (Xvfb). Exit code 77 where there is no real Blender: nothing was tested then.
 """
@@ -38,7 +38,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("zip", type=Path)
     parser.add_argument("scenes", nargs="*")
-    parser.add_argument("--documentation", action="store_true", help="put the pictures into docs/pictures")
+    parser.add_argument(
+        "--documentation", action="store_true", help="put the pictures into docs/pictures/windows"
+    )
     arguments = parser.parse_args()
     shutil.rmtree(SHARE, ignore_errors=True)
     try:
@@ -70,8 +72,10 @@ def main():
     except subprocess.TimeoutExpired:
         sys.exit("Blender did not come to an end within 20 minutes")
     if arguments.documentation and done.returncode == 0:
+        target = ROOT / "docs" / "pictures" / "windows"
+        target.mkdir(parents=True, exist_ok=True)
         for picture in pictures.glob("*.png"):
-            shutil.copy(picture, ROOT / "docs" / "pictures")
+            shutil.copy(picture, target)
     sys.exit(done.returncode)
 
 
