@@ -58,12 +58,13 @@ def main():
     settings = {
         "BLENDER_USER_RESOURCES": blender.path(profile),
         "SCENES": " ".join(arguments.scenes),
+        "ZIP": blender.path(package),
         "LIBGL_ALWAYS_SOFTWARE": "1",
     }
-    install = ["--command", "extension", "install-file", "-r", "user_default", "-e", blender.path(package)]
-    subprocess.run(
-        blender.command([blender.program, *install], **settings), check=True, stdout=subprocess.DEVNULL
-    )
+    if arguments.scenes and "install" not in arguments.scenes:
+        install = ["--command", "extension", "install-file", "-r", "user_default", "-e", settings["ZIP"]]
+        words = blender.command([blender.program, *install], **settings)
+        subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
     window = ["--window-geometry", "0", "0", "1280", "800", "--enable-event-simulate"]
     play = ["--python", blender.path(SHARE / "scenes.py"), "--", blender.path(pictures)]
     words = ["sh", "-c", SHELL, "window", blender.path(SHARE), blender.program, *window, *play]
