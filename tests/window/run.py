@@ -51,10 +51,11 @@ def main():
         print(f"NO WINDOW, so nothing was tested in one: {error}")
         sys.exit(77)
     print(f"{blender.name}: {blender.program} in {blender.root or 'the system'}", flush=True)
-    for file in (arguments.zip, HERE / "stage.py", HERE / "scenes.py"):
+    for file in (HERE / "stage.py", HERE / "scenes.py"):
         shutil.copy(file, SHARE)
+    (SHARE / "zip").mkdir()
     profile = Path(tempfile.mkdtemp(dir=SHARE))
-    package, pictures = SHARE / arguments.zip.name, SHARE / "pictures"
+    package, pictures = Path(shutil.copy(arguments.zip, SHARE / "zip")), SHARE / "pictures"
     settings = {
         "BLENDER_USER_RESOURCES": blender.path(profile),
         "SCENES": " ".join(arguments.scenes),
