@@ -9,6 +9,8 @@ imported when it is first needed, so that the extension registers, and can say w
 bpy only in `register`, so that `outlines` and `api` run in plain Python.
 """
 
+from types import ModuleType
+
 
 def register() -> None:
     """Register all classes and menu entries; if one fails, none stays."""
@@ -22,6 +24,8 @@ def register() -> None:
             bpy.utils.register_class(cls)
             done.append(cls)
         ui.add_menus()
+        for part in _parts():
+            part.register()
     except BaseException:
         for cls in reversed(done):
             bpy.utils.unregister_class(cls)
@@ -34,6 +38,8 @@ def unregister() -> None:
 
     from . import ui
 
+    for part in reversed(_parts()):
+        part.unregister()
     ui.remove_menus()
     for cls in reversed(_classes()):
         if cls.is_registered:
@@ -44,4 +50,11 @@ def _classes() -> tuple[type, ...]:
     from . import ui
     from .operators import fill, strokes
 
-    return (*strokes.classes, *fill.classes, *ui.classes)
+    return (*strokes.classes, *fill.classes, *(cls for part in _parts() for cls in part.classes), *ui.classes)
+
+
+def _parts() -> tuple[ModuleType, ...]:
+    """Modules with `classes`, `register` and `unregister` for all that is not a class."""
+    from .overlay import ui as overlay
+
+    return (overlay,)
