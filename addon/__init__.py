@@ -5,28 +5,27 @@
     operators.fill -> editmesh (from Blender) -> holes, api (no bpy) -> editmesh, attributes (to Blender)
 
 `properties` holds what the redo panel shows, `ui` the sidebar and the menus. The native module `gridmesh` is
-imported when it is first needed, so that the extension registers, and can say what is wrong, without it; and
-bpy only in `register`, so that `outlines` and `api` run in plain Python.
+imported by `native` when it is first needed, so that the extension registers, and can say what is wrong, without it;
+and bpy only in `register`, so that `outlines` and `api` run in plain Python.
 """
 
 from types import ModuleType
 
 
 def register() -> None:
-    """Register all classes and menu entries; if one fails, none stays."""
+    """Register all classes, menu entries and the like; if one fails, none stays."""
     import bpy
-
-    from . import ui
 
     done = []
     try:
         for cls in _classes():
             bpy.utils.register_class(cls)
             done.append(cls)
-        ui.add_menus()
         for part in _parts():
             part.register()
     except BaseException:
+        for part in reversed(_parts()):
+            part.unregister()
         for cls in reversed(done):
             bpy.utils.unregister_class(cls)
         raise
@@ -36,11 +35,8 @@ def unregister() -> None:
     """Undo `register`, also where it was undone in part."""
     import bpy
 
-    from . import ui
-
     for part in reversed(_parts()):
         part.unregister()
-    ui.remove_menus()
     for cls in reversed(_classes()):
         if cls.is_registered:
             bpy.utils.unregister_class(cls)
@@ -49,12 +45,14 @@ def unregister() -> None:
 def _classes() -> tuple[type, ...]:
     from . import ui
     from .operators import fill, strokes
+    from .overlay import ui as overlay
 
-    return (*strokes.classes, *fill.classes, *(cls for part in _parts() for cls in part.classes), *ui.classes)
+    return (*strokes.classes, *fill.classes, *overlay.classes, *ui.classes)
 
 
 def _parts() -> tuple[ModuleType, ...]:
-    """Modules with `classes`, `register` and `unregister` for all that is not a class."""
+    """Modules with more to register than classes; their `unregister` may be called at any time."""
+    from . import keys, preset_files, translations, ui
     from .overlay import ui as overlay
 
-    return (overlay,)
+    return (translations, preset_files, ui, overlay, keys)

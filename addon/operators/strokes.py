@@ -19,7 +19,7 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
 
     bl_idname = "object.gridmesh_from_strokes"
     bl_label = "Strokes to Mesh"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+    bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012
 
     source: EnumProperty(
         name="Source",
@@ -159,6 +159,7 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
             body.prop(self, "use")
             body.prop(self, "close_gaps")
             body.prop(self, "use_holes")
+            body.prop(self, "use_union")
         header, body = layout.panel(f"{self.bl_idname}_objects", default_closed=True)
         header.label(text="Objects")
         if body is not None:

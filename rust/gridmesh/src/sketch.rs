@@ -199,7 +199,9 @@ impl Job<'_> {
         loop {
             let (lattice, outline) = match outlines.next() {
                 Some(next) => next,
-                None if best.is_some() => break,
+                None if best.as_ref().is_some_and(|(_, _, placed, _)| !placed.is_bridged(self.options)) => {
+                    break;
+                }
                 None => {
                     let Some((k, shift)) = shifts.next() else { break };
                     let started = Instant::now();
@@ -233,6 +235,10 @@ impl Job<'_> {
             }
         }
         if let Some((_, outline, placed, mirror_error)) = best {
+            if placed.is_bridged(self.options) {
+                let at = placed.patch.inlets.first().map_or(DVec2::ZERO, |inlet| inlet[0]);
+                return Ok(Err(Obstacle { reason: "an inlet is narrower than the grid".to_owned(), at }));
+            }
             return Ok(Ok(self.report(&outline, placed, mirror_error)));
         }
         let none = || Obstacle { reason: "no lattice was tried".to_owned(), at: DVec2::ZERO };
@@ -441,7 +447,7 @@ impl Job<'_> {
             minimum_irregular: 6 + 3 * (self.contours.len() - 1),
             turns: outline.turns(),
             turns_before: outline.turns_before,
-            turns_bound: outline.turns_bound(),
+            turns_bound: outline.turns_bound,
             cost: outline.cost,
             cost_bound: outline.cost_bound,
             optimal: outline.optimal,
@@ -479,7 +485,9 @@ fn check_origin(options: &SketchOptions, outline: &ClosedCurve, edge_length: f64
 fn faults(placed: &Placed) -> f64 {
     let (angle, distance) = ENOUGH;
     let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
-    4.0 * starved + (placed.max_deviation - distance).max(0.0)
+    // A patch that bridges an inlet serves only to say where.
+    let bridged = 100.0 * placed.bridged_inlets as f64;
+    bridged + 4.0 * starved + (placed.max_deviation - distance).max(0.0)
 }
 
 /// The centroid of the enclosed area.

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the interface says in other languages.
+
+A language is a dictionary from the English text. Blender takes what it finds here, and English for the rest; a test
+holds every language to be complete.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+GERMAN = {
+    # Operators and the sidebar
+    "Annotations to Mesh": "Anmerkungen zu Mesh",
+    "Fill All Holes": "Alle Löcher füllen",
+    "Fill the selected hole with a regular triangle patch that fits its edges": (
+        "Das ausgewählte Loch mit einem regelmäßigen Flicken aus Dreiecken füllen, der an seine Kanten passt"
+    ),
+    "Grid Patch Fill": "Loch mit Gitter füllen",
+    "Make a smooth body with a clean triangle mesh from each closed stroke": (
+        "Aus jedem geschlossenen Strich einen glatten Körper mit sauberem Dreiecksnetz machen"
+    ),
+    "Presets": "Vorgaben",
+    "Select a drawing or a curve": "Zeichnung oder Kurve auswählen",
+    "Strokes to Mesh": "Striche zu Mesh",
+    "Update Bodies": "Körper aktualisieren",
+    # Presets
+    "Body Flat Badge": "Körper: flache Plakette",
+    "Body Limbs and Tubes": "Körper: Glieder und Röhren",
+    "Body Round": "Körper: rund",
+    "Sprite Deformation Heavy": "Sprite: starke Verformung",
+    "Sprite Deformation Little": "Sprite: leichte Verformung",
+    "Sprite Mirrored Face": "Sprite: gespiegeltes Gesicht",
+    "Sprite Standard": "Sprite: Standard",
+    # Where the strokes are, and which
+    "Active": "Aktiv",
+    "Active collection": "Die aktive Sammlung",
+    "All": "Alle",
+    "All strokes; those that cannot be closed are named": (
+        "Alle Striche; solche, die sich nicht schließen lassen, werden genannt"
+    ),
+    "Annotations": "Anmerkungen",
+    "Annotations of the scene, drawn in space": "Anmerkungen der Szene, die im Raum gezeichnet sind",
+    "Close Gaps": "Lücken schließen",
+    "Closed": "Geschlossene",
+    "Collection": "Sammlung",
+    "Collection that new objects go to": "Sammlung, in die neue Objekte kommen",
+    "Collection that the strokes are in": "Die Sammlung, in der die Striche sind",
+    "Grease pencil, curve and text objects that are selected or being edited": (
+        "Grease-Pencil-, Kurven- und Textobjekte, die ausgewählt sind oder bearbeitet werden"
+    ),
+    "Holes": "Löcher",
+    "Largest gap that is closed, and longest overshoot cut off, relative to the stroke": (
+        "Größte Lücke, die geschlossen, und längster Überstand, der abgeschnitten wird, im Verhältnis zum Strich"
+    ),
+    "Make strokes inside others of the same layer holes in them, and strokes inside holes bodies": (
+        "Striche in anderen derselben Ebene zu deren Löchern machen, und Striche in Löchern zu Körpern"
+    ),
+    "New": "Neu",
+    "New collection beside the strokes": "Eine neue Sammlung neben den Strichen",
+    "Objects": "Objekte",
+    "Of the Source": "Der Quelle",
+    "Replace the mesh of the object made from the stroke before, and keep all else of it": (
+        "Nur das Mesh des Objekts ersetzen, das früher aus dem Strich gemacht wurde"
+    ),
+    "Resolve Crossings": "Kreuzungen auflösen",
+    "Selected": "Ausgewählte",
+    "Source": "Quelle",
+    "Strokes": "Striche",
+    "Strokes that are closed or nearly so; leave out open ones": (
+        "Striche, die geschlossen sind oder beinahe; offene weglassen"
+    ),
+    "Strokes that are selected, or have a selected point": (
+        "Striche, die ausgewählt sind oder einen ausgewählten Punkt haben"
+    ),
+    "Strokes that become meshes": "Striche, aus denen Meshes werden",
+    "Take the outer outline of strokes that cross themselves, instead of refusing them": (
+        "Bei Strichen, die sich selbst kreuzen, den äußeren Umriss nehmen, statt sie abzulehnen"
+    ),
+    "Update Existing": "Vorhandene aktualisieren",
+    "Use": "Verwenden",
+    "Where the strokes are": "Wo die Striche sind",
+    # The grid
+    "Angle": "Winkel",
+    "Angle of the triangle grid in the drawing plane, from 0 to 60 degrees": (
+        "Winkel des Dreiecksgitters in der Zeichenebene, von 0 bis 60 Grad"
+    ),
+    "Automatic": "Automatisch",
+    "Boundary": "Rand",
+    "Corner Angle": "Eckenwinkel",
+    "Direction of the triangle grid": "Richtung des Dreiecksgitters",
+    "Edge Length": "Kantenlänge",
+    "Find the axis of a drawing that is symmetric within 2% of its size, and mesh both halves alike": (
+        "Die Achse einer Zeichnung finden, die bis auf 2% ihrer Größe symmetrisch ist, und beide Hälften gleich vernetzen"
+    ),
+    "Find the rim with the fewest turns near the stroke, for the fewest irregular vertices": (
+        "Den Rand mit den wenigsten Wendungen nahe am Strich suchen, für die wenigsten unregelmäßigen Punkte"
+    ),
+    "Fixed": "Fest",
+    "Give the angle": "Den Winkel angeben",
+    "Give the length of the edges": "Die Länge der Kanten angeben",
+    "Give the number of triangles of each side": "Die Zahl der Dreiecke jeder Seite angeben",
+    "Grid": "Gitter",
+    "Grid Angle": "Gitterwinkel",
+    "Grow the grid from the middle and straighten its rim": (
+        "Das Gitter von der Mitte aus wachsen lassen und seinen Rand begradigen"
+    ),
+    "Grown": "Gewachsen",
+    "How far the grid's rim may stray before it is moved onto the stroke, in edge lengths": (
+        "Wie weit der Rand des Gitters abweichen darf, bevor er auf den Strich gerückt wird, in Kantenlängen"
+    ),
+    "How the fineness of the mesh is given": "Wie die Feinheit des Netzes angegeben wird",
+    "How the rim of the triangle grid is chosen": "Wie der Rand des Dreiecksgitters gewählt wird",
+    "Keep corners where the stroke turns by more than this angle": (
+        "Ecken erhalten, an denen der Strich um mehr als diesen Winkel abbiegt"
+    ),
+    "Length of the edges of the mesh, seeded from the strokes": (
+        "Länge der Kanten des Netzes, vorgeschlagen nach den Strichen"
+    ),
+    "Max Distance": "Größter Abstand",
+    "Mesh the drawing as it is": "Die Zeichnung vernetzen, wie sie ist",
+    "Mirror": "Spiegeln",
+    "Number of triangles of one side, reached within 10%; a body has two sides": (
+        "Zahl der Dreiecke einer Seite, auf 10% genau; ein Körper hat zwei Seiten"
+    ),
+    "Off": "Aus",
+    "Optimal": "Optimal",
+    "Resolution": "Auflösung",
+    "Take the best of several angles": "Den besten von mehreren Winkeln nehmen",
+    "Triangles": "Dreiecke",
+    "Whether the mesh of a symmetric drawing is its own mirror image": (
+        "Ob das Netz einer symmetrischen Zeichnung sein eigenes Spiegelbild ist"
+    ),
+    # The shape
+    "A flat mesh in the drawing plane": "Ein flaches Mesh in der Zeichenebene",
+    "A smooth closed body, inflated to both sides of the drawing plane": (
+        "Ein glatter geschlossener Körper, nach beiden Seiten der Zeichenebene aufgeblasen"
+    ),
+    "Back": "Rückseite",
+    "Body": "Körper",
+    "Cross-section of the body": "Querschnitt des Körpers",
+    "Depth": "Tiefe",
+    "Depth of the side that faces down or to the back": "Tiefe der Seite, die nach unten oder hinten zeigt",
+    "Depth of the side that faces up or to the front": "Tiefe der Seite, die nach oben oder vorn zeigt",
+    "Even": "Gleichmäßig",
+    "Flat": "Flach",
+    "Flat Sheet": "Flaches Blatt",
+    "Flat with a rounded rim": "Flach mit gerundetem Rand",
+    "Front": "Vorderseite",
+    "Give the depth of the front and the back separately": (
+        "Die Tiefe von Vorder- und Rückseite getrennt angeben"
+    ),
+    "Peak": "Spitz",
+    "Profile": "Profil",
+    "Rising evenly to a ridge": "Gleichmäßig ansteigend zu einem Grat",
+    "Round": "Rund",
+    "Round; a circle becomes a sphere": "Rund; aus einem Kreis wird eine Kugel",
+    "Round; a long limb becomes a round tube": "Rund; aus einem langen Glied wird eine runde Röhre",
+    "Separate Sides": "Getrennte Seiten",
+    "Shape": "Form",
+    "Thickness of the body; at 1 a circle becomes a sphere": (
+        "Dicke des Körpers; bei 1 wird aus einem Kreis eine Kugel"
+    ),
+    "What is made of a stroke": "Was aus einem Strich wird",
+    # Filling holes
+    "All holes that are not hidden, up to a number of edges": (
+        "Alle Löcher, die nicht ausgeblendet sind, bis zu einer Anzahl von Kanten"
+    ),
+    "Close Chains": "Ketten schließen",
+    "Close selected chains of edges by a straight edge": (
+        "Ausgewählte Ketten von Kanten durch eine gerade Kante schließen"
+    ),
+    "Curvature": "Krümmung",
+    "Holes with more edges are left open; 0 fills holes of any size, the outer border too": (
+        "Löcher mit mehr Kanten bleiben offen; 0 füllt Löcher jeder Größe, auch den äußeren Rand"
+    ),
+    "How a patch continues the surface around it": "Wie ein Flicken die Fläche um ihn herum fortsetzt",
+    "Join pairs of triangles to quads where that gives good ones": (
+        "Je zwei Dreiecke zu einem Viereck verbinden, wo das gute gibt"
+    ),
+    "Max Edges": "Höchstens Kanten",
+    "Quads": "Vierecke",
+    "Selected loops of open edges, and the whole holes that single selected edges or vertices lie on": (
+        "Ausgewählte Schleifen offener Kanten, und ganze Löcher, an denen einzelne ausgewählte Kanten oder Punkte liegen"
+    ),
+    "Smoothness": "Glätte",
+    "Stretched into the hole like a soap film": "In das Loch gespannt wie eine Seifenhaut",
+    "Tangent": "Tangential",
+    "Which holes are filled": "Welche Löcher gefüllt werden",
+    "With the slope and the curvature of the surface": "Mit Neigung und Krümmung der Fläche",
+    "With the slope of the surface": "Mit der Neigung der Fläche",
+}
+
+LANGUAGES: dict[str, dict[str, str]] = {"de_DE": GERMAN}
+
+
+def table() -> dict[str, dict[tuple[str, str], str]]:
+    """Translations as Blender wants them: operators' names have a context of their own."""
+    return {
+        locale: {(context, text): said for text, said in texts.items() for context in ("*", "Operator")}
+        for locale, texts in LANGUAGES.items()
+    }
+
+
+def register() -> None:
+    """Give Blender the translations."""
+    bpy.app.translations.register(__package__, table())
+
+
+def unregister() -> None:
+    """Take them back; Blender does not mind if it has none."""
+    bpy.app.translations.unregister(__package__)
