@@ -104,8 +104,14 @@ def settle() -> int:
 
 def remake(ob: bpy.types.Object) -> bool:
     """Make a body in full because somebody asked, whether it follows or not, and whether there is a window or not."""
+    global _busy
     _states.pop(ob.session_uid, None)
-    return _updated(ob, bpy.context.evaluated_depsgraph_get(), True)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    _busy = True
+    try:
+        return _updated(ob, depsgraph, True)
+    finally:
+        _busy = False
 
 
 def fingerprint(live: Any, sketch: Sketch) -> str:
@@ -184,7 +190,7 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
         state.failed, state.since = mark, 0.0
         _tell(live, str(error))
         return False
-    write(ob, body, live.corner_angle)
+    write(ob, body, live.corner_angle, marks=lattice is None)
     slots = [state.lattice.edge_length, state.lattice.angle, *state.lattice.origin]
     live.lattice = [float(value) for value in slots]
     live.stroke, live.count = sketch.stroke.index, sketch.stroke.count
@@ -235,8 +241,11 @@ def _place(source: bpy.types.Object) -> np.ndarray:
     return np.array(source.matrix_world)
 
 
-def write(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
-    """Give an object another mesh of the same name; all that belongs to vertices stays where the triangles do."""
+def write(ob: bpy.types.Object, body: Body, crease_angle: float, *, marks: bool) -> None:
+    """Give an object another mesh of the same name; all that belongs to vertices stays where the triangles do.
+
+    marks : whether creases are marked anew where the triangles stay; while dragging they wait.
+    """
     mesh = ob.data
     triangles = np.ascontiguousarray(body.triangles, np.int32)
     if len(mesh.vertices) != len(body.vertices) or len(mesh.loops) != triangles.size:
@@ -251,7 +260,8 @@ def write(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
     layer = mesh.uv_layers.get(meshes.UV_MAP)
     if layer is not None:
         layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
-    meshes.mark_creases(mesh, body, crease_angle)
+    if marks:
+        meshes.mark_creases(mesh, body, crease_angle)
     mesh.update()
     meshes.move_along(ob, body)
 
