@@ -33,10 +33,15 @@ def of_classes():
 
 
 def of_layouts():
-    """Literal texts that are drawn."""
+    """Literal texts that are drawn, or translated before they are shown."""
     for path in sorted(ADDON.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call):
+                if ast.unparse(node.func).endswith("pgettext_iface"):
+                    literals = (
+                        part.value for part in ast.walk(node.args[0]) if isinstance(part, ast.Constant)
+                    )
+                    yield from literals
                 for keyword in node.keywords:
                     if keyword.arg == "text" and isinstance(keyword.value, ast.Constant):
                         yield keyword.value.value
