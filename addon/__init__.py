@@ -44,13 +44,19 @@ def unregister() -> None:
 
 def _classes() -> tuple[type, ...]:
     from . import ui
+    from .live import properties as live
+    from .live import ui as live_ui
     from .operators import fill, strokes
+    from .overlay import ui as overlay
 
-    return (*strokes.classes, *fill.classes, *ui.classes)
+    return (*strokes.classes, *fill.classes, *overlay.classes, *live.classes, *ui.classes, *live_ui.classes)
 
 
 def _parts() -> tuple[ModuleType, ...]:
     """Modules with more to register than classes; their `unregister` may be called at any time."""
     from . import keys, preset_files, translations, ui
+    from .live import engine
+    from .live import properties as live
+    from .overlay import ui as overlay
 
-    return (translations, preset_files, ui, keys)
+    return (translations, preset_files, ui, overlay, live, engine, keys)

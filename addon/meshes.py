@@ -107,9 +107,17 @@ def separate_blocked(
 
 
 def place(
-    context: bpy.types.Context, bodies: list[Body], *, update: bool, collection: str, crease_angle: float
+    context: bpy.types.Context,
+    bodies: list[Body],
+    *,
+    update: bool,
+    collection: str,
+    crease_angle: float,
+    made: list[bpy.types.Object] | None = None,
 ) -> list[str]:
     """Make an object of every body, or bring the one made earlier up to date; return what is worth telling.
+
+    The objects are appended to `made`, one for each body.
 
     collection : "SOURCE", "ACTIVE" or "NEW". crease_angle : in radians, creases from which on are marked sharp.
     In Object Mode the objects become the selection, the first one active. If anything fails, everything made
@@ -124,8 +132,10 @@ def place(
             objects.append(ob if ob is not None else _new_object(body, into, transaction, crease_angle))
         for body, ob in zip(bodies, objects, strict=True):
             if body.sketch.stroke.key in before:
-                _refresh(ob, body, crease_angle)
+                refresh(ob, body, crease_angle)
     _show(context, objects)
+    if made is not None:
+        made += objects
     return list(dict.fromkeys(transaction.notes))
 
 
@@ -166,21 +176,22 @@ def fill(mesh: bpy.types.Mesh, body: Body, crease_angle: float) -> None:
     mesh.update(calc_edges=True)
     layer = mesh.uv_layers.new(name=UV_MAP, do_init=False)
     layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
-    _mark_creases(mesh, body, crease_angle)
+    mark_creases(mesh, body, crease_angle)
 
 
-def _mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
+def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
+    """Mark the edges along the rim sharp where front and back meet at more than `angle`, and no others."""
     edges = np.empty(len(mesh.edges) * 2, np.int32)
     mesh.edges.foreach_get("vertices", edges)
     sides = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("edge_index", sides)
     edges, sides = edges.reshape(-1, 2), sides.reshape(-1, 3)
     sharp = rim_creases(body.vertices, body.triangles, body.silhouette, edges, sides, angle)
-    if sharp.any():
+    if sharp.any() or mesh.attributes.get("sharp_edge") is not None:
         mesh.edges.foreach_set("use_edge_sharp", sharp)
 
 
-def _refresh(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
+def refresh(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
     """Replace the geometry of an object made earlier; keep name, materials, modifiers, children, shading.
 
     Where the drawing plane moved, the object moves along, from wherever it was put meanwhile.
@@ -195,11 +206,19 @@ def _refresh(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
             ob.vertex_groups.new(name=name)
     if flat_shaded:
         mesh.shade_flat()
+    move_along(ob, body)
+
+
+def move_along(ob: bpy.types.Object, body: Body) -> None:
+    """Move an object with its drawing plane, from wherever it was put meanwhile, and remember the stroke."""
     before = np.array(list(ob[LINK].get("matrix", ())), float)
     now = body.sketch.plane.matrix
     if before.size == 16 and not np.allclose(before.reshape(4, 4), now, rtol=0, atol=1e-6 * body.sketch.size):
-        moved = Matrix(before.reshape(4, 4).tolist()).inverted()
-        ob.matrix_world = ob.matrix_world @ moved @ Matrix(now.tolist())
+        if np.allclose(np.array(ob.matrix_world), before.reshape(4, 4), rtol=0, atol=1e-5 * body.sketch.size):
+            ob.matrix_world = Matrix(now.tolist())  # exactly, however often the plane has moved
+        else:
+            moved = Matrix(before.reshape(4, 4).tolist()).inverted()
+            ob.matrix_world = ob.matrix_world @ moved @ Matrix(now.tolist())
     ob[LINK] = _link(body)
 
 

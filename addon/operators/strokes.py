@@ -9,6 +9,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from .. import api, meshes, outlines, strokes
+from ..live import engine
 from ..progress import Pointer
 from ..properties import ShapeOptions, SketchOptions
 from .messages import counted, listed
@@ -74,6 +75,11 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, ShapeOptions, bpy.
         ],
         default="SOURCE",
     )
+    follow: BoolProperty(
+        name="Follow the Stroke",
+        description="Let the body follow when its stroke is edited; the switch is in the sidebar",
+        default=False,
+    )
     result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
@@ -135,13 +141,16 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, ShapeOptions, bpy.
         failures += refused
         if not bodies:
             return self._refuse(*map(str, failures))
+        made: list[bpy.types.Object] = []
         notes += meshes.place(
             context,
             bodies,
             update=self.update_existing,
             collection=self.collection,
             crease_angle=self.corner_angle,
+            made=made,
         )
+        self._link(context, bodies, made)
         self.result = self._summary(bodies, perf_counter() - started)
         self.report({"INFO"}, self.result)
         if notes:
@@ -173,6 +182,15 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, ShapeOptions, bpy.
         if body is not None:
             body.prop(self, "update_existing")
             body.prop(self, "collection")
+            body.prop(self, "follow")
+
+    def _link(self, context: bpy.types.Context, bodies: list[api.Body], made: list[bpy.types.Object]) -> None:
+        """Let the bodies know their drawings, and those that know them already the options they have now."""
+        for body, ob in zip(bodies, made, strict=True):
+            source = context.view_layer.objects.get(body.sketch.stroke.source)
+            if source is not None and (self.follow or engine.is_linked(ob)):
+                follow = self.follow or ob.gridmesh_live.enabled
+                engine.link(ob, body.sketch.stroke, source, self, follow=follow)
 
     def _read(self, context: bpy.types.Context) -> strokes.Reading:
         if self.source == "ANNOTATIONS":

@@ -6,6 +6,7 @@ pub mod axial;
 pub mod band;
 pub mod boundary;
 pub mod cells;
+pub mod combine;
 pub mod contours;
 pub mod curve;
 pub mod cut;

@@ -60,6 +60,10 @@ pub struct SketchOptions {
     pub closeness: f64,
     /// Angle of the lattice in radians; `None` lets the drawing's tangents decide.
     pub angle: Option<f64>,
+    /// A point of the lattice in the units of the drawing, for drawings that change step by step:
+    /// with the edge length and the angle it keeps the lattice where it is. `None`: the centroid, and
+    /// other places if that one gives no patch.
+    pub origin: Option<DVec2>,
     /// Corners that turn by more than this (radians, 0 to pi) get a vertex of their own.
     pub corner_angle: f64,
     /// Mirror axis: the mesh is its own mirror image, topology and positions.
@@ -82,6 +86,7 @@ impl Default for SketchOptions {
             max_distance: 1.5,
             closeness: 0.3,
             angle: None,
+            origin: None,
             corner_angle: DEFAULT_CORNER_ANGLE,
             mirror: None,
             self_crossing: SelfCrossing::Error,
@@ -130,6 +135,17 @@ impl SketchOptions {
             && !angle.is_finite()
         {
             return refuse("angle", angle, "a finite angle in radians, or none");
+        }
+        if let Some(origin) = self.origin {
+            let value = || format!("{}, {}", origin.x, origin.y);
+            if !origin.is_finite() {
+                let allowed = "a point with finite coordinates, or none";
+                return Err(Error::InvalidOption { name: "origin", value: value(), allowed });
+            }
+            if self.mirror.is_some() {
+                let allowed = "none, with mirror: the lattice lies on the axis";
+                return Err(Error::InvalidOption { name: "origin", value: value(), allowed });
+            }
         }
         if !(0.0..=std::f64::consts::PI).contains(&self.corner_angle) {
             return refuse("corner_angle", self.corner_angle, "0 to pi radians");

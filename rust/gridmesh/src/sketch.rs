@@ -96,6 +96,7 @@ pub fn mesh_sketch(
     if expected.is_nan() || expected > MAX_TRIANGLES {
         return Err(Error::TooLarge { triangles: expected, limit: MAX_TRIANGLES });
     }
+    check_origin(options, &contours[0], edge_length)?;
     let find = |mirror| Symmetry::find(&contours, mirror, edge_length);
     let symmetry = options.mirror.map(find).transpose()?;
     mirror::check_angle(symmetry.as_ref(), options.angle)?;
@@ -189,7 +190,8 @@ impl Job<'_> {
         outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
         self.lap("boundary", started);
         // Where no angle gives a boundary a shift does not either.
-        let shifted = effort == Effort::Full && self.symmetry.is_none() && !outlines.is_empty();
+        let fixed = self.symmetry.is_some() || self.options.origin.is_some();
+        let shifted = effort == Effort::Full && !fixed && !outlines.is_empty();
         let shifts = if shifted { SHIFTS.len() } else { 1 };
         let mut shifts = SHIFTS[..shifts].iter().enumerate().skip(1);
         let mut outlines = outlines.into_iter();
@@ -364,7 +366,13 @@ impl Job<'_> {
 
     fn lattice(&self, edge_length: f64, angle: f64, shift: DVec2) -> Lattice {
         let origin = self.centre + edge_length * DVec2::from_angle(angle).rotate(shift);
-        Lattice { origin, angle, edge_length }
+        let Some(asked) = self.options.origin else {
+            return Lattice { origin, angle, edge_length };
+        };
+        // The point of the asked lattice that is nearest to the drawing: coordinates stay small.
+        let asked = Lattice { origin: asked, angle, edge_length };
+        let nearest = asked.from_units(Lattice::units(Lattice::nearest(asked.to_units(self.centre))));
+        Lattice { origin: nearest, ..asked }
     }
 
     /// The error for a drawing that has no patch of the size asked for: the least number of
@@ -458,6 +466,19 @@ impl Job<'_> {
         report.seconds = self.seconds.clone();
         Sketch { patch, report }
     }
+}
+
+/// Lattice coordinates are whole numbers: a lattice may be laid from a point this many edges away.
+const FARTHEST_ORIGIN: f64 = 1e6;
+
+fn check_origin(options: &SketchOptions, outline: &ClosedCurve, edge_length: f64) -> Result<()> {
+    let far = |origin: &DVec2| origin.distance(outline.points()[0]) > FARTHEST_ORIGIN * edge_length;
+    let Some(origin) = options.origin.filter(far) else {
+        return Ok(());
+    };
+    let value = format!("{}, {}", origin.x, origin.y);
+    let allowed = "a point within a million edge lengths of the outline, or none";
+    Err(Error::InvalidOption { name: "origin", value, allowed })
 }
 
 /// How far a placement is from being good enough: zero if it is.
