@@ -355,6 +355,40 @@ def cut():
     yield from stage.picture("cut_2_capped")
 
 
+def long_work():
+    """A million triangles can be stopped by Esc; two hundred thousand are waited for, and are one undo step."""
+    yield from fresh()
+    grease_pencil([whale()])
+    yield from stage.open_sidebar()
+    with stage.override():
+        started = bpy.ops.object.gridmesh_from_strokes("INVOKE_DEFAULT", triangles=1_500_000)
+    assert started == {"RUNNING_MODAL"}, started
+    yield 1.0
+    yield from stage.picture("long_work")
+    assert not mesh_objects()
+    yield from stage.move(*stage.middle())
+    yield from stage.key("ESC")
+    for _ in range(60):
+        yield 0.5
+        if not stage.window.modal_operators:
+            break
+    assert not stage.window.modal_operators, "it did not stop"
+    assert not mesh_objects(), "something was made all the same"
+    with stage.override():
+        bpy.ops.object.gridmesh_from_strokes("INVOKE_DEFAULT", triangles=100_000)
+    yield from stage.key("A")  # selects nothing: the operator takes it
+    for _ in range(60):
+        yield 0.5
+        if mesh_objects():
+            break
+    (body,) = mesh_objects()
+    assert len(body.data.polygons) > 180_000
+    yield from stage.open_redo_panel()
+    yield from stage.key("Z", ctrl=True)
+    yield 1.0
+    assert not mesh_objects(), "undo left the body"
+
+
 def german():
     """The sidebar in German, if this Blender has languages."""
     if not bpy.app.build_options.international:
@@ -375,7 +409,7 @@ def german():
         view.language = language
 
 
-SCENES = (install, first_body, redo_panel, update, menus, sprites, fill, cut, german)
+SCENES = (install, first_body, redo_panel, update, menus, sprites, fill, cut, long_work, german)
 
 
 def finish(results):
