@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..live.solve import Patience
 from ..native import native
 from ..outlines import area
 
@@ -71,7 +72,12 @@ class Gesture:
                 self.edge_length = float(ideal)
         try:
             patch = gridmesh.mesh_sketch(
-                points, edge_length=self.edge_length, angle=0.0, origin=points[0], self_crossing="union"
+                points,
+                edge_length=self.edge_length,
+                angle=0.0,
+                origin=points[0],
+                self_crossing="union",
+                progress=Patience(0.005),
             )
         except gridmesh.GridMeshError:
             return None  # too narrow for the grid, or it encloses nothing yet: the line alone is shown
