@@ -9,6 +9,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import bpy
+import live_scenes
 import numpy as np
 from mathutils import Vector
 from stage import Stage, perform
@@ -321,7 +322,10 @@ def german():
         view.language = language
 
 
-SCENES = (first_body, redo_panel, menus, sprites, fill, cut, preferences, german)
+SCENES = (
+    *(first_body, redo_panel, menus, sprites, fill, cut, preferences, german),
+    *live_scenes.make(stage, fresh),
+)
 
 
 def finish(results):
