@@ -2,6 +2,7 @@
 """GridMesh: smooth bodies with clean triangle meshes from drawn strokes.
 
     operators.strokes -> strokes, curves (from Blender) -> outlines, api (numpy only) -> meshes (to Blender)
+    draw -> outlines of its own; live keeps bodies up to date with their strokes; overlay shows what meshes are like
     operators.fill -> editmesh (from Blender) -> holes, api (no bpy) -> editmesh, attributes (to Blender)
 
 `properties` holds what the redo panel shows, `ui` the sidebar and the menus. The native module `gridmesh` is
@@ -44,19 +45,29 @@ def unregister() -> None:
 
 def _classes() -> tuple[type, ...]:
     from . import ui
+    from .draw import operator as draw
     from .live import properties as live
     from .live import ui as live_ui
     from .operators import fill, strokes
     from .overlay import ui as overlay
 
-    return (*strokes.classes, *fill.classes, *overlay.classes, *live.classes, *ui.classes, *live_ui.classes)
+    return (
+        *strokes.classes,
+        *fill.classes,
+        *overlay.classes,
+        *live.classes,
+        *draw.classes,
+        *ui.classes,
+        *live_ui.classes,
+    )
 
 
 def _parts() -> tuple[ModuleType, ...]:
     """Modules with more to register than classes; their `unregister` may be called at any time."""
     from . import keys, preset_files, translations, ui
+    from .draw import operator as draw
     from .live import engine
     from .live import properties as live
     from .overlay import ui as overlay
 
-    return (translations, preset_files, ui, overlay, live, engine, keys)
+    return (translations, preset_files, ui, overlay, live, engine, draw, keys)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,38 @@ class Lattice:
     angle: float
     origin: np.ndarray
     """(2,) in the plane."""
+
+
+class Patience:
+    """Progress that gives up on a stroke without a mesh instead of searching for the fineness that would do.
+
+    The search comes after nine tenths of the work and can take half a minute: too long while somebody draws. Strokes
+    that have a mesh are never given up: from there on they are done in no time.
+    """
+
+    def __init__(self, seconds: float = 0.5) -> None:
+        self.seconds = seconds
+        self._began: float | None = None
+        self._late: float | None = None
+
+    def __call__(self, fraction: float) -> bool:
+        """Say whether to go on; allow as long again as the work has taken."""
+        now = perf_counter()
+        if self._began is None:
+            self._began = now
+        if fraction < 0.9 - 1e-9:
+            return True
+        if self._late is None:
+            self._late = now
+        return now - self._late <= max(self.seconds, self._late - self._began)
+
+
+TOO_THIN = "the stroke is too thin for a mesh this coarse; use more triangles or shorter edges"
+
+
+def reason_of(error: Any) -> str:
+    """What to say of an error of the module."""
+    return TOO_THIN if error.kind == "cancelled" else str(error)
 
 
 def solve(
@@ -66,13 +99,13 @@ def solve(
         options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     try:
-        patch = gridmesh.mesh_sketch(sketch.outline, holes, **options)
+        patch = gridmesh.mesh_sketch(sketch.outline, holes, progress=Patience(), **options)
         if body_options is None:
             surface = gridmesh.flat(patch)
         else:
             surface = gridmesh.inflate(patch, **_with_pen(body_options, sketch, pen))
     except gridmesh.GridMeshError as error:
-        raise SolveError(str(error)) from error
+        raise SolveError(reason_of(error)) from error
     body = Body(
         sketch=sketch,
         vertices=surface.vertices,

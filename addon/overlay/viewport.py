@@ -11,8 +11,8 @@ import numpy as np
 from ..strokes import selected
 from .quality import Quality, measure
 
-MARGIN, LINE = 14, 18
-"""Pixels at scale 1."""
+MARGIN, LINE, ABOVE = 14, 18, 36
+"""Pixels at scale 1; the last is the height of the redo panel's header."""
 
 # By curvature: few edges are warm, many are cold, strong colours are two or more away from regular.
 _COLOURS = (
@@ -52,7 +52,8 @@ def _look(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[Quality
     size = float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 0.0
     lift = 0.1 * size / max(1.0, np.sqrt(len(points)))
     at = found.irregular
-    return found, points[at] + lift * normals[at], colours(found.curvature)
+    dots = np.ascontiguousarray(points[at] + lift * normals[at], np.float32)  # the only type that is drawn
+    return found, dots, colours(found.curvature)
 
 
 def colours(curvature: np.ndarray) -> np.ndarray:
@@ -139,7 +140,7 @@ def _draw_text() -> None:
     blf.enable(font, blf.SHADOW)
     blf.shadow(font, 3, 0.0, 0.0, 0.0, 0.9)
     toolbar = next((r.width for r in context.area.regions if r.type == "TOOLS"), 0)
-    x, y = toolbar + MARGIN * scale, MARGIN * scale
+    x, y = toolbar + MARGIN * scale, (MARGIN + ABOVE) * scale
     kinds = [text for (_, text), here in zip(_COLOURS, _present(found), strict=True) if here]
     tints = [colour for (colour, _), here in zip(_COLOURS, _present(found), strict=True) if here]
     rows = [(row, (1.0, 1.0, 1.0, 1.0)) for row in lines(found)]

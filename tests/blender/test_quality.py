@@ -120,6 +120,9 @@ def test_operator_and_switch():
     setattr(manager, ui.SWITCH, False)
     assert len(bpy.app.handlers.depsgraph_update_post) == before
     assert len(viewport.colours(of(ob).curvature)) == 12
+    _, dots, colours = viewport._look(ob, bpy.context.evaluated_depsgraph_get())
+    assert dots.dtype == colours.dtype == np.float32  # anything else is drawn as if it were
+    assert np.allclose(np.linalg.norm(dots, axis=1), 1, atol=0.1)
 
 
 def test_edit_mode_counts_what_is_being_edited():

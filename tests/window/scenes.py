@@ -9,6 +9,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import bpy
+import live_scenes
 import numpy as np
 from mathutils import Vector
 from stage import Stage, perform
@@ -409,7 +410,10 @@ def german():
         view.language = language
 
 
-SCENES = (install, first_body, redo_panel, update, menus, sprites, fill, cut, long_work, german)
+SCENES = (
+    *(install, first_body, redo_panel, update, menus, sprites, fill, cut, long_work, german),
+    *live_scenes.make(stage, fresh),
+)
 
 
 def finish(results):

@@ -15,6 +15,7 @@ __all__ = [
     "__version__",
     "_patch",
     "_surface",
+    "combine",
     "cut",
     "fill_hole",
     "fill_holes",
