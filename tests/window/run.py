@@ -51,11 +51,7 @@ def main():
         print(f"NO WINDOW, so nothing was tested in one: {error}")
         sys.exit(77)
     print(f"{blender.name}: {blender.program} in {blender.root or 'the system'}", flush=True)
-<<<<<<< HEAD
-    for file in (HERE / "stage.py", HERE / "scenes.py"):
-=======
-    for file in (arguments.zip, *(file for file in HERE.glob("*.py") if file.name != "run.py")):
->>>>>>> draw
+    for file in (file for file in HERE.glob("*.py") if file.name != "run.py"):
         shutil.copy(file, SHARE)
     (SHARE / "zip").mkdir()
     profile = Path(tempfile.mkdtemp(dir=SHARE))

@@ -191,6 +191,7 @@ def regrid(
     strict: bool = False,
     progress: _Progress | None = None,
 ) -> Regrid: ...
+
 @final
 class Piece:
     @property
