@@ -1,11 +1,12 @@
 //! The Python module `gridmesh._native`: conversions only, no algorithm.
 //!
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `arrays`
-//! and `reports` hand results back, `patch`, `surface` and `fill` are the classes, `batch` is the parallel map.
+//! and `reports` hand results back, `patch`, `surface`, `fill` and `cut` are the classes, `batch` is the parallel map.
 #![forbid(unsafe_code)]
 
 mod arrays;
 mod batch;
+mod cut;
 mod error;
 mod fill;
 mod input;
@@ -416,6 +417,9 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;
     module.add_class::<fill::Regrid>()?;
     module.add_function(wrap_pyfunction!(fill::regrid, module)?)?;
+    module.add_class::<cut::Cut>()?;
+    module.add_class::<cut::Piece>()?;
+    module.add_function(wrap_pyfunction!(cut::cut, module)?)?;
     module.add_function(wrap_pyfunction!(patch::_patch, module)?)?;
     module.add_function(wrap_pyfunction!(surface::_surface, module)?)?;
     Ok(())

@@ -8,6 +8,7 @@ pub mod boundary;
 pub mod cells;
 pub mod contours;
 pub mod curve;
+pub mod cut;
 mod deviation;
 pub mod dir;
 pub mod embed;
