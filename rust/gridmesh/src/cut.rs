@@ -19,6 +19,7 @@ mod report;
 mod rim;
 mod sheet;
 mod split;
+mod strip;
 
 use std::time::Instant;
 
@@ -125,7 +126,7 @@ fn divide(
     let (sheet, mut parted) = part(vertices, faces, sheet, options, &mut tally, progress.part(0.0, 0.4))?;
     progress.report(0.4)?;
     if let Some(length) = options.edge_length {
-        rim::even_out(vertices, &sheet, &mut parted, length, &mut tally)?;
+        rim::even_out(vertices, faces, &mut parted, length, &mut tally);
         tally.stage("rim");
     }
     let loops = loops::trace(faces, &parted, &sheet);

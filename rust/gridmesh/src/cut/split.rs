@@ -28,6 +28,8 @@ pub(super) struct Tolerance {
 pub(super) struct Part {
     pub corners: [u32; 3],
     pub face: u32,
+    /// The old triangle that it is a part of.
+    pub home: [u32; 3],
     pub left: bool,
 }
 
@@ -204,7 +206,7 @@ impl Divider<'_> {
             if sides[0] != sides[1] || sides[1] != sides[2] {
                 return Err(self.failed(corners, "a face is on both sides"));
             }
-            self.parts.push(Part { corners, face, left: sides[0] });
+            self.parts.push(Part { corners, face, home: corners, left: sides[0] });
         } else {
             self.divide(corners, face, &ring, &chains)?;
         }
@@ -417,7 +419,8 @@ impl Divider<'_> {
                     stack.push((edge.rev().face().fix(), left != is_odd(a, b)));
                 }
             }
-            new.push(Part { corners: inner.vertices().map(|v| number[v.index()]), face, left });
+            let own = inner.vertices().map(|v| number[v.index()]);
+            new.push(Part { corners: own, face, home: corners, left });
         }
         self.parts.extend(new);
         Ok(())
