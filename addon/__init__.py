@@ -3,6 +3,7 @@
 
     operators.strokes -> strokes, curves (from Blender) -> outlines, api (numpy only) -> meshes (to Blender)
     operators.fill -> editmesh (from Blender) -> holes, api (no bpy) -> editmesh, attributes (to Blender)
+    operators.cut -> cutline, cutobject (from Blender) -> cutting (no bpy) -> cutmesh, cutcorners (to Blender)
 
 `properties` holds what the redo panel shows, `ui` the sidebar and the menus. The native module `gridmesh` is
 imported when it is first needed, so that the extension registers, and can say what is wrong, without it; and
@@ -42,6 +43,6 @@ def unregister() -> None:
 
 def _classes() -> tuple[type, ...]:
     from . import ui
-    from .operators import fill, strokes
+    from .operators import cut, fill, strokes
 
-    return (*strokes.classes, *fill.classes, *ui.classes)
+    return (*strokes.classes, *fill.classes, *cut.classes, *ui.classes)
