@@ -83,6 +83,15 @@ impl<'a> Strip<'a> {
         shape(corners.map(|v| self.position(v))).0
     }
 
+    /// The old surface's normal at a vertex: the mean over the triangles there.
+    pub fn normal(&self, v: u32) -> DVec3 {
+        let own = self.triangles_at(v).iter().filter_map(|&t| self.part(t)).map(|part| {
+            let [a, b, c] = self.home(part.home);
+            (b - a).cross(c - a).normalize_or_zero()
+        });
+        own.sum::<DVec3>().normalize_or_zero()
+    }
+
     fn neighbours(&self, v: u32) -> Vec<u32> {
         let mut found = vec![];
         for part in self.triangles_at(v).iter().filter_map(|&t| self.part(t)) {
