@@ -110,7 +110,7 @@ fn resample(strip: &mut Strip<'_>, length: f64) -> FxHashSet<u32> {
             arc.push(arc[arc.len() - 1] + pair[0].distance(pair[1]));
         }
         let total = arc[arc.len() - 1];
-        let least = if stretch.around { 3.0 } else { 1.0 };
+        let least = if stretch.around { 6.0 } else { 1.0 };
         let step = total / (total / length).round().max(least);
         let old = stretch.nodes.iter().map(|&v| (v as usize) < strip.parted.n_old).collect::<Vec<_>>();
         let line = Line { arc: &arc, points: &points, normals: &normals, old: &old };

@@ -270,7 +270,8 @@ impl<'a> Strip<'a> {
                 let [x, y] = strip.parted.cut.get(&(from.min(to), from.max(to))).copied().unwrap_or_default();
                 if from < to { [x, y] } else { [y, x] }
             };
-            let ([at_w, _], [_, at_v]) = (place(self, w, u), place(self, u, v));
+            let ([at_w, to_u], [from_u, to_v]) = (place(self, w, u), place(self, u, v));
+            let at_v = to_u + (to_v - from_u);
             self.parted.cut.remove(&(u.min(v), u.max(v)));
             self.parted.cut.remove(&(u.min(w), u.max(w)));
             self.parted.cut.insert((v.min(w), v.max(w)), if v < w { [at_v, at_w] } else { [at_w, at_v] });
