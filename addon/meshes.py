@@ -38,7 +38,10 @@ class Transaction:
 
     def new(self, collection: Any, *arguments: Any) -> Any:
         """Make a data block with `collection.new` and remember it."""
-        block = collection.new(*arguments)
+        return self.remember(collection, collection.new(*arguments))
+
+    def remember(self, collection: Any, block: Any) -> Any:
+        """Remember a data block that was made in another way."""
         self._made.append((collection, block))
         return block
 
