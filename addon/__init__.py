@@ -4,6 +4,7 @@
     operators.strokes -> strokes, curves (from Blender) -> outlines, api (numpy only) -> meshes (to Blender)
     draw -> outlines of its own; live keeps bodies up to date with their strokes; overlay shows what meshes are like
     operators.fill -> editmesh (from Blender) -> holes, api (no bpy) -> editmesh, attributes (to Blender)
+    operators.cut -> cutline, cutobject (from Blender) -> cutting (no bpy) -> cutmesh, cutcorners (to Blender)
 
 `properties` holds what the redo panel shows, `ui` the sidebar and the menus. The native module `gridmesh` is
 imported by `native` when it is first needed, so that the extension registers, and can say what is wrong, without it;
@@ -48,12 +49,13 @@ def _classes() -> tuple[type, ...]:
     from .draw import operator as draw
     from .live import properties as live
     from .live import ui as live_ui
-    from .operators import fill, strokes
+    from .operators import cut, fill, strokes
     from .overlay import ui as overlay
 
     return (
         *strokes.classes,
         *fill.classes,
+        *cut.classes,
         *overlay.classes,
         *live.classes,
         *draw.classes,

@@ -194,6 +194,16 @@ def fill(
         return [str(error)] * len(indices)
 
 
+def expected_triangles(sketches: list[Sketch], sketch_options: dict[str, Any]) -> float:
+    """About how many flat triangles these sketches get with these options."""
+    if (triangles := sketch_options.get("triangles")) is not None:
+        return float(triangles) * len(sketches)
+    length = sketch_options["edge_length"]
+    if length <= 0:
+        return 0.0
+    return sum(area(sketch.outline) for sketch in sketches) / (np.sqrt(3) / 4 * length**2)
+
+
 def suggested_edge_length(sketches: list[Sketch], triangles: int) -> float | None:
     """Edge length at which the largest sketch has about that many triangles; None if none has an area."""
     areas = (area(sketch.outline) - sum(area(hole.outline) for hole in sketch.holes) for sketch in sketches)

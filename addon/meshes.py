@@ -38,7 +38,10 @@ class Transaction:
 
     def new(self, collection: Any, *arguments: Any) -> Any:
         """Make a data block with `collection.new` and remember it."""
-        block = collection.new(*arguments)
+        return self.remember(collection, collection.new(*arguments))
+
+    def remember(self, collection: Any, block: Any) -> Any:
+        """Remember a data block that was made in another way."""
         self._made.append((collection, block))
         return block
 
@@ -231,6 +234,10 @@ def _flat_shaded(mesh: bpy.types.Mesh) -> bool:
     return bool(sharp.all())
 
 
+BLACK = 0.02
+"""Ink with no channel above this, in linear colour, is black."""
+
+
 def surface_material(
     material: bpy.types.Material | None, filled: bool, transaction: Transaction
 ) -> bpy.types.Material | None:
@@ -238,13 +245,16 @@ def surface_material(
 
     A grease pencil material shows on a mesh as plain grey. Its twins have its colours: "<name> Surface" that of
     the stroke, "<name> Fill" that of the fill, for bodies of filled strokes. Each is made once and found by name
-    afterwards, so that it can be edited.
+    afterwards, so that it can be edited. Black ink is for drawing with, as Blender's first pencil is: a body
+    drawn with it has no material, and shows its form.
     """
     if material is None or not material.is_grease_pencil:
         return material
     style = material.grease_pencil
     filled = _shows_fill(style, filled)
     color = (*(style.fill_color if filled else style.color)[:3], 1.0)
+    if not filled and max(color[:3]) < BLACK:
+        return None
     name = _shortened(material.name, " Fill" if filled else " Surface")
     twin = bpy.data.materials.get(name)
     if twin is not None and not twin.is_grease_pencil:

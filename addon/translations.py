@@ -20,8 +20,10 @@ GERMAN = {
     "Make a smooth body with a clean triangle mesh from each closed stroke": (
         "Aus jedem geschlossenen Strich einen glatten Körper mit sauberem Dreiecksnetz machen"
     ),
+    "Esc: Stop": "Esc: Abbrechen",
     "Presets": "Vorgaben",
     "Select a drawing or a curve": "Zeichnung oder Kurve auswählen",
+    "Stopping": "Wird abgebrochen",
     "Strokes to Mesh": "Striche zu Mesh",
     "Update Bodies": "Körper aktualisieren",
     # Presets
@@ -162,6 +164,35 @@ GERMAN = {
         "Dicke des Körpers; bei 1 wird aus einem Kreis eine Kugel"
     ),
     "What is made of a stroke": "Was aus einem Strich wird",
+    # Bodies that follow their drawing
+    "Adopt": "Übernehmen",
+    "Drawing": "Zeichnung",
+    "Follow": "Folgen",
+    "Follow the Stroke": "Dem Strich folgen",
+    "Freeze": "Einfrieren",
+    "How much the width of the drawn line drives the depth of the body there": (
+        "Wie sehr die Breite der gezeichneten Linie dort die Tiefe des Körpers bestimmt"
+    ),
+    "Let the body follow its stroke": "Den Körper seinem Strich folgen lassen",
+    "Let the body follow when its stroke is edited; the switch is in the sidebar": (
+        "Den Körper folgen lassen, wenn sein Strich bearbeitet wird; der Schalter ist in der Seitenleiste"
+    ),
+    "Live Body": "Lebender Körper",
+    "Make plain meshes of the selected bodies; they no longer know their drawing": (
+        "Aus den ausgewählten Körpern gewöhnliche Meshes machen, die ihre Zeichnung nicht mehr kennen"
+    ),
+    "Make the selected bodies anew with this version of GridMesh, and let them follow their drawing": (
+        "Die ausgewählten Körper mit dieser Version von GridMesh neu machen und ihrer Zeichnung folgen lassen"
+    ),
+    "Pen Width": "Strichbreite",
+    # The quality of a mesh
+    "Count irregular vertices of the selected meshes and find the sharpest angle": (
+        "Unregelmäßige Punkte der ausgewählten Meshes zählen und den spitzesten Winkel suchen"
+    ),
+    "Mesh Quality": "Netzqualität",
+    "Show irregular vertices of the selected meshes by their number of edges, and the numbers": (
+        "Unregelmäßige Punkte der ausgewählten Meshes nach der Zahl ihrer Kanten zeigen, und die Zahlen"
+    ),
     # Filling holes
     "All holes that are not hidden, up to a number of edges": (
         "Alle Löcher, die nicht ausgeblendet sind, bis zu einer Anzahl von Kanten"

@@ -8,7 +8,8 @@ from typing import Any
 
 import bpy
 
-from . import meshes, preset_files, strokes
+from . import cutline, meshes, preset_files, strokes
+from .operators.cut import OBJECT_OT_gridmesh_cut
 from .operators.fill import MESH_OT_gridmesh_fill
 from .operators.strokes import OBJECT_OT_gridmesh_from_strokes
 
@@ -22,6 +23,7 @@ STROKE_MENUS = (
     "VIEW3D_MT_edit_curve_context_menu",
     "VIEW3D_MT_edit_curves",
 )
+CUT_MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh")
 FILL_MENUS = ("VIEW3D_MT_edit_mesh_faces", "VIEW3D_MT_edit_mesh_context_menu")
 
 
@@ -39,6 +41,17 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
             self._draw_fill()
         else:
             self._draw_strokes(context)
+        if OBJECT_OT_gridmesh_cut.poll(context):
+            self._draw_cut(context)
+
+    def _draw_cut(self, context: bpy.types.Context) -> None:
+        idname = OBJECT_OT_gridmesh_cut.bl_idname
+        self.layout.separator()
+        column = self.layout.column()
+        column.operator(idname, text="Draw Cut", icon="GREASEPENCIL").source = "DRAWN"
+        row = column.row()
+        row.enabled = bool(cutline.stroke_objects(context))
+        row.operator(idname, text="Cut along Stroke").source = "OBJECTS"
 
     def _draw_fill(self) -> None:
         idname = MESH_OT_gridmesh_fill.bl_idname
@@ -92,9 +105,20 @@ def _fill_entry(menu: Any, _context: bpy.types.Context) -> None:
     menu.layout.operator(MESH_OT_gridmesh_fill.bl_idname).holes = "SELECTED"
 
 
+def _cut_entry(menu: Any, context: bpy.types.Context) -> None:
+    if not OBJECT_OT_gridmesh_cut.poll(context):
+        return
+    idname = OBJECT_OT_gridmesh_cut.bl_idname
+    menu.layout.separator()
+    menu.layout.operator_context = "INVOKE_REGION_WIN"
+    menu.layout.operator(idname, text="Draw Cut & Cap").source = "DRAWN"
+    if cutline.stroke_objects(context):
+        menu.layout.operator(idname, text="Cut & Cap along Stroke").source = "OBJECTS"
+
+
 def _entries() -> Iterator[tuple[Any, Any]]:
     """Menus of this version, and what is drawn at their end."""
-    for names, entry in ((STROKE_MENUS, _stroke_entry), (FILL_MENUS, _fill_entry)):
+    for names, entry in ((STROKE_MENUS, _stroke_entry), (FILL_MENUS, _fill_entry), (CUT_MENUS, _cut_entry)):
         for name in names:
             menu = getattr(bpy.types, name, None)
             if menu is not None:

@@ -13,9 +13,13 @@ from ..live import engine
 from ..progress import Pointer
 from ..properties import ShapeOptions, SketchOptions
 from .messages import counted, listed
+from .waiting import Waiting
+
+LONG = 50_000
+"""Flat triangles; with more, which take a second or so, the work can be watched and stopped."""
 
 
-class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, ShapeOptions, bpy.types.Operator):  # noqa: N801
     """Make a smooth body with a clean triangle mesh from each closed stroke"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_from_strokes"
@@ -100,11 +104,12 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
             sketches, _, _ = api.sketches_of(chosen, close_gaps=self.close_gaps, holes=self.use_holes)
             length = api.suggested_edge_length(sketches, self.triangles)
             self.edge_length = length if length is not None else self.edge_length
+        self.may_wait = context.window is not None and not bpy.app.background
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read, mesh, and only then change the scene."""
-        started = perf_counter()
+        started = perf_counter() - self.waited()
         try:
             api.native()
         except api.NativeError as error:
@@ -124,9 +129,12 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
             notes += meshes.made_from_holes(context, sketches)
             sketches, refused = meshes.separate_blocked(context, sketches)
             failures += refused
+        options = self.sketch_options(), self.body_options()
+        if self.may_wait and api.expected_triangles(sketches, options[0]) > LONG:
+            return self.wait(context, lambda progress: api.build(sketches, *options, progress))
         try:
             with Pointer(context) as pointer:
-                bodies, refused = api.build(sketches, self.sketch_options(), self.body_options(), pointer)
+                bodies, refused = self.take_done() or api.build(sketches, *options, pointer)
         except api.CancelledError:
             self.report({"WARNING"}, "Cancelled; nothing was made")
             return {"CANCELLED"}

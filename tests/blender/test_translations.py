@@ -22,7 +22,7 @@ def of_classes():
             group, name = cls.bl_idname.split(".")
             rna = getattr(getattr(bpy.ops, group), name).get_rna_type()
             yield rna.description
-        yield cls.bl_label
+        yield getattr(cls, "bl_label", "")  # property groups have none
         if issubclass(cls, (bpy.types.Operator, bpy.types.PropertyGroup, bpy.types.AddonPreferences)):
             for option in rna.properties:
                 if option.identifier in {"rna_type", "name", "bl_idname"} or option.is_hidden:
@@ -33,10 +33,23 @@ def of_classes():
 
 
 def of_layouts():
-    """Literal texts that are drawn."""
+    """Literal texts that are drawn, or translated before they are shown."""
     for path in sorted(ADDON.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call):
+                if ast.unparse(node.func).endswith("pgettext_iface"):
+                    literals = (
+                        part.value for part in ast.walk(node.args[0]) if isinstance(part, ast.Constant)
+                    )
+                    yield from literals
+                if ast.unparse(node.func).endswith(
+                    "Property"
+                ):  # those that are put on Blender's own types too
+                    hidden = "HIDDEN" in ast.unparse(node)
+                    said = (
+                        keyword.value for keyword in node.keywords if keyword.arg in {"name", "description"}
+                    )
+                    yield from (text.value for text in said if isinstance(text, ast.Constant) and not hidden)
                 for keyword in node.keywords:
                     if keyword.arg == "text" and isinstance(keyword.value, ast.Constant):
                         yield keyword.value.value

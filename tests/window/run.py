@@ -1,7 +1,7 @@
 """The zip in a real Blender in a window, with mouse and keyboard; and the pictures of the documentation.
 
     python tests/window/run.py ZIP [SCENE ...]              # pictures go to out/tests/window/pictures
-    python tests/window/run.py ZIP --documentation          # and from there into docs/pictures
+    python tests/window/run.py ZIP --documentation          # and from there into docs/pictures/windows
 
 The window is on a screen in memory (Xvfb). Exit code 77 where there is no real Blender: nothing was tested then.
 """
@@ -38,7 +38,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("zip", type=Path)
     parser.add_argument("scenes", nargs="*")
-    parser.add_argument("--documentation", action="store_true", help="put the pictures into docs/pictures")
+    parser.add_argument(
+        "--documentation", action="store_true", help="put the pictures into docs/pictures/windows"
+    )
     arguments = parser.parse_args()
     shutil.rmtree(SHARE, ignore_errors=True)
     try:
@@ -49,19 +51,21 @@ def main():
         print(f"NO WINDOW, so nothing was tested in one: {error}")
         sys.exit(77)
     print(f"{blender.name}: {blender.program} in {blender.root or 'the system'}", flush=True)
-    for file in (arguments.zip, *(file for file in HERE.glob("*.py") if file.name != "run.py")):
+    for file in (file for file in HERE.glob("*.py") if file.name != "run.py"):
         shutil.copy(file, SHARE)
+    (SHARE / "zip").mkdir()
     profile = Path(tempfile.mkdtemp(dir=SHARE))
-    package, pictures = SHARE / arguments.zip.name, SHARE / "pictures"
+    package, pictures = Path(shutil.copy(arguments.zip, SHARE / "zip")), SHARE / "pictures"
     settings = {
         "BLENDER_USER_RESOURCES": blender.path(profile),
         "SCENES": " ".join(arguments.scenes),
+        "ZIP": blender.path(package),
         "LIBGL_ALWAYS_SOFTWARE": "1",
     }
-    install = ["--command", "extension", "install-file", "-r", "user_default", "-e", blender.path(package)]
-    subprocess.run(
-        blender.command([blender.program, *install], **settings), check=True, stdout=subprocess.DEVNULL
-    )
+    if arguments.scenes and "install" not in arguments.scenes:
+        install = ["--command", "extension", "install-file", "-r", "user_default", "-e", settings["ZIP"]]
+        words = blender.command([blender.program, *install], **settings)
+        subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
     window = ["--window-geometry", "0", "0", "1280", "800", "--enable-event-simulate"]
     play = ["--python", blender.path(SHARE / "scenes.py"), "--", blender.path(pictures)]
     words = ["sh", "-c", SHELL, "window", blender.path(SHARE), blender.program, *window, *play]
@@ -70,8 +74,10 @@ def main():
     except subprocess.TimeoutExpired:
         sys.exit("Blender did not come to an end within 20 minutes")
     if arguments.documentation and done.returncode == 0:
+        target = ROOT / "docs" / "pictures" / "windows"
+        target.mkdir(parents=True, exist_ok=True)
         for picture in pictures.glob("*.png"):
-            shutil.copy(picture, ROOT / "docs" / "pictures")
+            shutil.copy(picture, target)
     sys.exit(done.returncode)
 
 

@@ -97,6 +97,44 @@ def turn_view(x=1.15, y=0.0, z=0.6):
 # ------------------------------------------------------------------------------------------------------- scenes
 
 
+def install():
+    """Install the zip from an empty profile: Preferences, Get Extensions, the arrow, Install from Disk."""
+    addon = "bl_ext.user_default.gridmesh"
+    assert addon not in bpy.context.preferences.addons, "it is installed already"
+    bpy.context.preferences.view.filebrowser_display_type = "SCREEN"  # in this window, not in another
+    yield from fresh()
+    area = stage.view
+    area.type = "PREFERENCES"
+    bpy.context.preferences.active_section = "EXTENSIONS"
+    yield 1.0
+    yield from stage.click(area.x + area.width - 20, area.y + area.height - 46)
+    yield 0.5
+    yield from stage.picture("install_1_menu")
+    yield from stage.choose("Install from Disk")
+    browser = next((area for area in stage.window.screen.areas if area.type == "FILE_BROWSER"), None)
+    assert browser is not None, "no file browser opened"
+    package = Path(os.environ["ZIP"])
+    browser.spaces.active.params.directory = str(package.parent).encode()
+    browser.spaces.active.params.filename = package.name
+    yield 1.0
+    yield from stage.picture("install_2_file")
+    yield from stage.move(browser.x + browser.width // 2, browser.y + browser.height // 3)
+    yield from stage.key("RET")
+    for _ in range(40):
+        yield 0.5
+        if addon in bpy.context.preferences.addons:
+            break
+    assert addon in bpy.context.preferences.addons, "nothing was installed"
+    bpy.context.preferences.active_section = "ADDONS"
+    bpy.context.window_manager.addon_search = "GridMesh"
+    area = stage.area("PREFERENCES")
+    yield 0.5
+    yield from stage.picture("install_3_addons")
+    area.type = "VIEW_3D"
+    yield 0.5
+    bpy.ops.wm.save_userpref()
+
+
 def first_body():
     """A stranger's way: draw with grease pencil, open the tab, press the button."""
     yield from fresh()
@@ -177,6 +215,28 @@ def numbers_of(hud, name, value):
             yield 1.5
             return f"{getattr(manager.operators[-1], name)}" == value
     return False
+
+
+def update():
+    """The drawing is changed, and the button brings the same object up to date."""
+    yield from fresh()
+    drawing = grease_pencil([whale()])
+    yield from stage.open_sidebar()
+    yield from stage.press_button("UI", "gridmesh_from_strokes", "OBJECTS")
+    (body,) = mesh_objects()
+    name, before = body.name, body.dimensions.x
+    drawing = bpy.data.objects["Drawing"]
+    points = (whale() * [1, 1, 1.5]).astype(np.float32)
+    strokes = drawing.data.layers[0].frames[0].drawing
+    strokes.attributes["position"].data.foreach_set("vector", points.ravel())
+    strokes.tag_positions_changed()
+    height = body.dimensions.y
+    bpy.ops.ed.undo_push(message="Drawing changed")
+    yield from stage.press_button("UI", "gridmesh_from_strokes", "update_existing")
+    (body,) = mesh_objects()
+    assert body.name == name
+    assert abs(body.dimensions.x - before) < 0.1 * before
+    assert body.dimensions.y > 1.3 * height
 
 
 def menus():
@@ -265,6 +325,13 @@ def fill():
     yield from stage.picture("fill_3_menu")
     yield from stage.choose("Grid Patch Fill")
     assert faces() == filled, "the Face menu filled nothing"
+    yield from stage.key("Z", ctrl=True)
+    yield 0.8
+    yield from stage.press_button("UI", "gridmesh_fill", "ALL")
+    assert faces() == filled, "Fill All Holes filled nothing"
+    hud = yield from stage.open_redo_panel()
+    assert (yield from numbers_of(hud, "max_edges", "40")), "Max Edges could not be changed"
+    assert faces() == filled, "the redo panel did not fill again"
 
 
 def cut():
@@ -289,17 +356,38 @@ def cut():
     yield from stage.picture("cut_2_capped")
 
 
-def preferences():
-    """Where the extension is found after its installation."""
+def long_work():
+    """A million triangles can be stopped by Esc; two hundred thousand are waited for, and are one undo step."""
     yield from fresh()
-    area = stage.view
-    area.type = "PREFERENCES"
-    bpy.context.preferences.active_section = "ADDONS"
-    bpy.context.window_manager.addon_search = "GridMesh"
-    yield 0.5
-    yield from stage.picture("install_addons")
-    area.type = "VIEW_3D"
-    yield 0.5
+    grease_pencil([whale()])
+    yield from stage.open_sidebar()
+    with stage.override():
+        started = bpy.ops.object.gridmesh_from_strokes("INVOKE_DEFAULT", triangles=1_500_000)
+    assert started == {"RUNNING_MODAL"}, started
+    yield 1.0
+    yield from stage.picture("long_work")
+    assert not mesh_objects()
+    yield from stage.move(*stage.middle())
+    yield from stage.key("ESC")
+    for _ in range(60):
+        yield 0.5
+        if not stage.window.modal_operators:
+            break
+    assert not stage.window.modal_operators, "it did not stop"
+    assert not mesh_objects(), "something was made all the same"
+    with stage.override():
+        bpy.ops.object.gridmesh_from_strokes("INVOKE_DEFAULT", triangles=100_000)
+    yield from stage.key("A")  # selects nothing: the operator takes it
+    for _ in range(60):
+        yield 0.5
+        if mesh_objects():
+            break
+    (body,) = mesh_objects()
+    assert len(body.data.polygons) > 180_000
+    yield from stage.open_redo_panel()
+    yield from stage.key("Z", ctrl=True)
+    yield 1.0
+    assert not mesh_objects(), "undo left the body"
 
 
 def german():
@@ -323,7 +411,7 @@ def german():
 
 
 SCENES = (
-    *(first_body, redo_panel, menus, sprites, fill, cut, preferences, german),
+    *(install, first_body, redo_panel, update, menus, sprites, fill, cut, long_work, german),
     *live_scenes.make(stage, fresh),
 )
 

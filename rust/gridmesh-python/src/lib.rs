@@ -74,7 +74,7 @@ use crate::watch::Watch;
 /// self_crossing : {"error", "union"}
 ///     "error": an outline that crosses itself is refused. "union": its outer outline is taken.
 /// proof_nodes : int
-///     Bounds the search that proves optimality where the first solution had conflicts.
+///     Bounds the search that proves optimality where the first solution had conflicts; 0 beside `mirror`.
 /// relax : bool
 ///     False leaves the interior vertices where the lattice has them; triangles may then be inverted,
 ///     and such a patch is refused.
@@ -91,7 +91,7 @@ use crate::watch::Watch;
 ///     "minimum_irregular" (the least that any such body has), "turns", "turns_before" (a grown
 ///     boundary's, before it is straightened), "turns_bound", "cost", "cost_bound" (None where none
 ///     was computed), "optimal", "max_distance_used", "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
-///     (radians), "corners" (drawn ones), "released_corners" (those without a vertex of their own),
+///     (radians), "corners" (drawn ones), "released_corners" (those without a vertex of their own), "bridged_inlets" (with mesh vertices in them: 0, unless `relax` is off),
 ///     "repaired" (repeated points dropped), "mirror_error" (greatest distance of a vertex from the
 ///     image of its partner, in edge lengths; None without `mirror`), "placements" (of the lattice, tried) and "seconds" (per
 ///     stage).

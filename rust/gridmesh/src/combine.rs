@@ -123,7 +123,7 @@ mod tests {
     fn inside_it_is_a_hole_and_holes_stay() {
         let (a, b) = (square(0.0, 0.0, 10.0), square(6.0, 6.0, 2.0));
         let hole = square(1.0, 1.0, 3.0);
-        let parts = combine(&a, &[hole.clone()], &b, Combination::Difference).unwrap();
+        let parts = combine(&a, std::slice::from_ref(&hole), &b, Combination::Difference).unwrap();
         assert_eq!(areas(&parts).len(), 1);
         let mut holes = areas(&parts)[0].1.clone();
         holes.sort_by(f64::total_cmp);

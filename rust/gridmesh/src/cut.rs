@@ -24,6 +24,7 @@ mod strip;
 use std::time::Instant;
 
 use glam::DVec3;
+use rustc_hash::FxHashSet;
 
 pub use self::input::Polygons;
 use self::input::check;
@@ -109,10 +110,16 @@ pub fn cut(
 
 /// Coarser to finer: where a tolerance leaves no consistent division, the next one may.
 const TOLERANCES: [Tolerance; 3] = [
-    Tolerance { vertex: 1e-3, node: 1e-6 },
-    Tolerance { vertex: 1e-6, node: 1e-8 },
-    Tolerance { vertex: 1e-9, node: 1e-11 },
+    Tolerance { vertex: 1e-3, node: 1e-6, length: 0.0 },
+    Tolerance { vertex: 1e-6, node: 1e-8, length: 0.0 },
+    Tolerance { vertex: 1e-9, node: 1e-11, length: 0.0 },
 ];
+
+/// With an edge length, the cut is drawn through vertices that are nearer than this part of it.
+const THROUGH: f64 = 0.2;
+
+/// Vertices that are let go one after the other, until the faces around them can be divided.
+const RELEASES: usize = 200;
 
 fn divide(
     vertices: &[DVec3],
@@ -166,29 +173,46 @@ fn part(
     tally: &mut Tally,
     progress: Progress<'_>,
 ) -> Result<(Sheet, Parted)> {
-    let _ = options;
+    let coarse = options.edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
     let mut failed = Error::StrokeMisses;
     for nudge in 0..3 {
         let sheet = sheet.nudged(nudge)?;
         let locator = locate::Locator::new(vertices, &sheet)?;
         let met = locator.find(vertices, faces)?;
+        let edges = cross::cross(vertices, faces, &sheet, &locator, &met);
         tally.stage("search");
         progress.report(0.5)?;
-        for tolerance in TOLERANCES {
-            let crossed = cross::cross(vertices, faces, &sheet, &locator, &met, tolerance);
-            tally.stage("crossings");
-            match split::split(vertices, faces, &sheet, &met, crossed, tolerance) {
-                Ok(parted) => {
-                    tally.stage("faces");
-                    tally.report.cut_faces = parted.cut_faces;
-                    return Ok((sheet, parted));
-                }
-                Err(Error::StrokeMisses) => return Err(Error::StrokeMisses),
-                Err(error) => {
-                    failed = error;
-                    tally.report.repeated += 1;
+        for tolerance in coarse.into_iter().chain(TOLERANCES) {
+            let mut released = FxHashSet::default();
+            for _ in 0..RELEASES {
+                let crossed = edges.named(vertices, tolerance, &released);
+                match split::split(vertices, faces, &sheet, &met, crossed, tolerance) {
+                    Ok(parted) => {
+                        let touching = if tolerance.length > 0.0 { parted.touching() } else { vec![] };
+                        let before = released.len();
+                        released.extend(touching);
+                        if released.len() > before {
+                            continue;
+                        }
+                        tally.stage("faces");
+                        tally.report.cut_faces = parted.cut_faces;
+                        tally.report.repeated += released.len();
+                        return Ok((sheet, parted));
+                    }
+                    Err((Error::StrokeMisses, _)) if tolerance.length == 0.0 => {
+                        return Err(Error::StrokeMisses);
+                    }
+                    Err((error, at)) => {
+                        failed = error;
+                        let before = released.len();
+                        released.extend(at.into_iter().flatten());
+                        if tolerance.length == 0.0 || released.len() == before {
+                            break;
+                        }
+                    }
                 }
             }
+            tally.report.repeated += 1;
         }
     }
     Err(failed)

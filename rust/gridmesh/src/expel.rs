@@ -35,7 +35,9 @@ pub(crate) fn expel(
             let depth = |pocket: &Vec<DVec2>| depth_in(pocket, p).unwrap_or(0.0);
             pockets.inlets.iter().all(|pocket| depth(pocket) <= limit)
         };
-        let walls = pockets.inlets[inlet].windows(2).map(|wall| nearest_on_segment(at, wall[0], wall[1]).0);
+        let walls = pockets.inlets[inlet]
+            .windows(2)
+            .map(|wall| wall[0].lerp(wall[1], nearest_on_segment(at, wall[0], wall[1]).0));
         let places = walls.flat_map(|wall| {
             let ahead = (wall - at).normalize_or_zero();
             BEYOND.map(|beyond| wall + beyond * h * ahead)
@@ -68,14 +70,16 @@ fn sharpness(p: [DVec2; 3]) -> f64 {
 mod tests {
     use super::*;
 
+    const MIDDLE: DVec2 = DVec2::new(30.0, 50.0);
+
     #[test]
     fn a_vertex_leaves_the_inlet_and_its_triangles_stay_in_shape() {
         let rim: Vec<DVec2> =
-            (0..6).map(|i| DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
+            (0..6).map(|i| MIDDLE + DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
         let mut vertices = rim.clone();
-        vertices.push(DVec2::ZERO);
+        vertices.push(MIDDLE);
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
-        let inlet = vec![rim[1], DVec2::new(0.0, -0.2), rim[2]];
+        let inlet = vec![rim[1], MIDDLE - DVec2::new(0.0, 0.2), rim[2]];
         let pockets = Pockets { inlets: vec![inlet.clone()], occupied: vec![], inside: vec![(6, 0)] };
         assert!(depth_in(&inlet, vertices[6]).is_some_and(|depth| depth > 0.05));
         assert!(expel(&pockets, &mut vertices, &triangles, 0.05, 1.0));
@@ -88,13 +92,13 @@ mod tests {
     #[test]
     fn a_vertex_without_a_good_place_stays() {
         let rim: Vec<DVec2> =
-            (0..6).map(|i| DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
+            (0..6).map(|i| MIDDLE + DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
         let mut vertices = rim.clone();
-        vertices.push(DVec2::ZERO);
+        vertices.push(MIDDLE);
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
-        let inlet = vec![rim[1], DVec2::new(2.0, -3.0), DVec2::new(-2.0, -3.0), rim[2]];
+        let inlet = vec![rim[1], MIDDLE + DVec2::new(2.0, -3.0), MIDDLE - DVec2::new(2.0, 3.0), rim[2]];
         let pockets = Pockets { inlets: vec![inlet], occupied: vec![], inside: vec![(6, 0)] };
         assert!(!expel(&pockets, &mut vertices, &triangles, 0.05, 1.0));
-        assert_eq!(vertices[6], DVec2::ZERO);
+        assert_eq!(vertices[6], MIDDLE);
     }
 }

@@ -70,7 +70,8 @@ pub struct SketchOptions {
     pub mirror: Option<Mirror>,
     /// What to do with an outline that crosses itself.
     pub self_crossing: SelfCrossing,
-    /// Search nodes spent on proving a boundary optimal whose first solution had conflicts.
+    /// Search nodes spent on proving a boundary optimal whose first solution had conflicts; not
+    /// beside `mirror`.
     pub proof_nodes: usize,
     /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and
     /// may hold inverted triangles.
@@ -157,6 +158,13 @@ impl SketchOptions {
                 allowed: "none, or boundary optimal: growth has no symmetric form",
             });
         }
+        if self.mirror.is_some() && self.proof_nodes > 0 {
+            return Err(Error::InvalidOption {
+                name: "proof_nodes",
+                value: format!("{}, beside mirror", self.proof_nodes),
+                allowed: "0, or no mirror: symmetric boundaries are proved only where none conflicts",
+            });
+        }
         Ok(())
     }
 }
@@ -187,8 +195,8 @@ pub struct SketchReport {
     /// Greatest distance from the drawn curve to the mesh boundary, in edges; at most 2, or the
     /// drawing is refused.
     pub max_deviation: f64,
-    /// Boundary edges that bridge an inlet of the drawing with mesh vertices in it: the inlet is too
-    /// narrow for the lattice.
+    /// Boundary edges that bridge an inlet of the drawing with mesh vertices in it: zero, or the
+    /// drawing is refused, unless `relax` is off.
     pub bridged_inlets: usize,
     /// Smallest angle of the flat patch, in radians.
     pub min_angle: f64,

@@ -28,6 +28,9 @@ use crate::union::{nearest_source, outer_outline};
 const SHIFTS: [[f64; 2]; 6] =
     [[0.0, 0.0], [0.5, 0.29], [0.5, -0.29], [0.25, 0.43], [0.25, -0.14], [0.75, 0.14]];
 
+/// Of the lattices laid on a mirror axis, so many are tried first.
+const MIRROR_CANDIDATES: usize = 4;
+
 /// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies
 /// this close to the drawing, in edges, is good enough not to try another lattice angle.
 const ENOUGH: (f64, f64) = (14.0 * std::f64::consts::PI / 180.0, 1.0);
@@ -177,7 +180,7 @@ impl Job<'_> {
         let lattices = self.placements_to_try(asked, effort);
         let found: Vec<Result<Result<(Lattice, Outline), Obstacle>>> = lattices
             .par_iter()
-            .map(|&(angle, shift)| self.outline(asked, angle, shift, progress.part(0.0, 0.3)))
+            .map(|&(angle, shift)| self.outline(asked, effort, angle, shift, progress.part(0.0, 0.3)))
             .collect();
         let mut obstacle = None;
         let mut outlines = Vec::new();
@@ -190,10 +193,11 @@ impl Job<'_> {
         outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
         self.lap("boundary", started);
         // Where no angle gives a boundary a shift does not either.
-        let fixed = self.symmetry.is_some() || self.options.origin.is_some();
-        let shifted = effort == Effort::Full && !fixed && !outlines.is_empty();
-        let shifts = if shifted { SHIFTS.len() } else { 1 };
-        let mut shifts = SHIFTS[..shifts].iter().enumerate().skip(1);
+        let shifts = match effort {
+            Effort::Full if !outlines.is_empty() || self.symmetry.is_some() => self.shifts(lattices[0].0),
+            _ => Vec::new(),
+        };
+        let mut shifts = shifts.into_iter().enumerate();
         let mut outlines = outlines.into_iter();
         let mut best: Option<(f64, Outline, Placed, Option<f64>)> = None;
         loop {
@@ -203,10 +207,10 @@ impl Job<'_> {
                     break;
                 }
                 None => {
-                    let Some((k, shift)) = shifts.next() else { break };
+                    let Some((k, (angle, shift))) = shifts.next() else { break };
                     let started = Instant::now();
-                    let part = progress.part(0.3 + 0.1 * k as f64, 0.4 + 0.1 * k as f64);
-                    let found = self.outline(asked, lattices[0].0, DVec2::from_array(*shift), part)?;
+                    let part = progress.part(0.4 + 0.1 * k as f64, 0.5 + 0.1 * k as f64);
+                    let found = self.outline(asked, effort, angle, shift, part)?;
                     self.lap("boundary", started);
                     match found {
                         Ok(found) => found,
@@ -264,12 +268,22 @@ impl Job<'_> {
     /// The lattices to try: angles, and shifts of the origin in edges.
     fn placements_to_try(&self, asked: Asked, effort: Effort) -> Vec<(f64, DVec2)> {
         if let Some(symmetry) = &self.symmetry {
-            const QUICK: usize = 2;
             let mut lattices = mirror::placements(symmetry, self.options.angle);
-            lattices.truncate(if effort == Effort::Full { lattices.len() } else { QUICK });
+            lattices.truncate(if effort == Effort::Full { MIRROR_CANDIDATES } else { MIRROR_CANDIDATES / 2 });
             return lattices;
         }
         self.angles(asked, effort).into_iter().map(|angle| (angle, DVec2::ZERO)).collect()
+    }
+
+    /// The lattices to try where those do not do.
+    fn shifts(&self, angle: f64) -> Vec<(f64, DVec2)> {
+        match &self.symmetry {
+            Some(symmetry) => {
+                mirror::placements(symmetry, self.options.angle).into_iter().skip(MIRROR_CANDIDATES).collect()
+            }
+            None if self.options.origin.is_some() => Vec::new(),
+            None => SHIFTS[1..].iter().map(|&shift| (angle, DVec2::from_array(shift))).collect(),
+        }
     }
 
     /// The lattice angles to try: the one asked for, or those with the fewest turns predicted.
@@ -291,15 +305,18 @@ impl Job<'_> {
     }
 
     /// The outline for one placement; with a number of triangles asked for, the edge length is
-    /// corrected until the number is reached within 5 % (10 % are accepted in the end).
+    /// corrected until the number is reached within 5 % (10 % are accepted in the end). Only then
+    /// is a proof worth its time.
     fn outline(
         &self,
         asked: Asked,
+        effort: Effort,
         angle: f64,
         shift: DVec2,
         progress: Progress<'_>,
     ) -> Result<Result<(Lattice, Outline), Obstacle>> {
         const CORRECTIONS: usize = 6;
+        let unproved = SketchOptions { proof_nodes: 0, ..self.options.clone() };
         let mut edge_length = match asked {
             Asked::EdgeLength(h) => h,
             Asked::Triangles(n) => self.first_guess(n),
@@ -312,7 +329,7 @@ impl Job<'_> {
         for _ in 0..CORRECTIONS {
             progress.report(0.0)?;
             let lattice = self.lattice(edge_length, angle, shift);
-            let outline = match self.path(&lattice, progress)? {
+            let outline = match self.path(&lattice, &unproved, progress)? {
                 Ok(outline) => outline,
                 Err(found) => {
                     obstacle = found;
@@ -338,19 +355,38 @@ impl Job<'_> {
             // A handful of triangles comes in few sizes: 6, 10, 13, 14, 16...
             Asked::Triangles(n) => f64::max(0.1, 6.0 / n as f64),
         };
-        Ok(match best {
-            Some((off, lattice, outline)) if off <= allowed => Ok((lattice, outline)),
-            _ => Err(obstacle),
-        })
+        let is_near = |outline: &Outline| match asked {
+            Asked::EdgeLength(_) => true,
+            Asked::Triangles(n) => (outline.triangles() as f64 / n as f64 - 1.0).abs() <= allowed,
+        };
+        let Some((off, lattice, mut outline)) = best else { return Ok(Err(obstacle)) };
+        if off > allowed {
+            return Ok(Err(obstacle));
+        }
+        let is_asked = self.options.proof_nodes > 0 && self.options.boundary == BoundaryMethod::Optimal;
+        if is_asked && effort == Effort::Full && !outline.optimal {
+            // It may come out a little larger or smaller.
+            if let Ok(proved) = self.path(&lattice, self.options, progress)?
+                && is_near(&proved)
+            {
+                outline = proved;
+            }
+        }
+        Ok(Ok((lattice, outline)))
     }
 
-    fn path(&self, lattice: &Lattice, progress: Progress<'_>) -> Result<Result<Outline, Obstacle>> {
+    fn path(
+        &self,
+        lattice: &Lattice,
+        options: &SketchOptions,
+        progress: Progress<'_>,
+    ) -> Result<Result<Outline, Obstacle>> {
         if let Some(symmetry) = &self.symmetry {
-            return mirror::traced(&self.contours, symmetry, lattice, self.options, progress);
+            return mirror::traced(&self.contours, symmetry, lattice, options, progress);
         }
-        match self.options.boundary {
-            BoundaryMethod::Grown => grown(&self.contours[0], lattice, self.options, progress),
-            BoundaryMethod::Optimal => traced(&self.contours, lattice, self.options, progress),
+        match options.boundary {
+            BoundaryMethod::Grown => grown(&self.contours[0], lattice, options, progress),
+            BoundaryMethod::Optimal => traced(&self.contours, lattice, options, progress),
         }
     }
 
@@ -376,12 +412,16 @@ impl Job<'_> {
     }
 
     /// The error for a drawing that has no patch of the size asked for: the least number of
-    /// triangles that works, searched in steps of a tenth, one placement each.
+    /// triangles that works, searched in steps of a tenth, one placement each. Given up where the
+    /// boundary alone would take too many edges: parts thin as a hair fit no grid.
     fn least_that_works(&mut self, asked: f64, obstacle: Obstacle, progress: Progress<'_>) -> Result<Error> {
         const LARGEST: f64 = 1e6;
+        const MOST_EDGES: f64 = 8e3;
+        let most_edges = MOST_EDGES.max(3.0 * self.boundary_edges(asked.max(6.0) as usize));
         let at = |step: i32| (asked.max(6.0) * 1.1f64.powi(step)).ceil() as usize;
         let (mut fails, mut works, mut stride) = (0, None, 1);
-        while works.is_none() && (at(fails + stride) as f64) < LARGEST {
+        let fits = |job: &Self, n: usize| (n as f64) < LARGEST && job.boundary_edges(n) < most_edges;
+        while works.is_none() && fits(self, at(fails + stride)) {
             let step = fails + stride;
             if self.works(at(step), progress)? {
                 works = Some(step);
@@ -411,6 +451,11 @@ impl Job<'_> {
         Ok(!self.is_hopeless(n) && self.attempt(Asked::Triangles(n), Effort::Quick, progress)?.is_ok())
     }
 
+    /// Length of the drawing in edges at about `n` triangles.
+    fn boundary_edges(&self, n: usize) -> f64 {
+        self.contours.iter().map(ClosedCurve::length).sum::<f64>() / self.first_guess(n)
+    }
+
     /// True if `n` triangles cannot follow the drawing: a chord-free lattice patch with `b` boundary
     /// vertices has at least `2 b - 6`, and a path beside the faired contours is not much shorter
     /// than they are.
@@ -418,7 +463,7 @@ impl Job<'_> {
         const SHORTER: f64 = 0.7;
         let lattice = self.lattice(self.first_guess(n), 0.0, DVec2::ZERO);
         // The number of samples alone shows the worst cases; no need to take them.
-        let edges: f64 = self.contours.iter().map(|c| c.length() / lattice.edge_length).sum();
+        let edges = self.boundary_edges(n);
         let needed = |edges: f64| 2.0 * SHORTER * edges - 6.0 * self.contours.len() as f64;
         if needed(edges) <= n as f64 {
             return false;

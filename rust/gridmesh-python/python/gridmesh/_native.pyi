@@ -15,6 +15,7 @@ __all__ = [
     "__version__",
     "_patch",
     "_surface",
+    "combine",
     "cut",
     "fill_hole",
     "fill_holes",
@@ -190,6 +191,7 @@ def regrid(
     strict: bool = False,
     progress: _Progress | None = None,
 ) -> Regrid: ...
+
 @final
 class Piece:
     @property

@@ -73,6 +73,8 @@ pub(super) fn close(
     let count = found.regions.len().max(1) as f64;
     for (k, region) in found.regions.into_iter().enumerate() {
         let here = progress.part(k as f64 / count, (k + 1) as f64 / count);
+        // Fills count by themselves; here they only ask whether to go on.
+        let here = here.part(0.0, 0.0);
         here.report(0.0)?;
         if let Region::Sheet { outline, holes } = &region
             && holes.is_empty()
@@ -116,6 +118,7 @@ pub(super) fn close(
         }
         capper.name_sources(&polygons);
     }
+    capper.prove()?;
     capper.measure(tally);
     Ok(capper.caps)
 }
@@ -272,6 +275,24 @@ impl Capper<'_> {
         }
         let _ = inverted;
         Ok(true)
+    }
+
+    /// Refuses caps that do not close what they should: each edge has two cap triangles, or one and is of the
+    /// cut.
+    fn prove(&self) -> Result<()> {
+        let mut found = FxHashSet::default();
+        let edges = || self.caps.triangles.iter().flat_map(|t| (0..3).map(|k| (t[k], t[(k + 1) % 3])));
+        let single = edges().all(|e| found.insert(e));
+        let is_cut = |a: u32, b: u32| self.parted.cut.contains_key(&(a.min(b), a.max(b)));
+        let open = edges().find(|&(a, b)| found.contains(&(b, a)) == is_cut(a, b));
+        match open {
+            None if single => Ok(()),
+            other => {
+                let v = other.map_or(0, |e| e.0);
+                let at = if v < self.first { self.parted.position(self.vertices, v) } else { DVec3::ZERO };
+                Err(Error::CutFailed { reason: "cut lines touch each other", at: at.into() })
+            }
+        }
     }
 
     fn measure(&self, tally: &mut Tally) {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::input::{Polygons, triangles};
 use super::locate::{Locator, Met};
@@ -41,11 +41,20 @@ pub(super) struct Hit {
     pub node: u32,
 }
 
-/// All crossings.
-pub(super) struct Crossed {
+/// Crossings of all edges near the line.
+pub(super) struct Edges {
     /// Triangles of the faces near the line, with their faces.
-    pub triangles: Vec<([u32; 3], u32)>,
-    /// For each edge, lower vertex first, its place in `hits`; edges that are not crossed are left out.
+    triangles: Vec<([u32; 3], u32)>,
+    /// Edges that are crossed, lower vertex first, ascending.
+    keys: Vec<(u32, u32)>,
+    /// Crossings of each, along it.
+    hits: Vec<Vec<Hit>>,
+}
+
+/// All crossings, as vertices.
+pub(super) struct Crossed<'a> {
+    pub triangles: &'a [([u32; 3], u32)],
+    /// For each edge that is crossed, lower vertex first, its place in `hits`.
     pub edges: FxHashMap<(u32, u32), u32>,
     /// Crossings of each edge along it.
     pub hits: Vec<Vec<Hit>>,
@@ -59,8 +68,7 @@ pub(super) fn cross(
     sheet: &Sheet,
     locator: &Locator<'_>,
     met: &Met,
-    tolerance: Tolerance,
-) -> Crossed {
+) -> Edges {
     let mut parts = Vec::with_capacity(met.faces.len());
     for &f in &met.faces {
         triangles(vertices, faces.face(f as usize), |t| parts.push((t, f)));
@@ -79,30 +87,43 @@ pub(super) fn cross(
         .with_min_len(64)
         .map_init(Vec::new, |near, &(a, b)| edge_hits(vertices, sheet, locator, a, b, near))
         .collect();
-    let mut crossed = Crossed { triangles: parts, edges: FxHashMap::default(), hits: vec![], nodes: vec![] };
-    for (&(a, b), mut hits) in keys.iter().zip(found) {
-        if hits.is_empty() {
-            continue;
+    let (keys, hits) = keys.into_iter().zip(found).filter(|(_, hits)| !hits.is_empty()).unzip();
+    Edges { triangles: parts, keys, hits }
+}
+
+impl Edges {
+    /// Makes vertices of the crossings: those near an end of their edge become that end, unless it is `released`.
+    pub fn named(&self, vertices: &[DVec3], tolerance: Tolerance, released: &FxHashSet<u32>) -> Crossed<'_> {
+        let mut crossed = Crossed {
+            triangles: &self.triangles,
+            edges: FxHashMap::default(),
+            hits: self.hits.clone(),
+            nodes: vec![],
+        };
+        for (k, (&(a, b), hits)) in self.keys.iter().zip(&mut crossed.hits).enumerate() {
+            crossed.edges.insert((a, b), k as u32);
+            let length = vertices[a as usize].distance(vertices[b as usize]);
+            let wide = (tolerance.length / length.max(f64::MIN_POSITIVE)).min(0.45).max(tolerance.vertex);
+            let [near_a, near_b] =
+                [a, b].map(|v| if released.contains(&v) { tolerance.vertex } else { wide });
+            let mut last: Option<(f64, u32)> = None;
+            for hit in hits {
+                hit.node = if hit.t <= near_a {
+                    a
+                } else if hit.t >= 1.0 - near_b {
+                    b
+                } else if let Some((_, node)) = last.filter(|l| hit.t - l.0 <= tolerance.node) {
+                    node
+                } else {
+                    let node = (vertices.len() + crossed.nodes.len()) as u32;
+                    crossed.nodes.push(Node::between(vertices, a, b, hit.t));
+                    last = Some((hit.t, node));
+                    node
+                };
+            }
         }
-        let mut last: Option<(f64, u32)> = None;
-        for hit in &mut hits {
-            hit.node = if hit.t <= tolerance.vertex {
-                a
-            } else if hit.t >= 1.0 - tolerance.vertex {
-                b
-            } else if let Some((_, node)) = last.filter(|l| hit.t - l.0 <= tolerance.node) {
-                node
-            } else {
-                let node = (vertices.len() + crossed.nodes.len()) as u32;
-                crossed.nodes.push(Node::between(vertices, a, b, hit.t));
-                last = Some((hit.t, node));
-                node
-            };
-        }
-        crossed.edges.insert((a, b), crossed.hits.len() as u32);
-        crossed.hits.push(hits);
+        crossed
     }
-    crossed
 }
 
 /// Crossings with the edge from `a` to `b`, along it.

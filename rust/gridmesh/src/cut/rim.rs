@@ -20,6 +20,12 @@ const TOLERANCE: f64 = 0.045;
 /// The line keeps its vertices where it turns by more.
 const CORNER: f64 = 0.6;
 
+/// Corners, and old vertices on the line, that stay are at least this far apart, in edge lengths.
+const APART: f64 = 0.6;
+
+/// Vertices nearer to the line than this, in edge lengths, are taken out where the surface allows it.
+const BESIDE: f64 = 0.45;
+
 /// Angles below this are worked on.
 const SMALL: f64 = 0.52;
 
@@ -40,6 +46,8 @@ pub(super) fn even_out(
     let kept = resample(&mut strip, length);
     for round in 0..ROUNDS {
         let mut changes = thin_out(&mut strip, &kept);
+        changes += clear_beside(&mut strip, BESIDE * length);
+        changes += thin_out(&mut strip, &kept);
         changes += improve(&mut strip, &kept, length, round);
         if changes == 0 {
             break;
@@ -96,6 +104,7 @@ fn resample(strip: &mut Strip<'_>, length: f64) -> FxHashSet<u32> {
     let mut kept = FxHashSet::default();
     for stretch in stretches(strip, length) {
         let points = stretch.nodes.iter().map(|&v| strip.position(v)).collect::<Vec<_>>();
+        let normals = stretch.nodes.iter().map(|&v| strip.normal(v)).collect::<Vec<_>>();
         let mut arc = vec![0.0];
         for pair in points.windows(2) {
             arc.push(arc[arc.len() - 1] + pair[0].distance(pair[1]));
@@ -111,7 +120,7 @@ fn resample(strip: &mut Strip<'_>, length: f64) -> FxHashSet<u32> {
         let mut targets = vec![0.0];
         for j in 0..count {
             let (from, to) = (total * j as f64 / count as f64, total * (j + 1) as f64 / count as f64);
-            refine(&arc, &points, &at, [from, to], 0.8 * strip.tolerance, 4, &mut targets);
+            refine(&arc, &points, &normals, &at, [from, to], 0.8 * strip.tolerance, &mut targets);
         }
         kept.insert(stretch.nodes[0]);
         kept.insert(stretch.nodes[stretch.nodes.len() - 1]);
@@ -140,24 +149,30 @@ fn resample(strip: &mut Strip<'_>, length: f64) -> FxHashSet<u32> {
     kept
 }
 
-/// Adds places after `span[0]` up to `span[1]`, halving where the line is off the chord.
+/// Adds places after `span[0]` up to `span[1]`, halving where the chord leaves the surface.
 fn refine(
     arc: &[f64],
     points: &[DVec3],
+    normals: &[DVec3],
     at: &dyn Fn(f64) -> (usize, f64, DVec3),
     span: [f64; 2],
     tolerance: f64,
-    depth: u32,
     targets: &mut Vec<f64>,
 ) {
     let [from, to] = span;
     let (p, q) = (at(from).2, at(to).2);
-    let between = (0..arc.len()).skip_while(|&k| arc[k] <= from).take_while(|&k| arc[k] < to);
-    let off = between.map(|k| closest(points[k], [p, q, q]).0).fold(0.0, f64::max);
-    if off > tolerance && depth > 0 {
+    let along = (q - p) / (q - p).length_squared().max(f64::MIN_POSITIVE);
+    let off = |k: usize| {
+        let foot = p + (points[k] - p).dot(along).clamp(0.0, 1.0) * (q - p);
+        (points[k] - foot).dot(normals[k]).abs()
+    };
+    let first = arc.partition_point(|&a| a <= from);
+    let last = arc.partition_point(|&a| a < to);
+    let whole = arc[arc.len() - 1];
+    if (first..last).map(off).fold(0.0, f64::max) > tolerance && to - from > 1e-3 * whole {
         let middle = 0.5 * (from + to);
-        refine(arc, points, at, [from, middle], tolerance, depth - 1, targets);
-        refine(arc, points, at, [middle, to], tolerance, depth - 1, targets);
+        refine(arc, points, normals, at, [from, middle], tolerance, targets);
+        refine(arc, points, normals, at, [middle, to], tolerance, targets);
     } else {
         targets.push(to);
     }
@@ -200,7 +215,10 @@ fn stretches(strip: &Strip<'_>, length: f64) -> Vec<Stretch> {
         let p = strip.position(v);
         (p - reach(v, line[0])).angle_between(reach(v, line[1]) - p)
     };
-    let mut candidates = on.iter().copied().filter(|&v| is_stop(v)).map(|v| (turn(v), v)).collect::<Vec<_>>();
+    // Old vertices on the line stay as well, where they are not too near to each other.
+    let is_old = |v: u32| (v as usize) < strip.parted.n_old;
+    let mut candidates =
+        on.iter().copied().filter(|&v| is_old(v) || is_stop(v)).map(|v| (turn(v), v)).collect::<Vec<_>>();
     candidates.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     for (sharp, v) in candidates {
         let crowded = || {
@@ -208,7 +226,7 @@ fn stretches(strip: &Strip<'_>, length: f64) -> Vec<Stretch> {
                 let (mut before, mut at, mut gone) = (v, next, 0.0);
                 loop {
                     gone += strip.position(before).distance(strip.position(at));
-                    if gone >= 0.3 * length {
+                    if gone >= APART * length {
                         return false;
                     }
                     if stops.contains(&at) {
@@ -272,6 +290,33 @@ fn thin_out(strip: &mut Strip<'_>, kept: &FxHashSet<u32>) -> usize {
         if beside.into_iter().any(|v| strip.collapse(u, v, 0.0)) {
             changes += 1;
         }
+    }
+    changes
+}
+
+/// Collapses vertices that lie close to the line into it.
+fn clear_beside(strip: &mut Strip<'_>, distance: f64) -> usize {
+    let mut near: BTreeSet<u32> = BTreeSet::new();
+    for &(a, b) in strip.parted.cut.keys() {
+        let (p, q) = (strip.position(a), strip.position(b));
+        for v in [a, b] {
+            let corners = strip.triangles_at(v).iter().filter_map(|&t| strip.part(t)).flat_map(|t| t.corners);
+            near.extend(corners.filter(|&x| {
+                strip.on_line(x).is_empty() && closest(strip.position(x), [p, q, q]).0 < distance
+            }));
+        }
+    }
+    let mut changes = 0;
+    for x in near {
+        let p = strip.position(x);
+        let own = strip.triangles_at(x).iter().filter_map(|&t| strip.part(t)).flat_map(|t| t.corners);
+        let mut line = own.filter(|&v| !strip.on_line(v).is_empty()).collect::<Vec<_>>();
+        line.sort_by(|&a, &b| {
+            let far = |v: u32| strip.position(v).distance_squared(p);
+            far(a).total_cmp(&far(b)).then(a.cmp(&b))
+        });
+        line.dedup();
+        changes += usize::from(line.into_iter().any(|v| strip.collapse(x, v, 0.0)));
     }
     changes
 }

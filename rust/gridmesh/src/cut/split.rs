@@ -21,6 +21,8 @@ pub(super) struct Tolerance {
     pub vertex: f64,
     /// Between crossings, and between the stroke's points and crossings.
     pub node: f64,
+    /// Between the cut and a vertex, in units of the mesh.
+    pub length: f64,
 }
 
 /// A part of a face.
@@ -56,6 +58,17 @@ impl Parted {
         }
     }
 
+    /// Old vertices in which the cut touches itself.
+    pub fn touching(&self) -> Vec<u32> {
+        let mut ends = FxHashMap::<u32, u32>::default();
+        for v in self.cut.keys().flat_map(|&(a, b)| [a, b]).filter(|&v| (v as usize) < self.n_old) {
+            *ends.entry(v).or_default() += 1;
+        }
+        let mut found = ends.into_iter().filter(|e| e.1 > 2).map(|e| e.0).collect::<Vec<_>>();
+        found.sort_unstable();
+        found
+    }
+
     /// Of every vertex: an end of an edge of the cut.
     pub fn on_cut(&self) -> Vec<bool> {
         let mut on = vec![false; self.n_old + self.nodes.len()];
@@ -78,14 +91,15 @@ impl Parted {
 /// A chain's edge: both ends with their places, counted once for each time the line runs along it.
 type Chains = Vec<([u32; 2], [f64; 2], bool)>;
 
+/// Divides all faces that the line meets. With an error comes the triangle that stood in the way.
 pub(super) fn split(
     vertices: &[DVec3],
     faces: Polygons<'_>,
     sheet: &Sheet,
     met: &Met,
-    crossed: Crossed,
+    crossed: Crossed<'_>,
     tolerance: Tolerance,
-) -> Result<Parted> {
+) -> Result<Parted, (Error, Option<[u32; 3]>)> {
     let Crossed { triangles, edges, hits, nodes } = crossed;
     let mut divider = Divider {
         vertices,
@@ -107,7 +121,7 @@ pub(super) fn split(
         let end = at + triangles[at..].iter().take_while(|t| t.1 == face).count();
         let first = divider.parts.len();
         for &(corners, face) in &triangles[at..end] {
-            divider.triangle(corners, face)?;
+            divider.triangle(corners, face).map_err(|error| (error, Some(corners)))?;
         }
         at = end;
         let new = &divider.parts[first..];
@@ -129,7 +143,7 @@ pub(super) fn split(
             || parted.left.iter().zip(&parted.divided).any(|(&l, &d)| !d && l == side)
     };
     if !has(true) || !has(false) {
-        return Err(Error::StrokeMisses);
+        return Err((Error::StrokeMisses, None));
     }
     Ok(parted)
 }
@@ -322,7 +336,8 @@ impl Divider<'_> {
             let [a, b, c] = node.source.map(|v| self.vertices[v as usize]);
             let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
             let share = if (end as usize) < n_old { self.tolerance.vertex } else { self.tolerance.node };
-            node.position.distance(p) <= share * size
+            let reach = if (end as usize) < n_old { self.tolerance.length } else { 0.0 };
+            node.position.distance(p) <= (share * size).max(reach)
         };
         let inner = stops[1..stops.len() - 1].to_vec();
         let kept = inner.into_iter().filter(|s| !near(s.node, p, first) && !near(s.node, q, last));

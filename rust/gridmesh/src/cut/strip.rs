@@ -83,6 +83,15 @@ impl<'a> Strip<'a> {
         shape(corners.map(|v| self.position(v))).0
     }
 
+    /// The old surface's normal at a vertex: the mean over the triangles there.
+    pub fn normal(&self, v: u32) -> DVec3 {
+        let own = self.triangles_at(v).iter().filter_map(|&t| self.part(t)).map(|part| {
+            let [a, b, c] = self.home(part.home);
+            (b - a).cross(c - a).normalize_or_zero()
+        });
+        own.sum::<DVec3>().normalize_or_zero()
+    }
+
     fn neighbours(&self, v: u32) -> Vec<u32> {
         let mut found = vec![];
         for part in self.triangles_at(v).iter().filter_map(|&t| self.part(t)) {
@@ -110,6 +119,15 @@ impl<'a> Strip<'a> {
         let longest =
             p[0].distance_squared(p[1]).max(p[1].distance_squared(p[2])).max(p[2].distance_squared(p[0]));
         own.length() > 1e-6 * longest && own.dot(old) > UPRIGHT * own.length() * old.length()
+    }
+
+    /// The old triangles around some vertices, each once.
+    fn homes(&self, around: &[u32]) -> Vec<(u32, [u32; 3])> {
+        let parts = around.iter().flat_map(|&v| self.triangles_at(v)).filter_map(|&t| self.part(t));
+        let mut homes = parts.map(|p| (p.face, p.home)).collect::<Vec<_>>();
+        homes.sort_unstable();
+        homes.dedup();
+        homes
     }
 
     /// Distance of a point from the nearest of these old triangles, and which it is.
@@ -206,7 +224,7 @@ impl<'a> Strip<'a> {
             return false;
         }
         let all = self.triangles_at(u).to_vec();
-        let homes = all.iter().filter_map(|&t| self.part(t)).map(|p| (p.face, p.home)).collect::<Vec<_>>();
+        let homes = self.homes(&near_u);
         let mut new = vec![];
         for &t in all.iter().filter(|t| !shared.contains(t)) {
             let Some(part) = self.part(t) else { return false };
