@@ -65,9 +65,9 @@ def check():
         assert live.digest == engine.fingerprint(live, sketch)
         points = world_vertices(body)
         outline = sketch.plane.world(np.column_stack([sketch.outline, np.zeros(len(sketch.outline))]))
-        size = np.ptp(outline[:, :2], axis=0).max()
-        assert np.allclose(points[:, :2].min(axis=0), outline[:, :2].min(axis=0), atol=0.06 * size)
-        assert np.allclose(points[:, :2].max(axis=0), outline[:, :2].max(axis=0), atol=0.06 * size)
+        two_edges = 2 * live.lattice[0]
+        assert np.allclose(points[:, :2].min(axis=0), outline[:, :2].min(axis=0), atol=two_edges)
+        assert np.allclose(points[:, :2].max(axis=0), outline[:, :2].max(axis=0), atol=two_edges)
         check_body(body, genus=len(sketch.holes))
     used = {body.gridmesh_live.source for body in bodies}
     assert {ob for ob in bpy.data.objects if ob.type == "GREASEPENCIL"} == used
