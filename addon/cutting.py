@@ -256,6 +256,7 @@ def _areas(vertices: np.ndarray, corners: np.ndarray, starts: np.ndarray, ends: 
 def _part(model: Model, piece: Any, taken: np.ndarray) -> Part:
     """Tell the piece's new elements from those of the model."""
     vertices, corners, offsets = piece.vertices, piece.corners, piece.offsets
+    source_vertices, source_weights = _settled(model, piece)
     first, sole = piece.source_vertices[:, 0], piece.source_weights[:, 0] == 1.0
     same = sole & (vertices == model.vertices[first]).all(axis=1)
     rising = np.concatenate([[True], first[1:] > first[:-1]])
@@ -278,12 +279,72 @@ def _part(model: Model, piece: Any, taken: np.ndarray) -> Part:
         old=first[is_old].astype(np.int64),
         kept=piece.source_face[kept].astype(np.int64),
         places=vertices[~is_old],
-        sources=piece.source_vertices[~is_old].astype(np.int64),
-        weights=piece.source_weights[~is_old],
+        sources=source_vertices[~is_old],
+        weights=source_weights[~is_old],
         faces=[renamed[offsets[face] : offsets[face + 1]].tolist() for face in made],
         source_face=piece.source_face[made].tolist(),
         area=_area(piece),
     )
+
+
+def _settled(model: Model, piece: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Sources and weights of the piece's vertices, for those on the surface with the nearest point of the model.
+
+    Where the faces along a cut are rebuilt, vertices move along the surface after they got their sources.
+    """
+    sources, weights = piece.source_vertices.astype(np.int64), np.array(piece.source_weights)
+    outside = np.zeros(len(sources), bool)
+    of_model = np.repeat(piece.source_face >= 0, np.diff(piece.offsets))
+    outside[piece.corners[of_model]] = True
+    off = np.linalg.norm((model.vertices[sources] * weights[..., None]).sum(axis=1) - piece.vertices, axis=1)
+    size = float(np.linalg.norm(np.ptp(model.vertices, axis=0)))
+    moved = np.flatnonzero(outside & (off > 1e-9 * size))
+    if not len(moved):
+        return sources, weights
+    # Faces around: those that the piece's faces there come from, and all that share a vertex with their sources.
+    around: dict[int, set[int]] = {index: set() for index in moved.tolist()}
+    owner = np.repeat(np.arange(len(piece.source_face)), np.diff(piece.offsets))
+    for at in np.flatnonzero(np.isin(piece.corners, moved) & of_model).tolist():
+        around[int(piece.corners[at])].add(int(piece.source_face[owner[at]]))
+    needed = np.unique(sources[moved])
+    faces_at: dict[int, list[int]] = {index: [] for index in needed.tolist()}
+    face_of = np.repeat(np.arange(len(model.offsets) - 1), np.diff(model.offsets))
+    for at in np.flatnonzero(np.isin(model.corners, needed)).tolist():
+        faces_at[int(model.corners[at])].append(int(face_of[at]))
+    for index in moved.tolist():
+        faces = around[index].union(*(faces_at[source] for source in sources[index].tolist()))
+        fans = [fan for face in sorted(faces) for fan in _fan(model.face(face))]
+        triangles = np.array(fans, np.int64)
+        nearest, share = nearest_point(model.vertices[triangles], piece.vertices[index])
+        sources[index], weights[index] = triangles[nearest], share
+    return sources, weights
+
+
+def _fan(face: np.ndarray) -> list[tuple[int, int, int]]:
+    return [(int(face[0]), int(face[k]), int(face[k + 1])) for k in range(1, len(face) - 1)]
+
+
+def nearest_point(triangles: np.ndarray, point: np.ndarray) -> tuple[int, np.ndarray]:
+    """Find the triangle (of (t, 3, 3)) that is nearest to the point, and the weights of its corners there."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    u, v, w = b - a, c - a, point - a
+    uu, uv, vv, uw, vw = (np.einsum("ij,ij->i", p, q) for p, q in ((u, u), (u, v), (v, v), (u, w), (v, w)))
+    area = uu * vv - uv * uv
+    sound = np.maximum(area, 1e-300)
+    s, t = (vv * uw - uv * vw) / sound, (uu * vw - uv * uw) / sound
+    inside = (area > 1e-14 * uu * vv) & (s >= 0) & (t >= 0) & (s + t <= 1)
+    shares = [np.where(inside[:, None], np.column_stack([1 - s - t, s, t]), np.nan)]
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        begin, along = triangles[:, first], triangles[:, second] - triangles[:, first]
+        length = np.maximum((along**2).sum(axis=1), 1e-300)
+        way = np.clip(((point - begin) * along).sum(axis=1) / length, 0.0, 1.0)
+        share = np.zeros((len(triangles), 3))
+        share[:, first], share[:, second] = 1 - way, way
+        shares.append(share)
+    every = np.concatenate(shares)
+    places = np.einsum("ij,ijk->ik", every, np.concatenate([triangles] * 4))
+    best = int(np.nanargmin(((places - point) ** 2).sum(axis=1)))
+    return best % len(triangles), every[best]
 
 
 def _kept(model: Model, corners: np.ndarray, offsets: np.ndarray, source: np.ndarray) -> np.ndarray:
