@@ -73,6 +73,8 @@ pub(super) fn close(
     let count = found.regions.len().max(1) as f64;
     for (k, region) in found.regions.into_iter().enumerate() {
         let here = progress.part(k as f64 / count, (k + 1) as f64 / count);
+        // Fills count by themselves; here they only ask whether to go on.
+        let here = here.part(0.0, 0.0);
         here.report(0.0)?;
         if let Region::Sheet { outline, holes } = &region
             && holes.is_empty()

@@ -121,6 +121,15 @@ impl<'a> Strip<'a> {
         own.length() > 1e-6 * longest && own.dot(old) > UPRIGHT * own.length() * old.length()
     }
 
+    /// The old triangles around some vertices, each once.
+    fn homes(&self, around: &[u32]) -> Vec<(u32, [u32; 3])> {
+        let parts = around.iter().flat_map(|&v| self.triangles_at(v)).filter_map(|&t| self.part(t));
+        let mut homes = parts.map(|p| (p.face, p.home)).collect::<Vec<_>>();
+        homes.sort_unstable();
+        homes.dedup();
+        homes
+    }
+
     /// Distance of a point from the nearest of these old triangles, and which it is.
     fn nearest(&self, p: DVec3, homes: &[(u32, [u32; 3])]) -> (f64, usize) {
         let off = homes.iter().map(|h| closest(p, self.home(h.1)).0).enumerate();
@@ -215,7 +224,7 @@ impl<'a> Strip<'a> {
             return false;
         }
         let all = self.triangles_at(u).to_vec();
-        let homes = all.iter().filter_map(|&t| self.part(t)).map(|p| (p.face, p.home)).collect::<Vec<_>>();
+        let homes = self.homes(&near_u);
         let mut new = vec![];
         for &t in all.iter().filter(|t| !shared.contains(t)) {
             let Some(part) = self.part(t) else { return false };
