@@ -172,16 +172,18 @@ class Part:
     """(j, 3) the model's vertices of which each new one is a combination, for data."""
     weights: np.ndarray
     faces: list[list[int]]
-    """New faces."""
+    """New faces, caps aside."""
     source_face: list[int]
-    """The model's face that each new one was a part of; -1 for caps."""
+    """The model's face that each of them was a part of."""
+    caps: np.ndarray
+    """(t, 3) triangles of the caps."""
     area: float
     """Area of the piece without caps."""
 
     @property
-    def n_caps(self) -> int:
-        """How many triangles the caps have."""
-        return self.source_face.count(-1)
+    def is_empty(self) -> bool:
+        """Whether it has no faces."""
+        return not (len(self.kept) or self.faces or len(self.caps))
 
 
 @dataclass(frozen=True, eq=False)
@@ -272,8 +274,10 @@ def _part(model: Model, piece: Any, taken: np.ndarray) -> Part:
     in_model = np.where(is_old, first, -1)
 
     kept = _kept(model, in_model[corners], offsets, piece.source_face)
-    made = np.flatnonzero(~kept)
+    is_cap = piece.source_face < 0
+    made = np.flatnonzero(~kept & ~is_cap)
     renamed = number[corners]
+    named, starts, ends = renamed.tolist(), offsets[made].tolist(), offsets[made + 1].tolist()
     return Part(
         side=piece.side,
         old=first[is_old].astype(np.int64),
@@ -281,8 +285,9 @@ def _part(model: Model, piece: Any, taken: np.ndarray) -> Part:
         places=vertices[~is_old],
         sources=source_vertices[~is_old],
         weights=source_weights[~is_old],
-        faces=[renamed[offsets[face] : offsets[face + 1]].tolist() for face in made],
+        faces=[named[start:end] for start, end in zip(starts, ends, strict=True)],
         source_face=piece.source_face[made].tolist(),
+        caps=renamed[np.repeat(is_cap, np.diff(offsets))].reshape(-1, 3),
         area=_area(piece),
     )
 
@@ -372,17 +377,11 @@ class Extension:
         self._at, self._weights = at.reshape(part.sources.shape), part.weights
         n_old, n_new = len(part.old), len(part.places)
         in_cap = np.zeros(n_old + n_new, bool)
-        outside = np.zeros(n_old + n_new, bool)
-        edges = []
-        for face, source in zip(part.faces, part.source_face, strict=True):
-            if source >= 0:
-                outside[face] = True
-            else:
-                in_cap[face] = True
-                edges += [(face[k - 1], face[k]) for k in range(len(face))]
-        self.inside = np.flatnonzero((in_cap & ~outside)[n_old:])
+        in_cap[part.caps] = True
+        in_cap[[index for face in part.faces for index in face]] = False
+        self.inside = np.flatnonzero(in_cap[n_old:])
         """New vertices inside caps."""
-        self._cap = _Graph(n_old, n_new, self.inside, np.array(edges, np.int64).reshape(-1, 2))
+        self._cap = _Graph(n_old, n_new, self.inside, edges_of(part.caps))
         self.rim_old = self._cap.rim_old
         """Old vertices on the rims of caps, numbered as in the part."""
 
@@ -396,6 +395,39 @@ class Extension:
         return self._cap.solve(values, rim_old)
 
 
+def edges_of(triangles: np.ndarray) -> np.ndarray:
+    """All sides (3t, 2) of triangles, the smaller vertex first."""
+    return np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+
+
+def rims_of(triangles: np.ndarray) -> np.ndarray:
+    """Edges (r, 2) with one triangle."""
+    edges, times = _distinct(edges_of(triangles))
+    return edges[times == 1]
+
+
+def _distinct(pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distinct pairs, and how often each is there."""
+    width = int(pairs.max(initial=0)) + 1
+    keys, times = np.unique(pairs[:, 0].astype(np.int64) * width + pairs[:, 1], return_counts=True)
+    return np.column_stack([keys // width, keys % width]), times
+
+
+def connected(triangles: np.ndarray, n: int) -> np.ndarray:
+    """For each of n vertices the least one that triangles connect it with."""
+    least = np.arange(n)
+    edges, _ = _distinct(edges_of(triangles))
+    while True:
+        before = least
+        low = np.minimum(least[edges[:, 0]], least[edges[:, 1]])
+        least = least.copy()
+        np.minimum.at(least, edges[:, 0], low)
+        np.minimum.at(least, edges[:, 1], low)
+        least = least[least]
+        if np.array_equal(least, before):
+            return least
+
+
 class _Graph:
     """Harmonic functions on caps: every inner vertex has the mean of its neighbours."""
 
@@ -403,7 +435,7 @@ class _Graph:
         self.n_old, self.inside = n_old, inside
         unknown = np.full(n_old + n_new, -1)
         unknown[inside + n_old] = np.arange(len(inside))
-        both = np.unique(np.sort(edges, axis=1), axis=0)
+        both, _ = _distinct(edges)
         both = np.vstack([both, both[:, ::-1]])
         both = both[unknown[both[:, 0]] >= 0]
         both = both[np.argsort(unknown[both[:, 0]], kind="stable")]
