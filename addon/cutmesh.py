@@ -84,7 +84,7 @@ class Surgery:
 
     def _add(self, part: Part, face_set: Any) -> None:
         self.stays.update(part.kept.tolist())
-        extension = Extension(part)
+        extension = Extension(part, self.surface.model.vertices[part.old])
         verts = [self.verts[index] for index in part.old.tolist()]
         verts += self._add_vertices(part, extension)
         self._add_edges(part, verts)

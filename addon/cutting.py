@@ -370,8 +370,11 @@ class Extension:
     no step and nothing outside the range of what is around.
     """
 
-    def __init__(self, part: Part) -> None:
-        """Prepare it."""
+    def __init__(self, part: Part, old_places: np.ndarray) -> None:
+        """Prepare it.
+
+        old_places : (o, 3) positions of the part's old vertices.
+        """
         self.needed, at = np.unique(part.sources, return_inverse=True)
         """The model's vertices whose values are asked for."""
         self._at, self._weights = at.reshape(part.sources.shape), part.weights
@@ -381,7 +384,7 @@ class Extension:
         in_cap[[index for face in part.faces for index in face]] = False
         self.inside = np.flatnonzero(in_cap[n_old:])
         """New vertices inside caps."""
-        self._cap = _Graph(n_old, n_new, self.inside, edges_of(part.caps))
+        self._cap = _Graph(n_old, n_new, self.inside, part.caps, np.vstack([old_places, part.places]))
         self.rim_old = self._cap.rim_old
         """Old vertices on the rims of caps, numbered as in the part."""
 
@@ -429,21 +432,33 @@ def connected(triangles: np.ndarray, n: int) -> np.ndarray:
 
 
 class _Graph:
-    """Harmonic functions on caps: every inner vertex has the mean of its neighbours."""
+    """Harmonic functions on caps. On a flat one what is linear at the rim is linear inside."""
 
-    def __init__(self, n_old: int, n_new: int, inside: np.ndarray, edges: np.ndarray) -> None:
+    def __init__(
+        self, n_old: int, n_new: int, inside: np.ndarray, triangles: np.ndarray, places: np.ndarray
+    ) -> None:
         self.n_old, self.inside = n_old, inside
         unknown = np.full(n_old + n_new, -1)
         unknown[inside + n_old] = np.arange(len(inside))
-        both, _ = _distinct(edges)
-        both = np.vstack([both, both[:, ::-1]])
-        both = both[unknown[both[:, 0]] >= 0]
-        both = both[np.argsort(unknown[both[:, 0]], kind="stable")]
-        self.rows, self.ends = unknown[both[:, 0]], both[:, 1]
-        self.starts = np.searchsorted(self.rows, np.arange(len(inside)))
-        self.degree = np.bincount(self.rows, minlength=len(inside)).astype(float)[:, None]
+        rows, ends, weights = [], [], []
+        for k in range(3):
+            a, b, opposite = (triangles[:, (k + step) % 3] for step in range(3))
+            u, v = places[a] - places[opposite], places[b] - places[opposite]
+            area = np.linalg.norm(np.cross(u, v), axis=1)
+            cotangent = (u * v).sum(axis=1) / np.maximum(area, 1e-12 * ((u * u).sum(axis=1) + 1e-300))
+            rows += [a, b]
+            ends += [b, a]
+            weights += [cotangent, cotangent]
+        row, end, weight = np.concatenate(rows), np.concatenate(ends), np.concatenate(weights)
+        inner = unknown[row] >= 0
+        row, end, weight = unknown[row[inner]], end[inner], weight[inner]
+        order = np.argsort(row, kind="stable")
+        self.ends, self.weights = end[order], weight[order][:, None]
+        self.starts = np.searchsorted(row[order], np.arange(len(inside)))
+        self.degree = np.bincount(row, weight, minlength=len(inside))[:, None]
         self.unknown = unknown
-        self.rim_old = np.unique(self.ends[self.ends < n_old])
+        self.rim = np.setdiff1d(triangles, inside + n_old)
+        self.rim_old = self.rim[self.rim < n_old]
 
     def solve(self, values: np.ndarray, rim_old: np.ndarray) -> np.ndarray:
         """Replace the values (j, c) of inner vertices; start from what they are."""
@@ -453,15 +468,18 @@ class _Graph:
         everywhere[self.rim_old] = rim_old
         everywhere[self.n_old :] = values
         everywhere[self.inside + self.n_old] = 0.0
-        known = np.add.reduceat(everywhere[self.ends], self.starts, axis=0)
+        known = np.add.reduceat(everywhere[self.ends] * self.weights, self.starts, axis=0)
         neighbour = self.unknown[self.ends]
-        inner = (neighbour >= 0)[:, None]
+        weights = np.where((neighbour >= 0)[:, None], self.weights, 0.0)
 
         def applied(x: np.ndarray) -> np.ndarray:
-            return self.degree * x - np.add.reduceat(np.where(inner, x[neighbour], 0.0), self.starts, axis=0)
+            return self.degree * x - np.add.reduceat(x[neighbour] * weights, self.starts, axis=0)
 
+        found = _conjugate_gradients(applied, known, values[self.inside])
+        # Where triangles are obtuse a harmonic function may leave the range of its rim by a little.
+        rim = everywhere[self.rim]
         values = values.copy()
-        values[self.inside] = _conjugate_gradients(applied, known, values[self.inside])
+        values[self.inside] = np.clip(found, rim.min(axis=0), rim.max(axis=0))
         return values
 
 

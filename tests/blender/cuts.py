@@ -133,6 +133,7 @@ def rich_cylinder(n=24, rings=6):
             edge.use_seam = edge.use_edge_sharp = True
     ob.shape_key_add(name="Basis")
     lean, wide = ob.shape_key_add(name="lean"), ob.shape_key_add(name="wide")
+    lean.value = wide.value = 0.0  # not what every version begins with
     for vertex in mesh.vertices:
         x, y, h = vertex.co
         lean.data[vertex.index].co = (x + h, y, h)
