@@ -74,6 +74,7 @@ def grease_pencil(strokes, name="Drawing"):
 
 
 def select(ob):
+    bpy.context.view_layer.update()  # what is new is only now in it
     for other in bpy.context.view_layer.objects:
         other.select_set(other == ob)
     bpy.context.view_layer.objects.active = ob
