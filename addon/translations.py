@@ -202,6 +202,11 @@ GERMAN = {
         "Den Umriss eines Körpers zeichnen; über einen Umriss hinweg, um ihn zu erweitern oder zu beschneiden, mit "
         "Umschalt für ein Loch"
     ),
+    "Draw an outline, get a body.\nBegin inside a body and cross its outline to extend it, outside to trim it; "
+    "Shift makes a hole": (
+        "Einen Umriss zeichnen, und es wird ein Körper daraus.\nIn einem Körper beginnen und über seinen Umriss "
+        "hinaus zeichnen, um ihn zu erweitern, von außen, um ihn zu beschneiden; Umschalt macht ein Loch"
+    ),
     "Facing the view, through the 3D cursor": "Der Ansicht zugewandt, durch den 3D-Cursor",
     "GridMesh Draw": "GridMesh zeichnen",
     "How much the pressure of the pen drives the depth of the body": (

@@ -27,14 +27,14 @@ def fresh(mode="OBJECT", axis="FRONT"):
     for ob in list(bpy.data.objects):
         bpy.data.objects.remove(ob)
     view = stage.view.spaces.active
-    view.overlay.show_cursor = False
+    view.overlay.show_cursor = view.overlay.show_wireframes = False
     view.shading.type = "SOLID"
     with stage.override():
         bpy.ops.view3d.view_axis(type=axis)
     view.region_3d.view_perspective = "ORTHO"
     view.region_3d.view_distance = 7
     view.region_3d.view_location = (0, 0, 0)
-    stage.region("UI")
+    bpy.ops.ed.undo_push(message="Empty")
     yield 0.6
 
 
