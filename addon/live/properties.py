@@ -33,6 +33,7 @@ class GridMeshLive(SketchOptions, ShapeOptions, bpy.types.PropertyGroup):
     """Link from a body to its stroke. A pointer to the drawing outlives renaming, appending and duplicating."""
 
     bl_idname = "gridmesh_live"
+    bl_label = "Live Body"
 
     linked: BoolProperty(options={"HIDDEN"})
     enabled: BoolProperty(

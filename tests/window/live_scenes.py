@@ -125,7 +125,7 @@ def make(stage, fresh):
         assert height(bodies()[0]) > before * 1.15, "not extended"
         yield from stage.picture("draw_extend_2")
         longer = height(bodies()[0])
-        yield from stroke(ring((x - 190, y), 100, 40), picture="draw_trim_1")
+        yield from stroke(ring((x - 190, y), 100, 40, start=np.pi), picture="draw_trim_1")
         assert len(bodies()) == 1
         assert height(bodies()[0]) < longer * 0.95, "not trimmed"
         yield from stage.picture("draw_trim_2")
