@@ -35,19 +35,23 @@ class Corners:
         self._around: dict[int, list[int]] = {}
         self._plain: list[tuple[int, int, float]] = []
         self._foreign: list[tuple[int, int, Combination, list[Combination]]] = []
-        support = [[(index, 1.0)] for index in part.old.tolist()]
-        for sources, weights in zip(part.sources.tolist(), part.weights.tolist(), strict=True):
-            support.append(_merged(sources, weights))
+        support: dict[int, Combination] = {}
+        old, n_old = part.old.tolist(), len(part.old)
         places = np.vstack([model.vertices[part.old], part.places])
         vertex = []
         for face, source in zip(part.faces, part.source_face, strict=True):
-            if source < 0:
-                continue
             own = self._corners_of(source)
             for index in face:
                 row = len(vertex)
                 vertex.append(index)
-                combination = support[index]
+                combination = support.get(index)
+                if combination is None:
+                    if index < n_old:
+                        combination = [(old[index], 1.0)]
+                    else:
+                        new = index - n_old
+                        combination = _merged(part.sources[new].tolist(), part.weights[new].tolist())
+                    support[index] = combination
                 if all(v in own for v, _ in combination):
                     self._plain += [(row, own[v], w) for v, w in combination]
                 else:

@@ -15,7 +15,7 @@ import numpy as np
 
 from . import attributes
 from .cutcorners import Corners
-from .cutting import WEIGHT, CutError, Extension, Model, Part, Sweep, unrolled
+from .cutting import WEIGHT, CutError, Extension, Model, Part, Sweep, connected, rims_of, unrolled
 
 _FLOATS = ("float", "float_vector", "float_color", "color")
 
@@ -84,43 +84,62 @@ class Surgery:
 
     def _add(self, part: Part, face_set: Any) -> None:
         self.stays.update(part.kept.tolist())
-        extension = Extension(part)
+        extension = Extension(part, self.surface.model.vertices[part.old])
         verts = [self.verts[index] for index in part.old.tolist()]
         verts += self._add_vertices(part, extension)
         self._add_edges(part, verts)
         corners = Corners(self.verts, self.faces, part, self.surface.model)
-        caps: list[Any] = []
-        made: list[Any] = []
-        models = _models(part, self.faces)
-        for at, (face, source) in enumerate(zip(part.faces, part.source_face, strict=True)):
+        made = self._add_faces(part, verts)
+        caps = self._add_caps(part, verts, face_set)
+        self.written.caps += caps
+        self._write_corners(part, extension, corners, made, caps)
+        if self.surface.sharp_rims:
+            for a, b in rims_of(part.caps).tolist():
+                edge = self.bm.edges.get((verts[a], verts[b]))
+                if edge is not None:
+                    edge.smooth = False
+
+    def _add_faces(self, part: Part, verts: list[Any]) -> list[Any]:
+        """Make the faces that were divided or rebuilt; None for those that are there already."""
+        n_old, made = len(part.old), []
+        for face, source in zip(part.faces, part.source_face, strict=True):
             ring = [verts[index] for index in face]
-            model = self.faces[source] if source >= 0 else models[at]
-            before = self.bm.faces.get(ring)
-            if before is not None:
-                if source < 0 or before.index < 0:
-                    raise CutError("a cap would lie on a face of the mesh; move the stroke a little")
-                # The cut's neighbourhood was rebuilt, and this face is one that was there.
-                self.stays.add(before.index)
-                made.append(None)
-                continue
-            self._add_missing_edges(face, ring, len(part.old))
-            new = self.bm.faces.new(ring, model) if model is not None else self.bm.faces.new(ring)
+            model = self.faces[source]
+            if max(face) < n_old:
+                before = self.bm.faces.get(ring)
+                if before is not None:
+                    # The cut's neighbourhood was rebuilt, and this face is one that was there.
+                    self.stays.add(before.index)
+                    made.append(None)
+                    continue
+            self._add_missing_edges(face, ring, n_old)
+            new = self.bm.faces.new(ring, model)
+            new.hide = model.hide
             self.written.made.append(new)
             made.append(new)
-            new.select = False
-            if source >= 0:
-                new.hide = model.hide
-                continue
-            new.hide = False
+        return made
+
+    def _add_caps(self, part: Part, verts: list[Any], face_set: Any) -> list[Any]:
+        n_old, caps = len(part.old), []
+        models = _models(part, self.faces)
+        slot = self.surface.cap_slot
+        for face, model in zip(part.caps.tolist(), models, strict=True):
+            ring = [verts[index] for index in face]
+            a, b, c = face
+            if (a < n_old) + (b < n_old) + (c < n_old) > 1:
+                if max(face) < n_old and self.bm.faces.get(ring) is not None:
+                    raise CutError("a cap would lie on a face of the mesh; move the stroke a little")
+                self._add_missing_edges(face, ring, n_old)
+            new = self.bm.faces.new(ring, model) if model is not None else self.bm.faces.new(ring)
+            self.written.made.append(new)
             caps.append(new)
-            if self.surface.cap_slot is not None:
-                new.material_index = self.surface.cap_slot
+            if new.hide:
+                new.hide = False
+            if slot is not None:
+                new.material_index = slot
             if face_set is not None:
                 new[face_set[0]] = face_set[1]
-        self.written.caps += caps
-        self._write_corners(part, extension, corners, verts, made)
-        if self.surface.sharp_rims:
-            self._sharpen(part, verts)
+        return caps
 
     def _add_missing_edges(self, face: list[int], ring: list[Any], n_old: int) -> None:
         """Make edges between old vertices, so that they can be taken back: they do not go with a new vertex."""
@@ -178,19 +197,32 @@ class Surgery:
     def _add_edges(self, part: Part, verts: list[Any]) -> None:
         """Make the edges that lie on old ones, as these are: sharp, seams, creased."""
         n_old, get = len(part.old), self.bm.edges.get
-        support: list[frozenset[int]] = [frozenset((index,)) for index in part.old.tolist()]
-        for sources, weights in zip(part.sources.tolist(), part.weights.tolist(), strict=True):
-            support.append(frozenset(s for s, w in zip(sources, weights, strict=True) if w > WEIGHT))
+        old = part.old.tolist()
+        support: dict[int, frozenset[int]] = {}
+
+        def sources(index: int) -> frozenset[int]:
+            found = support.get(index)
+            if found is None:
+                if index < n_old:
+                    found = frozenset((old[index],))
+                else:
+                    pairs = zip(
+                        part.sources[index - n_old].tolist(),
+                        part.weights[index - n_old].tolist(),
+                        strict=True,
+                    )
+                    found = frozenset(source for source, weight in pairs if weight > WEIGHT)
+                support[index] = found
+            return found
+
         done: set[tuple[int, int]] = set()
-        for face, source in zip(part.faces, part.source_face, strict=True):
-            if source < 0:
-                continue
+        for face in part.faces:
             for a, b in zip(face, [*face[1:], face[0]], strict=True):
                 pair = (a, b) if a < b else (b, a)
                 if pair in done or pair[1] < n_old:
                     continue
                 done.add(pair)
-                both = support[a] | support[b]
+                both = sources(a) | sources(b)
                 if len(both) != 2:
                     continue
                 one, other = both
@@ -198,23 +230,20 @@ class Surgery:
                 if example is not None:
                     edge = self.bm.edges.new((verts[a], verts[b]), example)
                     edge.hide = False
-                    edge.select = False
                     self.written.made.append(edge)
 
     def _write_corners(
-        self, part: Part, extension: Extension, corners: Corners, verts: list[Any], made: list[Any]
+        self, part: Part, extension: Extension, corners: Corners, made: list[Any], caps: list[Any]
     ) -> None:
         """Give UVs, colours and whatever else corners have to the new faces."""
         layers = self.bm.loops.layers
         loops: list[Any] = []
-        for face, ring, source in zip(made, part.faces, part.source_face, strict=True):
-            if source >= 0:
-                loops += face.loops if face is not None else [None] * len(ring)
+        for face, ring in zip(made, part.faces, strict=True):
+            loops += face.loops if face is not None else [None] * len(ring)
         written = np.array([loop is not None for loop in loops], bool)
         loops = [loop for loop in loops if loop is not None]
-        cap_at = [at for at, source in enumerate(part.source_face) if source < 0]
-        cap_loops = [loop for at in cap_at for loop in made[at].loops]
-        cap_corners = np.array([index for at in cap_at for index in part.faces[at]], np.int64)
+        cap_loops = [loop for face in caps for loop in face.loops]
+        cap_corners = part.caps.ravel()
         floats = [
             (layer, kind == "uv")
             for kind in ("uv", *_FLOATS)
@@ -237,9 +266,8 @@ class Surgery:
 
     def _unrolled(self, part: Part) -> np.ndarray:
         places = np.vstack([self.surface.model.vertices[part.old], part.places])
-        inside = np.unique(
-            [index for face, s in zip(part.faces, part.source_face, strict=True) if s < 0 for index in face]
-        )
+        inside = np.zeros(len(places), bool)
+        inside[part.caps] = True
         flat = np.zeros((len(places), 2))
         flat[inside] = unrolled(places[inside], self.surface.stroke, self.surface.sweep)
         flat[inside] -= flat[inside].min(axis=0)
@@ -262,45 +290,23 @@ class Surgery:
         known[n_old:] = extension.of_new(known[n_old:], known[extension.rim_old])
         return known
 
-    def _sharpen(self, part: Part, verts: list[Any]) -> None:
-        """Mark the rims of caps sharp."""
-        seen: dict[tuple[int, int], int] = {}
-        for face, source in zip(part.faces, part.source_face, strict=True):
-            if source < 0:
-                for a, b in zip(face, [*face[1:], face[0]], strict=True):
-                    pair = (a, b) if a < b else (b, a)
-                    seen[pair] = seen.get(pair, 0) + 1
-        for (a, b), times in seen.items():
-            if times == 1:
-                edge = self.bm.edges.get((verts[a], verts[b]))
-                if edge is not None:
-                    edge.smooth = False
 
-
-def _models(part: Part, faces: list[Any]) -> dict[int, Any]:
-    """For each cap face, a face of the model with the material and smoothness of most around that cap."""
-    parent: dict[int, int] = {}
-
-    def root(index: int) -> int:
-        while parent.setdefault(index, index) != index:
-            parent[index] = parent[parent[index]]
-            index = parent[index]
-        return index
-
-    caps = [
-        (at, face) for at, (face, s) in enumerate(zip(part.faces, part.source_face, strict=True)) if s < 0
-    ]
-    for _, face in caps:
-        for index in face[1:]:
-            parent[root(index)] = root(face[0])
+def _models(part: Part, faces: list[Any]) -> list[Any]:
+    """For each cap triangle, a face of the model with the material and smoothness of most around that cap."""
+    if not len(part.caps):
+        return []
+    n = len(part.old) + len(part.places)
+    in_cap = np.zeros(n, bool)
+    in_cap[part.caps] = True
+    cap_of = np.where(in_cap, connected(part.caps, n), -1).tolist()
     around: dict[int, list[Any]] = {}
     for face, source in zip(part.faces, part.source_face, strict=True):
-        if source >= 0:
-            for cap in {root(index) for index in face if index in parent}:
+        for cap in {cap_of[index] for index in face}:
+            if cap >= 0:
                 around.setdefault(cap, []).append(faces[source])
     chosen = {cap: attributes.model_face(found) for cap, found in around.items()}
     default = attributes.model_face([faces[index] for index in part.kept[:1].tolist()])
-    return {at: chosen.get(root(face[0]), default) for at, face in caps}
+    return [chosen.get(cap_of[index], default) for index in part.caps[:, 0].tolist()]
 
 
 def _in_unit_square(points: np.ndarray) -> np.ndarray:

@@ -115,6 +115,7 @@ class Target:
                 bm = bmesh.from_edit_mesh(self.mesh)
                 written = Surgery(bm, surface).perform(mine)
                 _select(bm, written, self.mesh)
+                bm.select_flush_mode()
                 bm.normal_update()
                 bmesh.update_edit_mesh(self.mesh, loop_triangles=True, destructive=True)
             else:
@@ -164,12 +165,8 @@ def _select(bm: bmesh.types.BMesh, written: Written, before: bpy.types.Mesh) -> 
             for element in elements:
                 element.select = False
     bm.select_history.clear()
-    for element in written.made:
-        if element.is_valid:
-            element.select = False
     for face in written.caps:
         face.select_set(True)
-    bm.select_flush_mode()
 
 
 def _seen(ob: bpy.types.Object, base: np.ndarray, poses: list[np.ndarray]) -> np.ndarray:

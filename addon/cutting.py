@@ -172,16 +172,18 @@ class Part:
     """(j, 3) the model's vertices of which each new one is a combination, for data."""
     weights: np.ndarray
     faces: list[list[int]]
-    """New faces."""
+    """New faces, caps aside."""
     source_face: list[int]
-    """The model's face that each new one was a part of; -1 for caps."""
+    """The model's face that each of them was a part of."""
+    caps: np.ndarray
+    """(t, 3) triangles of the caps."""
     area: float
     """Area of the piece without caps."""
 
     @property
-    def n_caps(self) -> int:
-        """How many triangles the caps have."""
-        return self.source_face.count(-1)
+    def is_empty(self) -> bool:
+        """Whether it has no faces."""
+        return not (len(self.kept) or self.faces or len(self.caps))
 
 
 @dataclass(frozen=True, eq=False)
@@ -256,6 +258,7 @@ def _areas(vertices: np.ndarray, corners: np.ndarray, starts: np.ndarray, ends: 
 def _part(model: Model, piece: Any, taken: np.ndarray) -> Part:
     """Tell the piece's new elements from those of the model."""
     vertices, corners, offsets = piece.vertices, piece.corners, piece.offsets
+    source_vertices, source_weights = _settled(model, piece)
     first, sole = piece.source_vertices[:, 0], piece.source_weights[:, 0] == 1.0
     same = sole & (vertices == model.vertices[first]).all(axis=1)
     rising = np.concatenate([[True], first[1:] > first[:-1]])
@@ -271,19 +274,82 @@ def _part(model: Model, piece: Any, taken: np.ndarray) -> Part:
     in_model = np.where(is_old, first, -1)
 
     kept = _kept(model, in_model[corners], offsets, piece.source_face)
-    made = np.flatnonzero(~kept)
+    is_cap = piece.source_face < 0
+    made = np.flatnonzero(~kept & ~is_cap)
     renamed = number[corners]
+    named, starts, ends = renamed.tolist(), offsets[made].tolist(), offsets[made + 1].tolist()
     return Part(
         side=piece.side,
         old=first[is_old].astype(np.int64),
         kept=piece.source_face[kept].astype(np.int64),
         places=vertices[~is_old],
-        sources=piece.source_vertices[~is_old].astype(np.int64),
-        weights=piece.source_weights[~is_old],
-        faces=[renamed[offsets[face] : offsets[face + 1]].tolist() for face in made],
+        sources=source_vertices[~is_old],
+        weights=source_weights[~is_old],
+        faces=[named[start:end] for start, end in zip(starts, ends, strict=True)],
         source_face=piece.source_face[made].tolist(),
+        caps=renamed[np.repeat(is_cap, np.diff(offsets))].reshape(-1, 3),
         area=_area(piece),
     )
+
+
+def _settled(model: Model, piece: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Sources and weights of the piece's vertices, for those on the surface with the nearest point of the model.
+
+    Where the faces along a cut are rebuilt, vertices move along the surface after they got their sources.
+    """
+    sources, weights = piece.source_vertices.astype(np.int64), np.array(piece.source_weights)
+    outside = np.zeros(len(sources), bool)
+    of_model = np.repeat(piece.source_face >= 0, np.diff(piece.offsets))
+    outside[piece.corners[of_model]] = True
+    off = np.linalg.norm((model.vertices[sources] * weights[..., None]).sum(axis=1) - piece.vertices, axis=1)
+    size = float(np.linalg.norm(np.ptp(model.vertices, axis=0)))
+    moved = np.flatnonzero(outside & (off > 1e-9 * size))
+    if not len(moved):
+        return sources, weights
+    # Faces around: those that the piece's faces there come from, and all that share a vertex with their sources.
+    around: dict[int, set[int]] = {index: set() for index in moved.tolist()}
+    owner = np.repeat(np.arange(len(piece.source_face)), np.diff(piece.offsets))
+    for at in np.flatnonzero(np.isin(piece.corners, moved) & of_model).tolist():
+        around[int(piece.corners[at])].add(int(piece.source_face[owner[at]]))
+    needed = np.unique(sources[moved])
+    faces_at: dict[int, list[int]] = {index: [] for index in needed.tolist()}
+    face_of = np.repeat(np.arange(len(model.offsets) - 1), np.diff(model.offsets))
+    for at in np.flatnonzero(np.isin(model.corners, needed)).tolist():
+        faces_at[int(model.corners[at])].append(int(face_of[at]))
+    for index in moved.tolist():
+        faces = around[index].union(*(faces_at[source] for source in sources[index].tolist()))
+        fans = [fan for face in sorted(faces) for fan in _fan(model.face(face))]
+        triangles = np.array(fans, np.int64)
+        nearest, share = nearest_point(model.vertices[triangles], piece.vertices[index])
+        sources[index], weights[index] = triangles[nearest], share
+    return sources, weights
+
+
+def _fan(face: np.ndarray) -> list[tuple[int, int, int]]:
+    return [(int(face[0]), int(face[k]), int(face[k + 1])) for k in range(1, len(face) - 1)]
+
+
+def nearest_point(triangles: np.ndarray, point: np.ndarray) -> tuple[int, np.ndarray]:
+    """Find the triangle (of (t, 3, 3)) that is nearest to the point, and the weights of its corners there."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    u, v, w = b - a, c - a, point - a
+    uu, uv, vv, uw, vw = (np.einsum("ij,ij->i", p, q) for p, q in ((u, u), (u, v), (v, v), (u, w), (v, w)))
+    area = uu * vv - uv * uv
+    sound = np.maximum(area, 1e-300)
+    s, t = (vv * uw - uv * vw) / sound, (uu * vw - uv * uw) / sound
+    inside = (area > 1e-14 * uu * vv) & (s >= 0) & (t >= 0) & (s + t <= 1)
+    shares = [np.where(inside[:, None], np.column_stack([1 - s - t, s, t]), np.nan)]
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        begin, along = triangles[:, first], triangles[:, second] - triangles[:, first]
+        length = np.maximum((along**2).sum(axis=1), 1e-300)
+        way = np.clip(((point - begin) * along).sum(axis=1) / length, 0.0, 1.0)
+        share = np.zeros((len(triangles), 3))
+        share[:, first], share[:, second] = 1 - way, way
+        shares.append(share)
+    every = np.concatenate(shares)
+    places = np.einsum("ij,ijk->ik", every, np.concatenate([triangles] * 4))
+    best = int(np.nanargmin(((places - point) ** 2).sum(axis=1)))
+    return best % len(triangles), every[best]
 
 
 def _kept(model: Model, corners: np.ndarray, offsets: np.ndarray, source: np.ndarray) -> np.ndarray:
@@ -304,24 +370,21 @@ class Extension:
     no step and nothing outside the range of what is around.
     """
 
-    def __init__(self, part: Part) -> None:
-        """Prepare it."""
+    def __init__(self, part: Part, old_places: np.ndarray) -> None:
+        """Prepare it.
+
+        old_places : (o, 3) positions of the part's old vertices.
+        """
         self.needed, at = np.unique(part.sources, return_inverse=True)
         """The model's vertices whose values are asked for."""
         self._at, self._weights = at.reshape(part.sources.shape), part.weights
         n_old, n_new = len(part.old), len(part.places)
         in_cap = np.zeros(n_old + n_new, bool)
-        outside = np.zeros(n_old + n_new, bool)
-        edges = []
-        for face, source in zip(part.faces, part.source_face, strict=True):
-            if source >= 0:
-                outside[face] = True
-            else:
-                in_cap[face] = True
-                edges += [(face[k - 1], face[k]) for k in range(len(face))]
-        self.inside = np.flatnonzero((in_cap & ~outside)[n_old:])
+        in_cap[part.caps] = True
+        in_cap[[index for face in part.faces for index in face]] = False
+        self.inside = np.flatnonzero(in_cap[n_old:])
         """New vertices inside caps."""
-        self._cap = _Graph(n_old, n_new, self.inside, np.array(edges, np.int64).reshape(-1, 2))
+        self._cap = _Graph(n_old, n_new, self.inside, part.caps, np.vstack([old_places, part.places]))
         self.rim_old = self._cap.rim_old
         """Old vertices on the rims of caps, numbered as in the part."""
 
@@ -335,22 +398,67 @@ class Extension:
         return self._cap.solve(values, rim_old)
 
 
-class _Graph:
-    """Harmonic functions on caps: every inner vertex has the mean of its neighbours."""
+def edges_of(triangles: np.ndarray) -> np.ndarray:
+    """All sides (3t, 2) of triangles, the smaller vertex first."""
+    return np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
 
-    def __init__(self, n_old: int, n_new: int, inside: np.ndarray, edges: np.ndarray) -> None:
+
+def rims_of(triangles: np.ndarray) -> np.ndarray:
+    """Edges (r, 2) with one triangle."""
+    edges, times = _distinct(edges_of(triangles))
+    return edges[times == 1]
+
+
+def _distinct(pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distinct pairs, and how often each is there."""
+    width = int(pairs.max(initial=0)) + 1
+    keys, times = np.unique(pairs[:, 0].astype(np.int64) * width + pairs[:, 1], return_counts=True)
+    return np.column_stack([keys // width, keys % width]), times
+
+
+def connected(triangles: np.ndarray, n: int) -> np.ndarray:
+    """For each of n vertices the least one that triangles connect it with."""
+    least = np.arange(n)
+    edges, _ = _distinct(edges_of(triangles))
+    while True:
+        before = least
+        low = np.minimum(least[edges[:, 0]], least[edges[:, 1]])
+        least = least.copy()
+        np.minimum.at(least, edges[:, 0], low)
+        np.minimum.at(least, edges[:, 1], low)
+        least = least[least]
+        if np.array_equal(least, before):
+            return least
+
+
+class _Graph:
+    """Harmonic functions on caps. On a flat one what is linear at the rim is linear inside."""
+
+    def __init__(
+        self, n_old: int, n_new: int, inside: np.ndarray, triangles: np.ndarray, places: np.ndarray
+    ) -> None:
         self.n_old, self.inside = n_old, inside
         unknown = np.full(n_old + n_new, -1)
         unknown[inside + n_old] = np.arange(len(inside))
-        both = np.unique(np.sort(edges, axis=1), axis=0)
-        both = np.vstack([both, both[:, ::-1]])
-        both = both[unknown[both[:, 0]] >= 0]
-        both = both[np.argsort(unknown[both[:, 0]], kind="stable")]
-        self.rows, self.ends = unknown[both[:, 0]], both[:, 1]
-        self.starts = np.searchsorted(self.rows, np.arange(len(inside)))
-        self.degree = np.bincount(self.rows, minlength=len(inside)).astype(float)[:, None]
+        rows, ends, weights = [], [], []
+        for k in range(3):
+            a, b, opposite = (triangles[:, (k + step) % 3] for step in range(3))
+            u, v = places[a] - places[opposite], places[b] - places[opposite]
+            area = np.linalg.norm(np.cross(u, v), axis=1)
+            cotangent = (u * v).sum(axis=1) / np.maximum(area, 1e-12 * ((u * u).sum(axis=1) + 1e-300))
+            rows += [a, b]
+            ends += [b, a]
+            weights += [cotangent, cotangent]
+        row, end, weight = np.concatenate(rows), np.concatenate(ends), np.concatenate(weights)
+        inner = unknown[row] >= 0
+        row, end, weight = unknown[row[inner]], end[inner], weight[inner]
+        order = np.argsort(row, kind="stable")
+        self.ends, self.weights = end[order], weight[order][:, None]
+        self.starts = np.searchsorted(row[order], np.arange(len(inside)))
+        self.degree = np.bincount(row, weight, minlength=len(inside))[:, None]
         self.unknown = unknown
-        self.rim_old = np.unique(self.ends[self.ends < n_old])
+        self.rim = np.setdiff1d(triangles, inside + n_old)
+        self.rim_old = self.rim[self.rim < n_old]
 
     def solve(self, values: np.ndarray, rim_old: np.ndarray) -> np.ndarray:
         """Replace the values (j, c) of inner vertices; start from what they are."""
@@ -360,15 +468,18 @@ class _Graph:
         everywhere[self.rim_old] = rim_old
         everywhere[self.n_old :] = values
         everywhere[self.inside + self.n_old] = 0.0
-        known = np.add.reduceat(everywhere[self.ends], self.starts, axis=0)
+        known = np.add.reduceat(everywhere[self.ends] * self.weights, self.starts, axis=0)
         neighbour = self.unknown[self.ends]
-        inner = (neighbour >= 0)[:, None]
+        weights = np.where((neighbour >= 0)[:, None], self.weights, 0.0)
 
         def applied(x: np.ndarray) -> np.ndarray:
-            return self.degree * x - np.add.reduceat(np.where(inner, x[neighbour], 0.0), self.starts, axis=0)
+            return self.degree * x - np.add.reduceat(x[neighbour] * weights, self.starts, axis=0)
 
+        found = _conjugate_gradients(applied, known, values[self.inside])
+        # Where triangles are obtuse a harmonic function may leave the range of its rim by a little.
+        rim = everywhere[self.rim]
         values = values.copy()
-        values[self.inside] = _conjugate_gradients(applied, known, values[self.inside])
+        values[self.inside] = np.clip(found, rim.min(axis=0), rim.max(axis=0))
         return values
 
 

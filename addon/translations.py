@@ -193,6 +193,35 @@ GERMAN = {
     "Show irregular vertices of the selected meshes by their number of edges, and the numbers": (
         "Unregelmäßige Punkte der ausgewählten Meshes nach der Zahl ihrer Kanten zeigen, und die Zahlen"
     ),
+    # Drawing bodies
+    "Across the X axis, through the 3D cursor": "Quer zur X-Achse, durch den 3D-Cursor",
+    "Across the Y axis, through the 3D cursor": "Quer zur Y-Achse, durch den 3D-Cursor",
+    "Across the Z axis, through the 3D cursor": "Quer zur Z-Achse, durch den 3D-Cursor",
+    "Cursor": "Cursor",
+    "Draw the outline of a body; across a body's outline to extend or trim it, with Shift to make a hole": (
+        "Den Umriss eines Körpers zeichnen; über einen Umriss hinweg, um ihn zu erweitern oder zu beschneiden, mit "
+        "Umschalt für ein Loch"
+    ),
+    "Facing the view, through the 3D cursor": "Der Ansicht zugewandt, durch den 3D-Cursor",
+    "GridMesh Draw": "GridMesh zeichnen",
+    "How much the pressure of the pen drives the depth of the body": (
+        "Wie sehr der Druck des Stifts die Tiefe des Körpers bestimmt"
+    ),
+    "Make a hole in the body under the stroke, or trim it": (
+        "Ein Loch in den Körper unter dem Strich machen, oder ihn beschneiden"
+    ),
+    "Plane": "Ebene",
+    "Plane of the 3D cursor's X and Y": "Ebene von X und Y des 3D-Cursors",
+    "Subtract": "Abziehen",
+    "Surface": "Fläche",
+    "Tangent to the surface where the stroke begins; facing the view beside surfaces": (
+        "Tangential zur Fläche, wo der Strich beginnt; neben Flächen der Ansicht zugewandt"
+    ),
+    "View": "Ansicht",
+    "Where the stroke lies": "Wo der Strich liegt",
+    "X Axis": "X-Achse",
+    "Y Axis": "Y-Achse",
+    "Z Axis": "Z-Achse",
     # Filling holes
     "All holes that are not hidden, up to a number of edges": (
         "Alle Löcher, die nicht ausgeblendet sind, bis zu einer Anzahl von Kanten"

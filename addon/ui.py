@@ -42,16 +42,7 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
         else:
             self._draw_strokes(context)
         if OBJECT_OT_gridmesh_cut.poll(context):
-            self._draw_cut(context)
-
-    def _draw_cut(self, context: bpy.types.Context) -> None:
-        idname = OBJECT_OT_gridmesh_cut.bl_idname
-        self.layout.separator()
-        column = self.layout.column()
-        column.operator(idname, text="Draw Cut", icon="GREASEPENCIL").source = "DRAWN"
-        row = column.row()
-        row.enabled = bool(cutline.stroke_objects(context))
-        row.operator(idname, text="Cut along Stroke").source = "OBJECTS"
+            _draw_cut(self.layout, context)
 
     def _draw_fill(self) -> None:
         idname = MESH_OT_gridmesh_fill.bl_idname
@@ -92,6 +83,15 @@ class VIEW3D_MT_gridmesh_presets(bpy.types.Menu):  # noqa: N801
             entry.source = "OBJECTS"
             for name, value in properties.items():
                 setattr(entry, name, value)
+
+
+def _draw_cut(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    idname = OBJECT_OT_gridmesh_cut.bl_idname
+    column = layout.column()
+    column.operator(idname, text="Draw Cut", icon="GREASEPENCIL").source = "DRAWN"
+    row = column.row()
+    row.enabled = bool(cutline.stroke_objects(context))
+    row.operator(idname, text="Cut along Stroke").source = "OBJECTS"
 
 
 def _stroke_entry(menu: Any, context: bpy.types.Context) -> None:

@@ -194,7 +194,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
                     gap=self.gap,
                     smooth=self.smooth.lower(),
                 )
-            if any(not len(part.faces) + len(part.kept) for part in division.parts):
+            if any(part.is_empty for part in division.parts):
                 raise cutting.CutError(
                     "a side of the stroke has nothing of the mesh; draw the stroke across it"
                 )
@@ -300,7 +300,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         """Report numbers, and what the user should know."""
         report = division.report
         n_parts = len(division.parts)
-        triangles = sum(part.n_caps for part in division.parts)
+        triangles = sum(len(part.caps) for part in division.parts)
         sides = 1 if self.gap else n_parts
         caps = report["caps"] * sides
         text = counted(n_parts, "piece")

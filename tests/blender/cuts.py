@@ -108,15 +108,18 @@ def rich_cylinder(n=24, rings=6):
     bpy.context.scene.collection.objects.link(ob)
     activate(ob)
 
-    uv = mesh.uv_layers.new(name="UVMap")
-    colors = mesh.color_attributes.new("Shade", "FLOAT_COLOR", "CORNER")
-    heights = mesh.attributes.new("height", "FLOAT", "POINT")
-    number = mesh.attributes.new("column", "INT", "CORNER")
+    mesh.uv_layers.new(name="UVMap")
+    mesh.color_attributes.new("Shade", "FLOAT_COLOR", "CORNER")
+    mesh.attributes.new("height", "FLOAT", "POINT")
+    mesh.attributes.new("column", "INT", "CORNER")
     group = ob.vertex_groups.new(name="up")
     for vertex in mesh.vertices:
-        share = (vertex.co.z + 1) / 2
-        heights.data[vertex.index].value = share
-        group.add([vertex.index], share, "REPLACE")
+        group.add([vertex.index], (vertex.co.z + 1) / 2, "REPLACE")
+    # A new layer moves the others: look them up when all are there.
+    uv, colors = mesh.uv_layers["UVMap"], mesh.attributes["Shade"]
+    heights, number = mesh.attributes["height"], mesh.attributes["column"]
+    for vertex in mesh.vertices:
+        heights.data[vertex.index].value = (vertex.co.z + 1) / 2
     for polygon in mesh.polygons:
         side = len(polygon.vertices) == 4
         for place, loop in enumerate(polygon.loop_indices):
@@ -130,6 +133,7 @@ def rich_cylinder(n=24, rings=6):
             edge.use_seam = edge.use_edge_sharp = True
     ob.shape_key_add(name="Basis")
     lean, wide = ob.shape_key_add(name="lean"), ob.shape_key_add(name="wide")
+    lean.value = wide.value = 0.0  # not what every version begins with
     for vertex in mesh.vertices:
         x, y, h = vertex.co
         lean.data[vertex.index].co = (x + h, y, h)

@@ -57,7 +57,12 @@ def test_seen_and_placed_are_inverse(eye):
     flat, depth = sweep.seen(points)
     back = np.vstack([sweep.placed(one[None], away) for one, away in zip(flat, depth, strict=True)])
     assert np.allclose(back, points)
-    assert np.linalg.det(sweep.frame()) == pytest.approx(1)
+
+
+def test_right_and_up_are_as_the_front_view_shows_them():
+    right, up, away = cutting.Sweep.along((0, 1, 0)).frame()
+    assert np.allclose(away, (0, 1, 0))
+    assert np.allclose(np.cross(right, up), -away)
 
 
 def test_overshoot_is_cut_off():
@@ -82,3 +87,16 @@ def test_unrolled_keeps_lengths():
     flat = cutting.unrolled(corners, stroke, cutting.Sweep.along((0, 0, 1)))
     sides = np.linalg.norm(flat - np.roll(flat, 1, axis=0), axis=1)
     assert np.allclose(sides, 0.5, atol=1e-3)
+
+
+def test_nearest_point_of_triangles():
+    triangles = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 5], [1, 0, 5], [0, 1, 5]]], float)
+    for point, at, weights in (
+        ((0.25, 0.25, 1), 0, (0.5, 0.25, 0.25)),
+        ((0.25, -1, 4), 1, (0.75, 0.25, 0)),
+        ((2, 2, 0), 0, (0, 0.5, 0.5)),
+        ((-1, -1, 0), 0, (1, 0, 0)),
+    ):
+        found, share = cutting.nearest_point(triangles, np.array(point, float))
+        assert found == at
+        assert np.allclose(share, weights)

@@ -107,14 +107,14 @@ def test_coordinate_that_is_no_number():
     ob = cube()
     ob.data.vertices[3].co.x = float("nan")
     activate(ob, stroke_object(ACROSS))
-    with pytest.raises(RuntimeError, match="vertex 3 of 'Cube' has a coordinate that is not a finite number"):
+    with pytest.raises(RuntimeError, match="Vertex 3 of 'Cube' has a coordinate that is not a finite number"):
         bpy.ops.object.gridmesh_cut(direction="Y")
     assert len(ob.data.vertices) == 8
 
 
 def test_unknown_material():
     activate(cube(), stroke_object(ACROSS))
-    refused("there is no material 'Nix'", use_cap_slot=True, cap_material="Nix")
+    refused("There is no material 'Nix'", use_cap_slot=True, cap_material="Nix")
 
 
 def test_number_of_no_stroke():

@@ -12,7 +12,7 @@ from addon import keys, preset_files, translations
 ADDON = ROOT / "addon"
 
 # Texts of Blender's own, which it translates itself, and names.
-OWN = {"GridMesh"}
+OWN = {"GridMesh", "X", "Y", "Z"}
 
 
 def of_classes():

@@ -90,7 +90,7 @@ def test_panel_with_a_drawing_and_with_a_body():
 
 def test_panel_in_edit_mode():
     edit(cylinder())
-    assert panel() == ["mesh.gridmesh_fill", "mesh.gridmesh_fill"]
+    assert panel() == ["mesh.gridmesh_fill"] * 2 + ["object.gridmesh_cut"] * 2
 
 
 def test_menu_of_presets():

@@ -111,7 +111,7 @@ def empty_scene():
 
 def active(ob):
     for other in bpy.context.view_layer.objects:
-        other.select_set(other is ob)
+        other.select_set(other == ob)
     bpy.context.view_layer.objects.active = ob
     bpy.context.view_layer.update()
 

@@ -75,7 +75,7 @@ def grease_pencil(strokes, name="Drawing"):
 
 def select(ob):
     for other in bpy.context.view_layer.objects:
-        other.select_set(other is ob)
+        other.select_set(other == ob)
     bpy.context.view_layer.objects.active = ob
 
 

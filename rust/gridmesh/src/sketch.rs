@@ -148,6 +148,13 @@ enum Effort {
     Quick,
 }
 
+/// Why a lattice angle gives no boundary of the size asked for.
+struct Miss {
+    obstacle: Obstacle,
+    /// There is a boundary, but with too many or too few triangles: a shift of the lattice may help.
+    is_of_count: bool,
+}
+
 struct Job<'a> {
     contours: Vec<ClosedCurve>,
     symmetry: Option<Symmetry>,
@@ -178,23 +185,30 @@ impl Job<'_> {
     ) -> Result<Result<Sketch, Obstacle>> {
         let started = Instant::now();
         let lattices = self.placements_to_try(asked, effort);
-        let found: Vec<Result<Result<(Lattice, Outline), Obstacle>>> = lattices
+        let found: Vec<Result<Result<(Lattice, Outline), Miss>>> = lattices
             .par_iter()
             .map(|&(angle, shift)| self.outline(asked, effort, angle, shift, progress.part(0.0, 0.3)))
             .collect();
         let mut obstacle = None;
         let mut outlines = Vec::new();
+        let mut is_passable = self.symmetry.is_some();
         for found in found {
             match found? {
-                Ok(found) => outlines.push(found),
-                Err(found) => obstacle = obstacle.or(Some(found)),
+                Ok(found) => {
+                    is_passable = true;
+                    outlines.push(found);
+                }
+                Err(miss) => {
+                    is_passable |= miss.is_of_count;
+                    obstacle = obstacle.or(Some(miss.obstacle));
+                }
             }
         }
         outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
         self.lap("boundary", started);
         // Where no angle gives a boundary a shift does not either.
         let shifts = match effort {
-            Effort::Full if !outlines.is_empty() || self.symmetry.is_some() => self.shifts(lattices[0].0),
+            Effort::Full if is_passable => self.shifts(lattices[0].0),
             _ => Vec::new(),
         };
         let mut shifts = shifts.into_iter().enumerate();
@@ -214,8 +228,8 @@ impl Job<'_> {
                     self.lap("boundary", started);
                     match found {
                         Ok(found) => found,
-                        Err(found) => {
-                            obstacle = obstacle.or(Some(found));
+                        Err(miss) => {
+                            obstacle = obstacle.or(Some(miss.obstacle));
                             continue;
                         }
                     }
@@ -314,7 +328,7 @@ impl Job<'_> {
         angle: f64,
         shift: DVec2,
         progress: Progress<'_>,
-    ) -> Result<Result<(Lattice, Outline), Obstacle>> {
+    ) -> Result<Result<(Lattice, Outline), Miss>> {
         const CORRECTIONS: usize = 6;
         let unproved = SketchOptions { proof_nodes: 0, ..self.options.clone() };
         let mut edge_length = match asked {
@@ -359,9 +373,11 @@ impl Job<'_> {
             Asked::EdgeLength(_) => true,
             Asked::Triangles(n) => (outline.triangles() as f64 / n as f64 - 1.0).abs() <= allowed,
         };
-        let Some((off, lattice, mut outline)) = best else { return Ok(Err(obstacle)) };
+        let Some((off, lattice, mut outline)) = best else {
+            return Ok(Err(Miss { obstacle, is_of_count: false }));
+        };
         if off > allowed {
-            return Ok(Err(obstacle));
+            return Ok(Err(Miss { obstacle, is_of_count: true }));
         }
         let is_asked = self.options.proof_nodes > 0 && self.options.boundary == BoundaryMethod::Optimal;
         if is_asked && effort == Effort::Full && !outline.optimal {
