@@ -2,19 +2,22 @@
 //! polygons are left, which the patches of fills are for.
 
 use glam::DVec2;
+use rustc_hash::FxHashSet;
 
 use super::regions::{Region, Spot, is_within};
 use crate::segments::segments_meet;
 
 /// Vertices made on the way, numbered after all others.
-pub(super) struct Bridges {
+pub(super) struct Bridges<'a> {
+    /// Edges between vertices that are there already, lower one first.
+    pub taken: &'a FxHashSet<(u32, u32)>,
     /// Number of the first one.
     pub first: u32,
     /// Place and height of each.
     pub spots: Vec<DVec2>,
 }
 
-impl Bridges {
+impl Bridges<'_> {
     /// Simple polygons, counter-clockwise, that cover a region; `None` if no way was found.
     pub fn open(&mut self, region: Region, width: f64) -> Option<Vec<Vec<Spot>>> {
         let mut pieces = vec![];
@@ -205,6 +208,8 @@ impl Bridges {
         let (p, q) = (from[i].at, to[j].at);
         let step = 0.5 * (beside(from, i) + beside(to, j));
         let steps = (p.distance(q) / step.max(f64::MIN_POSITIVE)).round().clamp(1.0, 1000.0) as usize;
+        let (a, b) = (from[i].node, to[j].node);
+        let steps = if self.taken.contains(&(a.min(b), a.max(b))) { steps.max(2) } else { steps };
         (1..steps)
             .map(|k| {
                 let at = p.lerp(q, k as f64 / steps as f64);

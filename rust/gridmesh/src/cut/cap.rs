@@ -28,6 +28,9 @@ pub(super) struct Caps {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// Polygons with more vertices are tried at fewer lattice angles.
+const LARGE: usize = 150;
+
 struct Capper<'a> {
     vertices: &'a [DVec3],
     faces: Polygons<'a>,
@@ -93,10 +96,16 @@ pub(super) fn close(
             Region::Sheet { outline, holes } => std::iter::once(outline).chain(holes).cloned().collect(),
             Region::Tube { .. } => vec![],
         };
-        let mut bridges = Bridges { first: capper.first + capper.caps.vertices.len() as u32, spots: vec![] };
-        let polygons = match bridges.open(region, sheet.width()) {
+        let mut bridges = Bridges {
+            taken: &capper.edges,
+            first: capper.first + capper.caps.vertices.len() as u32,
+            spots: vec![],
+        };
+        let opened = bridges.open(region, sheet.width());
+        let spots = bridges.spots;
+        let polygons = match opened {
             Some(polygons) => {
-                let new = bridges.spots.iter().map(|&at| capper.node(at));
+                let new = spots.iter().map(|&at| capper.node(at));
                 let new = new.collect::<Vec<_>>();
                 capper.caps.vertices.extend(new);
                 polygons
@@ -173,7 +182,10 @@ impl Capper<'_> {
             facet.sort_unstable();
             single = !self.facets.contains(&facet);
         }
-        let options = FlatOptions { single, ..FlatOptions::default() };
+        let mut options = FlatOptions { single, ..FlatOptions::default() };
+        if n > LARGE {
+            (options.angles, options.placed) = (3, 1);
+        }
         let patch = fill_flat(&flat, &vec![4; n], &taken, &options, progress)?;
         let base = self.first + self.caps.vertices.len() as u32;
         let name = |v: u32| polygon.get(v as usize).map_or(base + v.wrapping_sub(n as u32), |s| s.node);

@@ -85,8 +85,7 @@ impl Loop {
         let mut places = vec![ends(0)[0]];
         for k in 0..n {
             let [from, to] = ends(k);
-            let step = nearest(to, from) - from;
-            let next = places[k] + step;
+            let next = places[k] + to - from;
             places.push(if k + 1 < n { nearest(ends(k + 1)[0], next) } else { next });
         }
         let winding = if sheet.closed { ((places[n] - places[0]) / width).round() as i32 } else { 0 };

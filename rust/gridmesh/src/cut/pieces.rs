@@ -1,6 +1,7 @@
 //! The pieces: faces of one side and the caps, with vertices of their own.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::cap::{Caps, shape};
@@ -61,25 +62,40 @@ pub(super) fn assemble(
     keep: Keep,
     tally: &mut Tally,
 ) -> Vec<Piece> {
-    let mut pieces = vec![];
     let on_cut = parted.on_cut();
-    for (side, word) in [(Side::Left, Keep::Left), (Side::Right, Keep::Right)] {
-        if keep.has(word) {
-            pieces.push(one(vertices, faces, parted, loops, caps, side, &on_cut, tally));
-        }
+    let sides = [(Side::Left, Keep::Left), (Side::Right, Keep::Right)];
+    let kept = sides.into_iter().filter(|(_, word)| keep.has(*word)).map(|s| s.0).collect::<Vec<_>>();
+    let made: Vec<_> =
+        kept.into_par_iter().map(|side| one(vertices, faces, parted, loops, caps, side, &on_cut)).collect();
+    let mut pieces = vec![];
+    for (piece, least, doubled) in made {
+        tally.report.rim_min_angle = tally.report.rim_min_angle.min(least);
+        tally.report.pinched += doubled;
+        pieces.push(piece);
     }
     let origin = vertices.iter().sum::<DVec3>() / vertices.len().max(1) as f64;
     let report = &mut tally.report;
     let own = |p: &Piece| {
         let faces = Polygons { corners: &p.corners, offsets: &p.offsets };
-        (0..faces.len()).map(|f| volume(&p.vertices, origin, faces.face(f))).sum::<f64>() / 6.0
+        whole_volume(&p.vertices, origin, faces)
     };
     report.volumes = pieces.iter().map(own).collect();
-    report.volume = (0..faces.len()).map(|f| volume(vertices, origin, faces.face(f))).sum::<f64>() / 6.0;
+    report.volume = whole_volume(vertices, origin, faces);
     pieces
 }
 
-#[expect(clippy::too_many_arguments, reason = "a stage of the whole")]
+/// Signed volume. Sums of equal stretches, added up in their order.
+fn whole_volume(vertices: &[DVec3], origin: DVec3, faces: Polygons<'_>) -> f64 {
+    const STRETCH: usize = 8192;
+    let sum = |k: usize| {
+        let faces_here = k * STRETCH..((k + 1) * STRETCH).min(faces.len());
+        faces_here.map(|f| volume(vertices, origin, faces.face(f))).sum::<f64>()
+    };
+    let sums: Vec<f64> = (0..faces.len().div_ceil(STRETCH)).into_par_iter().map(sum).collect();
+    sums.iter().sum::<f64>() / 6.0
+}
+
+/// A piece, the smallest angle along its rim, and how many vertices were doubled.
 fn one(
     vertices: &[DVec3],
     faces: Polygons<'_>,
@@ -88,8 +104,7 @@ fn one(
     caps: &Caps,
     side: Side,
     on_cut: &[bool],
-    tally: &mut Tally,
-) -> Piece {
+) -> (Piece, f64, usize) {
     let left = side == Side::Left;
     let n_before = parted.n_old + parted.nodes.len();
     let mut corners: Vec<u32> = Vec::with_capacity(faces.corners.len());
@@ -107,11 +122,12 @@ fn one(
         offsets.push(corners.len() as u32);
         source_face.push(face);
     };
+    let mut rim = std::f64::consts::PI;
     for part in parted.parts.iter().filter(|p| p.left == left) {
         add(part.corners, part.face as i32);
         if part.corners.iter().any(|&v| on_cut[v as usize]) {
             let least = shape(part.corners.map(|v| parted.position(vertices, v))).0;
-            tally.report.rim_min_angle = tally.report.rim_min_angle.min(least);
+            rim = rim.min(least);
         }
     }
     for &[a, b, c] in &caps.triangles {
@@ -136,7 +152,6 @@ fn one(
     let watched = old.iter().map(|&v| on_cut.get(v as usize).copied().unwrap_or(false)).collect::<Vec<_>>();
     let before = nodes.len();
     let doubled = double(&mut corners, &offsets, &watched, &mut nodes);
-    tally.report.pinched += nodes.len() - before;
     // Which copy a loop passes through is told by the faces along it.
     let ends = along(&corners, &offsets, &source_face, &old, &doubled);
     let cap_loops = loops.closed.iter().map(|l| {
@@ -151,7 +166,7 @@ fn one(
             .collect()
     });
     let cap_loops = cap_loops.collect();
-    Piece {
+    let piece = Piece {
         side,
         vertices: nodes.iter().map(|n| n.position).collect(),
         corners,
@@ -160,7 +175,8 @@ fn one(
         source_vertices: nodes.iter().map(|n| n.source).collect(),
         source_weights: nodes.iter().map(|n| n.weights).collect(),
         cap_loops,
-    }
+    };
+    (piece, rim, nodes.len() - before)
 }
 
 /// Gives every fan of faces around a watched vertex a vertex of its own. Returns for the new vertices what they

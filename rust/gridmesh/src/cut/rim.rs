@@ -20,14 +20,14 @@ const TOLERANCE: f64 = 0.045;
 /// The line keeps its vertices where it turns by more.
 const CORNER: f64 = 0.6;
 
-/// Corners, and old vertices on the line, that stay are at least this far apart, in edge lengths.
-const APART: f64 = 0.6;
+/// Corners that stay are at least this far apart, in edge lengths.
+const APART: f64 = 0.3;
 
 /// Vertices nearer to the line than this, in edge lengths, are taken out where the surface allows it.
 const BESIDE: f64 = 0.45;
 
 /// Angles below this are worked on.
-const SMALL: f64 = 0.52;
+const SMALL: f64 = 0.42;
 
 /// Rounds of collapsing, flipping and splitting.
 const ROUNDS: usize = 8;
@@ -110,26 +110,18 @@ fn resample(strip: &mut Strip<'_>, length: f64) -> FxHashSet<u32> {
             arc.push(arc[arc.len() - 1] + pair[0].distance(pair[1]));
         }
         let total = arc[arc.len() - 1];
-        let least = if stretch.around { 3.0 } else { 1.0 };
-        let count = (total / length).round().max(least) as usize;
-        let at = |s: f64| {
-            let k = arc.partition_point(|&a| a <= s).clamp(1, arc.len() - 1);
-            let t = (s - arc[k - 1]) / (arc[k] - arc[k - 1]).max(f64::MIN_POSITIVE);
-            (k, t.clamp(0.0, 1.0), points[k - 1].lerp(points[k], t.clamp(0.0, 1.0)))
-        };
-        let mut targets = vec![0.0];
-        for j in 0..count {
-            let (from, to) = (total * j as f64 / count as f64, total * (j + 1) as f64 / count as f64);
-            refine(&arc, &points, &normals, &at, [from, to], 0.8 * strip.tolerance, &mut targets);
-        }
+        let least = if stretch.around { 6.0 } else { 1.0 };
+        let step = total / (total / length).round().max(least);
+        let old = stretch.nodes.iter().map(|&v| (v as usize) < strip.parted.n_old).collect::<Vec<_>>();
+        let line = Line { arc: &arc, points: &points, normals: &normals, old: &old };
+        let mut targets = line.spread(step, 0.8 * strip.tolerance);
         kept.insert(stretch.nodes[0]);
         kept.insert(stretch.nodes[stretch.nodes.len() - 1]);
         // From the end, so that the edges before stay as they are.
-        let step = total / count as f64;
         let mut next: Option<(usize, u32, f64)> = None;
         targets.pop();
         for &s in targets[1..].iter().rev() {
-            let (k, t, _) = at(s);
+            let (k, t) = line.at(s);
             let near = if t < 0.5 { k - 1 } else { k };
             if (arc[near] - s).abs() <= 0.04 * step {
                 kept.insert(stretch.nodes[near]);
@@ -149,32 +141,80 @@ fn resample(strip: &mut Strip<'_>, length: f64) -> FxHashSet<u32> {
     kept
 }
 
-/// Adds places after `span[0]` up to `span[1]`, halving where the chord leaves the surface.
-fn refine(
-    arc: &[f64],
-    points: &[DVec3],
-    normals: &[DVec3],
-    at: &dyn Fn(f64) -> (usize, f64, DVec3),
-    span: [f64; 2],
-    tolerance: f64,
-    targets: &mut Vec<f64>,
-) {
-    let [from, to] = span;
-    let (p, q) = (at(from).2, at(to).2);
-    let along = (q - p) / (q - p).length_squared().max(f64::MIN_POSITIVE);
-    let off = |k: usize| {
-        let foot = p + (points[k] - p).dot(along).clamp(0.0, 1.0) * (q - p);
-        (points[k] - foot).dot(normals[k]).abs()
-    };
-    let first = arc.partition_point(|&a| a <= from);
-    let last = arc.partition_point(|&a| a < to);
-    let whole = arc[arc.len() - 1];
-    if (first..last).map(off).fold(0.0, f64::max) > tolerance && to - from > 1e-3 * whole {
-        let middle = 0.5 * (from + to);
-        refine(arc, points, normals, at, [from, middle], tolerance, targets);
-        refine(arc, points, normals, at, [middle, to], tolerance, targets);
-    } else {
-        targets.push(to);
+/// A stretch of the line, measured.
+struct Line<'a> {
+    arc: &'a [f64],
+    points: &'a [DVec3],
+    normals: &'a [DVec3],
+    /// Vertices of the old mesh.
+    old: &'a [bool],
+}
+
+impl Line<'_> {
+    /// The edge at a length, by the number of its second point, and the share of it.
+    fn at(&self, s: f64) -> (usize, f64) {
+        let k = self.arc.partition_point(|&a| a <= s).clamp(1, self.arc.len() - 1);
+        let t = (s - self.arc[k - 1]) / (self.arc[k] - self.arc[k - 1]).max(f64::MIN_POSITIVE);
+        (k, t.clamp(0.0, 1.0))
+    }
+
+    /// Lengths at which vertices should be, the first and the last among them: near `step` apart, with edges that stay
+    /// within the tolerance of the surface, and at old vertices rather than beside them. By dynamic
+    /// programming over the line's own points and others between them.
+    fn spread(&self, step: f64, tolerance: f64) -> Vec<f64> {
+        const LONGEST: f64 = 1.9;
+        // Length, and the number of line points before it.
+        let mut places: Vec<(f64, usize)> = vec![(0.0, 0)];
+        for k in 1..self.arc.len() {
+            let (from, to) = (self.arc[k - 1], self.arc[k]);
+            let parts = ((to - from) / (0.25 * step)).ceil().clamp(1.0, 1e6);
+            places.extend((1..parts as usize).map(|i| (from + (to - from) * i as f64 / parts, k)));
+            places.push((to, k));
+        }
+        let mut best = vec![(f64::INFINITY, 0usize); places.len()];
+        best[0] = (0.0, 0);
+        for j in 1..places.len() {
+            for i in (0..j).rev() {
+                let length = places[j].0 - places[i].0;
+                if length > LONGEST * step && i + 1 < j {
+                    break;
+                }
+                let cost = best[i].0 + self.cost(places[i], places[j], step, tolerance);
+                if cost < best[j].0 {
+                    best[j] = (cost, i);
+                }
+            }
+        }
+        let mut chosen = vec![places.len() - 1];
+        while let Some(&last) = chosen.last().filter(|&&k| k > 0) {
+            chosen.push(best[last].1);
+        }
+        chosen.iter().rev().map(|&k| places[k].0).collect()
+    }
+
+    /// What an edge between two places costs.
+    fn cost(&self, from: (f64, usize), to: (f64, usize), step: f64, tolerance: f64) -> f64 {
+        const SAMPLES: usize = 12;
+        let uneven = ((to.0 - from.0) / step).max(1e-6).ln();
+        let point = |s: f64| {
+            let (k, t) = self.at(s);
+            self.points[k - 1].lerp(self.points[k], t)
+        };
+        let (p, q) = (point(from.0), point(to.0));
+        let along = (q - p) / (q - p).length_squared().max(f64::MIN_POSITIVE);
+        let first = self.arc.partition_point(|&a| a <= from.0);
+        let last = self.arc.partition_point(|&a| a < to.0);
+        let stride = ((last.max(first) - first) / SAMPLES).max(1);
+        let mut off = 0.0f64;
+        let mut passed = 0.0;
+        for k in (first..last).step_by(stride) {
+            let foot = p + (self.points[k] - p).dot(along).clamp(0.0, 1.0) * (q - p);
+            off = off.max((self.points[k] - foot).dot(self.normals[k]).abs() / tolerance);
+            passed += if self.old[k] { 0.4 } else { 0.0 };
+        }
+        6.0 * uneven * uneven
+            + passed
+            + if off <= 1.0 { 0.3 * off * off } else { (4.0 * off * off).min(100.0) }
     }
 }
 
@@ -215,10 +255,7 @@ fn stretches(strip: &Strip<'_>, length: f64) -> Vec<Stretch> {
         let p = strip.position(v);
         (p - reach(v, line[0])).angle_between(reach(v, line[1]) - p)
     };
-    // Old vertices on the line stay as well, where they are not too near to each other.
-    let is_old = |v: u32| (v as usize) < strip.parted.n_old;
-    let mut candidates =
-        on.iter().copied().filter(|&v| is_old(v) || is_stop(v)).map(|v| (turn(v), v)).collect::<Vec<_>>();
+    let mut candidates = on.iter().copied().filter(|&v| is_stop(v)).map(|v| (turn(v), v)).collect::<Vec<_>>();
     candidates.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     for (sharp, v) in candidates {
         let crowded = || {
@@ -328,9 +365,17 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
     let touches = |strip: &Strip<'_>, part: &Part| {
         part.corners.iter().any(|&v| v as usize >= strip.parted.n_old || !strip.on_line(v).is_empty())
     };
-    let mut queue: BTreeSet<u32> = (0..strip.parts.len() as u32)
-        .filter(|&t| strip.part(t).is_some_and(|p| touches(strip, p) && strip.min_angle(p.corners) < SMALL))
-        .collect();
+    let fresh = std::mem::take(&mut strip.fresh);
+    let looked_at: BTreeSet<u32> = if round == 0 {
+        (0..strip.parts.len() as u32).collect()
+    } else {
+        // Only what has changed, and what is next to it.
+        let corners = fresh.iter().filter_map(|&t| strip.part(t)).flat_map(|p| p.corners);
+        corners.flat_map(|v| strip.triangles_at(v)).copied().collect()
+    };
+    let is_sharp =
+        |t: &u32| strip.part(*t).is_some_and(|p| touches(strip, p) && strip.min_angle(p.corners) < SMALL);
+    let mut queue: BTreeSet<u32> = looked_at.into_iter().filter(is_sharp).collect();
     let mut budget = 8 * queue.len() + 64;
     while let Some(t) = queue.pop_first() {
         if budget == 0 {

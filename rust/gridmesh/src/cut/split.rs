@@ -45,7 +45,8 @@ pub(super) struct Parted {
     /// Of every face: replaced by parts.
     pub divided: Vec<bool>,
     pub parts: Vec<Part>,
-    /// Edges of the cut, lower vertex first, with the places of its ends on the unrolled line.
+    /// Edges of the cut, lower vertex first, with the places of its ends on the unrolled line; on a closed line,
+    /// one of the two may be off by a turn, their difference is right.
     pub cut: FxHashMap<(u32, u32), [f64; 2]>,
     pub cut_faces: usize,
 }
@@ -226,6 +227,9 @@ impl Divider<'_> {
         }
         for ([a, b], [x, y], odd) in chains {
             if odd {
+                // On closed lines the short way.
+                let width = self.sheet.width();
+                let y = if self.sheet.closed { y + width * ((x - y) / width).round() } else { y };
                 self.cut.insert((a.min(b), a.max(b)), if a < b { [x, y] } else { [y, x] });
             }
         }

@@ -21,6 +21,8 @@ pub(super) struct Strip<'a> {
     border: FxHashSet<u32>,
     /// Faces whose triangles were changed.
     pub altered: FxHashSet<u32>,
+    /// Triangles changed since somebody took the list.
+    pub fresh: Vec<u32>,
     /// How far a triangle may be off the old ones.
     pub tolerance: f64,
     /// The cut's edges, by vertex.
@@ -51,7 +53,17 @@ impl<'a> Strip<'a> {
             line.entry(b).or_default().push(a);
         }
         let parts = parts.into_iter().map(Some).collect();
-        Strip { vertices, parted, parts, around, border, altered: FxHashSet::default(), tolerance, line }
+        Strip {
+            vertices,
+            parted,
+            parts,
+            around,
+            border,
+            altered: FxHashSet::default(),
+            fresh: vec![],
+            tolerance,
+            line,
+        }
     }
 
     pub fn position(&self, v: u32) -> DVec3 {
@@ -157,6 +169,7 @@ impl<'a> Strip<'a> {
                 self.around.entry(v).or_default().push(t);
             }
             self.parts[t as usize] = Some(part);
+            self.fresh.push(t);
         }
     }
 
@@ -170,16 +183,16 @@ impl<'a> Strip<'a> {
         let both = self.with_edge(a, b);
         let first = *self.part(*both.first()?)?;
         let cut = self.parted.cut.get(&(a.min(b), a.max(b))).copied();
-        if both.len() != 2 && (both.len() != 1 || !self.is_border(a) || !self.is_border(b) || cut.is_none()) {
-            return None;
-        }
         if both.len() != 2 {
             return None;
         }
         let position = self.position(a).lerp(self.position(b), t);
-        let (_, weights) = closest(position, self.home(first.home));
+        let homes = self.homes(&[a, b]);
+        let (_, home) =
+            homes.get(self.nearest(position, &homes).1).copied().unwrap_or((first.face, first.home));
+        let (_, weights) = closest(position, self.home(home));
         let m = (self.parted.n_old + self.parted.nodes.len()) as u32;
-        self.parted.nodes.push(Node { position, source: first.home, weights });
+        self.parted.nodes.push(Node { position, source: home, weights });
         for t in both {
             let Some(part) = self.part(t).copied() else { continue };
             let with = |from: u32| part.corners.map(|v| if v == from { m } else { v });
@@ -257,7 +270,8 @@ impl<'a> Strip<'a> {
                 let [x, y] = strip.parted.cut.get(&(from.min(to), from.max(to))).copied().unwrap_or_default();
                 if from < to { [x, y] } else { [y, x] }
             };
-            let ([at_w, _], [_, at_v]) = (place(self, w, u), place(self, u, v));
+            let ([at_w, to_u], [from_u, to_v]) = (place(self, w, u), place(self, u, v));
+            let at_v = to_u + (to_v - from_u);
             self.parted.cut.remove(&(u.min(v), u.max(v)));
             self.parted.cut.remove(&(u.min(w), u.max(w)));
             self.parted.cut.insert((v.min(w), v.max(w)), if v < w { [at_v, at_w] } else { [at_w, at_v] });
@@ -293,7 +307,7 @@ impl<'a> Strip<'a> {
         if self.min_angle(x).min(self.min_angle(y)) <= before + 1e-9 {
             return false;
         }
-        let homes = [(p.face, p.home), (q.face, q.home)];
+        let homes = self.homes(&[a, b, c, d]);
         let mut new = vec![];
         for corners in [x, y] {
             let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
@@ -323,7 +337,7 @@ impl<'a> Strip<'a> {
         let least =
             |strip: &Self| parts.iter().map(|p| strip.min_angle(p.corners)).fold(f64::INFINITY, f64::min);
         let (before, old) = (least(self), self.parted.nodes[k]);
-        let homes = parts.iter().map(|p| (p.face, p.home)).collect::<Vec<_>>();
+        let homes = self.homes(&near);
         let middle = near.iter().map(|&w| self.position(w)).sum::<DVec3>() / near.len().max(1) as f64;
         // Back onto the surface.
         let (_, h) = self.nearest(middle, &homes);
