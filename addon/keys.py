@@ -13,6 +13,8 @@ ENTRIES = (
     ("Grease Pencil Paint Mode", "object.gridmesh_from_strokes"),
     ("Grease Pencil Edit Mode", "object.gridmesh_from_strokes"),
     ("Mesh", "mesh.gridmesh_fill"),
+    ("Object Mode", "object.gridmesh_cut"),
+    ("Mesh", "object.gridmesh_cut"),
 )
 
 _made: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []

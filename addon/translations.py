@@ -202,6 +202,11 @@ GERMAN = {
         "Den Umriss eines Körpers zeichnen; über einen Umriss hinweg, um ihn zu erweitern oder zu beschneiden, mit "
         "Umschalt für ein Loch"
     ),
+    "Draw an outline, get a body.\nBegin inside a body and cross its outline to extend it, outside to trim it; "
+    "Shift makes a hole": (
+        "Einen Umriss zeichnen, und es wird ein Körper daraus.\nIn einem Körper beginnen und über seinen Umriss "
+        "hinaus zeichnen, um ihn zu erweitern, von außen, um ihn zu beschneiden; Umschalt macht ein Loch"
+    ),
     "Facing the view, through the 3D cursor": "Der Ansicht zugewandt, durch den 3D-Cursor",
     "GridMesh Draw": "GridMesh zeichnen",
     "How much the pressure of the pen drives the depth of the body": (
@@ -222,6 +227,92 @@ GERMAN = {
     "X Axis": "X-Achse",
     "Y Axis": "Y-Achse",
     "Z Axis": "Z-Achse",
+    # Cutting
+    "Along a line drawn in the viewport": "Entlang einer Linie, die im Fenster gezeichnet wird",
+    "Along a stroke of a selected grease pencil or curve object": (
+        "Entlang eines Strichs eines ausgewählten Grease-Pencil- oder Kurvenobjekts"
+    ),
+    "Along the normal of the plane that the stroke was drawn in": (
+        "Entlang der Normalen der Ebene, in der der Strich gezeichnet wurde"
+    ),
+    "Along the world's X axis; left and right are as in the right view": (
+        "Entlang der X-Achse der Welt; links und rechts wie in der Ansicht von rechts"
+    ),
+    "Along the world's Y axis; left and right are as in the front view": (
+        "Entlang der Y-Achse der Welt; links und rechts wie in der Ansicht von vorn"
+    ),
+    "Along the world's Z axis; left and right are as in the top view": (
+        "Entlang der Z-Achse der Welt; links und rechts wie in der Ansicht von oben"
+    ),
+    "As the view sees it; without a view, along the normal of the stroke's plane": (
+        "Wie die Ansicht es sieht; ohne Ansicht entlang der Normalen der Ebene des Strichs"
+    ),
+    "Both": "Beide",
+    "Both pieces stay in the object, not joined": "Beide Stücke bleiben im Objekt, ohne Verbindung",
+    "Both sides": "Beide Seiten",
+    "Bulging with the slope and the curvature of the model": (
+        "Gewölbt mit der Neigung und der Krümmung des Modells"
+    ),
+    "Bulging with the slope of the model": "Gewölbt mit der Neigung des Modells",
+    "Cap": "Deckel",
+    "Cap Material": "Material der Deckel",
+    "Close the pieces where they were cut": "Die Stücke schließen, wo sie geschnitten wurden",
+    "Cut & Cap": "Schneiden und schließen",
+    "Cut & Cap along Stroke": "Am Strich schneiden und schließen",
+    "Cut along Stroke": "Am Strich schneiden",
+    "Cut the active mesh along a stroke and close it with regular triangle patches": (
+        "Das aktive Mesh an einem Strich schneiden und mit regelmäßigen Flicken aus Dreiecken schließen"
+    ),
+    "Direction": "Richtung",
+    "Direction that the stroke is swept along, through the model": (
+        "Richtung, in der der Strich durch das Modell gezogen wird"
+    ),
+    "Draw Cut": "Schnitt zeichnen",
+    "Draw Cut & Cap": "Schnitt zeichnen und schließen",
+    "Drawn": "Gezeichnet",
+    "Gap": "Spalt",
+    "Give the caps a material slot of their own": "Den Deckeln einen eigenen Materialslot geben",
+    "In world space": "Im Raum der Welt",
+    "Keep": "Behalten",
+    "Largest gap between the ends of a stroke that is closed, relative to the stroke": (
+        "Größte Lücke zwischen den Enden eines Strichs, die geschlossen wird, im Verhältnis zum Strich"
+    ),
+    "Left": "Links",
+    "Length of the edges along the cut, which makes even caps; 0 cuts exactly along the stroke and leaves the "
+    "edges as the mesh divides them": (
+        "Länge der Kanten am Schnitt, für gleichmäßige Deckel; 0 schneidet genau am Strich und lässt die Kanten, wie "
+        "das Netz sie teilt"
+    ),
+    "Location": "Ort",
+    "Material": "Material",
+    "Name of the material for caps; empty for an empty slot": (
+        "Name des Materials für Deckel; leer für einen leeren Slot"
+    ),
+    "Number of the stroke to cut along; 0 for the selected one, or else the last one": (
+        "Nummer des Strichs, an dem geschnitten wird; 0 für den ausgewählten, sonst den letzten"
+    ),
+    "On the surface that the stroke swept": "Auf der Fläche, die der Strich überstrichen hat",
+    "One Object": "Ein Objekt",
+    "Pieces": "Stücke",
+    "Right": "Rechts",
+    "Selected Stroke": "Ausgewählter Strich",
+    "Shape of the caps": "Form der Deckel",
+    "Stroke": "Strich",
+    "Stroke Plane": "Ebene des Strichs",
+    "The larger piece stays in the object, the other gets one of its own": (
+        "Das größere Stück bleibt im Objekt, das andere bekommt ein eigenes"
+    ),
+    "Two Objects": "Zwei Objekte",
+    "What becomes of the two sides": "Was aus den beiden Seiten wird",
+    "What is on the left of the stroke as it was drawn, or inside a closed one": (
+        "Was links vom Strich liegt, so wie er gezeichnet wurde, oder in einem geschlossenen"
+    ),
+    "What is on the right of the stroke as it was drawn, or outside a closed one": (
+        "Was rechts vom Strich liegt, so wie er gezeichnet wurde, oder außerhalb eines geschlossenen"
+    ),
+    "Where the cut runs": "Wo der Schnitt verläuft",
+    "Which side of the stroke is kept": "Welche Seite des Strichs behalten wird",
+    "Width of what is taken away along the cut": "Breite dessen, was am Schnitt weggenommen wird",
     # Filling holes
     "All holes that are not hidden, up to a number of edges": (
         "Alle Löcher, die nicht ausgeblendet sind, bis zu einer Anzahl von Kanten"

@@ -36,6 +36,8 @@ def of_layouts():
     """Literal texts that are drawn, or translated before they are shown."""
     for path in sorted(ADDON.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "bl_description":  # of tools
+                yield ast.literal_eval(node.value)
             if isinstance(node, ast.Call):
                 if ast.unparse(node.func).endswith("pgettext_iface"):
                     literals = (

@@ -110,6 +110,7 @@ def empty_scene():
 
 
 def active(ob):
+    bpy.context.view_layer.update()  # what is new is only now in it
     for other in bpy.context.view_layer.objects:
         other.select_set(other == ob)
     bpy.context.view_layer.objects.active = ob

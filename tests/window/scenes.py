@@ -27,14 +27,14 @@ def fresh(mode="OBJECT", axis="FRONT"):
     for ob in list(bpy.data.objects):
         bpy.data.objects.remove(ob)
     view = stage.view.spaces.active
-    view.overlay.show_cursor = False
+    view.overlay.show_cursor = view.overlay.show_wireframes = False
     view.shading.type = "SOLID"
     with stage.override():
         bpy.ops.view3d.view_axis(type=axis)
     view.region_3d.view_perspective = "ORTHO"
     view.region_3d.view_distance = 7
     view.region_3d.view_location = (0, 0, 0)
-    stage.region("UI")
+    bpy.ops.ed.undo_push(message="Empty")
     yield 0.6
 
 
@@ -74,6 +74,7 @@ def grease_pencil(strokes, name="Drawing"):
 
 
 def select(ob):
+    bpy.context.view_layer.update()  # what is new is only now in it
     for other in bpy.context.view_layer.objects:
         other.select_set(other == ob)
     bpy.context.view_layer.objects.active = ob
@@ -334,26 +335,83 @@ def fill():
     assert faces() == filled, "the redo panel did not fill again"
 
 
+def ball(**options):
+    """A sphere in Object Mode, the only object."""
+    with stage.override():
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=1.5, **options)
+    ob = bpy.context.view_layer.objects.active
+    for face in ob.data.polygons:
+        face.use_smooth = True
+    return ob
+
+
+def wave(n=60):
+    """(n, 3) points of a line across the ball, in front of it."""
+    t = np.linspace(-2, 2, n)
+    return np.stack([t, 0 * t - 2, 0.35 * np.sin(2.5 * t)], axis=1)
+
+
 def cut():
-    """Cut a ball by a stroke, and cap it."""
-    if "gridmesh_cut" not in dir(bpy.ops.object):
-        raise NotImplementedError("this build has no object.gridmesh_cut")
+    """Cut a ball along a stroke, by the panel's button; then by a line drawn in the viewport, and Enter."""
     yield from fresh()
-    bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=1.5)
-    ball = bpy.context.object
-    t = np.linspace(-2, 2, 60)
-    stroke = grease_pencil([np.stack([t, 0 * t - 2, 0.35 * np.sin(2.5 * t)], axis=1)], "Cut")
+    target = ball()
+    stroke = grease_pencil([wave()], "Cut")
     stroke.data.layers[0].frames[0].drawing.strokes[0].cyclic = False
-    select(ball)
+    select(target)
     stroke.select_set(True)
+    bpy.ops.ed.undo_push(message="Stroke")
     yield from stage.open_sidebar()
     yield from stage.picture("cut_1_stroke")
-    before = len(mesh_objects()), len(ball.data.polygons)
-    yield from stage.press_button("UI", "gridmesh_cut")
-    after = len(mesh_objects()), len(mesh_objects()[0].data.polygons)
-    assert after != before, "nothing was cut"
-    turn_view(1.0, 0.0, 0.4)
+    yield from stage.press_button("UI", "gridmesh_cut", "OBJECTS")
+    assert len(mesh_objects()) == 2, "nothing was cut"
+    stage.view.spaces.active.overlay.show_wireframes = True
+    turn_view(0.9, 0.0, 0.4)
+    smaller = min(mesh_objects(), key=lambda ob: len(ob.data.polygons))
+    smaller.location.z += 1.2 if max(v.co.z for v in smaller.data.vertices) > 1.2 else -1.2
+    yield from stage.open_redo_panel()
     yield from stage.picture("cut_2_capped")
+
+    yield from fresh()
+    ball()
+    bpy.ops.ed.undo_push(message="Ball")
+    yield from stage.open_sidebar()
+    yield from stage.press_button("UI", "gridmesh_cut", "DRAWN")
+    x, y = stage.middle()
+    path = [(x - 250 + 12 * k, y + 25 * np.sin(0.25 * k)) for k in range(36)]
+    yield from stage.drag(path)
+    yield from stage.picture("cut_3_drawn")
+    yield from stage.key("RET")
+    yield 1.0
+    assert len(mesh_objects()) == 2, "the drawn line cut nothing"
+    yield from stage.move(*stage.middle())
+    yield from stage.key("Z", ctrl=True)
+    yield 0.8
+    assert len(mesh_objects()) == 1, "undo left the cut"
+    yield from stage.press_button("UI", "gridmesh_cut", "DRAWN")
+    yield from stage.drag(path)
+    yield from stage.key("ESC")
+    yield 0.8
+    assert not stage.window.modal_operators, "Esc did not end the drawing of a cut"
+    assert len(mesh_objects()) == 1, "Esc cut all the same"
+
+
+def draw():
+    """The tool in the toolbar: each stroke with the left button is a body at once."""
+    yield from fresh()
+    with stage.override():
+        bpy.ops.wm.tool_set_by_id(name="gridmesh.draw")
+    yield 0.5
+    yield from stage.drag(clover())
+    yield 1.0
+    assert len(mesh_objects()) == 1, "no body was drawn"
+    yield from stage.open_sidebar()
+    yield from stage.picture("draw_body")
+    yield from stage.move(*stage.middle())
+    yield from stage.key("Z", ctrl=True)
+    yield 0.8
+    assert not mesh_objects(), "undo left the body"
+    with stage.override():
+        bpy.ops.wm.tool_set_by_id(name="builtin.select_box")
 
 
 def long_work():
@@ -411,7 +469,7 @@ def german():
 
 
 SCENES = (
-    *(install, first_body, redo_panel, update, menus, sprites, fill, cut, long_work, german),
+    *(install, first_body, redo_panel, update, menus, sprites, fill, cut, draw, long_work, german),
     *live_scenes.make(stage, fresh),
 )
 
