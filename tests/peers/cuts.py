@@ -115,6 +115,11 @@ def with_bisect(ob, stroke):
     )
     seconds = perf_counter() - since
     bpy.ops.object.mode_set(mode="OBJECT")
+    # What lies in the plane: the cap's selection is lost with some select modes.
+    unit = normal / np.linalg.norm(normal)
+    for polygon in ob.data.polygons:
+        places = np.array([ob.data.vertices[index].co for index in polygon.vertices])
+        polygon.select = bool(np.abs((places - stroke[0]) @ unit).max() < 1e-5)
     return seconds
 
 
