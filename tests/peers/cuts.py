@@ -102,7 +102,7 @@ def with_bisect(ob, stroke):
     """Only along planes. Returns seconds; the cap is left selected."""
     along = stroke[-1] - stroke[0]
     normal = np.cross(along, (0, 1, 0))
-    normal *= np.sign(normal[2])
+    normal *= np.sign(normal[2]) / np.linalg.norm(normal)  # components beyond 1 would be clamped
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="SELECT")
     since = perf_counter()
@@ -115,6 +115,10 @@ def with_bisect(ob, stroke):
     )
     seconds = perf_counter() - since
     bpy.ops.object.mode_set(mode="OBJECT")
+    # What lies in the plane: the cap's selection is lost with some select modes.
+    for polygon in ob.data.polygons:
+        places = np.array([ob.data.vertices[index].co for index in polygon.vertices])
+        polygon.select = bool(np.abs((places - stroke[0]) @ normal).max() < 1e-5)
     return seconds
 
 
