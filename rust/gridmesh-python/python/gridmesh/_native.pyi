@@ -182,6 +182,7 @@ def regrid(
     strict: bool = False,
     progress: _Progress | None = None,
 ) -> Regrid: ...
+
 @final
 class Piece:
     @property
