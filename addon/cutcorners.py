@@ -33,6 +33,7 @@ class Corners:
         self._loops: list[Any] = []
         self._of_face: dict[int, dict[int, int]] = {}
         self._around: dict[int, list[int]] = {}
+        self._frames: dict[int, tuple[tuple[int, int, int], np.ndarray, np.ndarray]] = {}
         self._plain: list[tuple[int, int, float]] = []
         self._foreign: list[tuple[int, int, Combination, list[Combination]]] = []
         support: dict[int, Combination] = {}
@@ -138,23 +139,23 @@ class Corners:
 
     def _straight_on(self, face: int, place: np.ndarray) -> Combination:
         """Find the place as an affine combination of three corners of the face."""
+        found = self._frames.get(face)
+        if found is None:
+            found = self._frames[face] = self._frame(face)
+        (first, second, third), origin, across = found
+        s, t = (across @ (place - origin)).tolist()
+        return [(first, 1 - s - t), (second, s), (third, t)]
+
+    def _frame(self, face: int) -> tuple[tuple[int, int, int], np.ndarray, np.ndarray]:
+        """Three corners of a face, the place of the first, and the matrix to the others' shares."""
         corners = self._model.face(face)
         points = self._model.vertices[corners]
-        first, rest = points[0], points[1:] - points[0]
+        rest = points[1:] - points[0]
         areas = np.linalg.norm(np.cross(rest[:-1], rest[1:]), axis=1)
         k = int(areas.argmax())
-        a, b = rest[k], rest[k + 1]
-        system = np.array([[a @ a, a @ b], [a @ b, b @ b]])
-        if areas[k] <= 1e-12 * max(a @ a, b @ b, 1e-300):
-            s, t = 1 / 3, 1 / 3
-        else:
-            s, t = np.linalg.solve(system, [(place - first) @ a, (place - first) @ b])
         own = self._corners_of(face)
-        return [
-            (own[int(corners[0])], 1 - s - t),
-            (own[int(corners[k + 1])], s),
-            (own[int(corners[k + 2])], t),
-        ]
+        chosen = own[int(corners[0])], own[int(corners[k + 1])], own[int(corners[k + 2])]
+        return chosen, points[0], np.linalg.pinv(rest[k : k + 2].T)
 
 
 def _merged(sources: list[int], weights: list[float]) -> Combination:

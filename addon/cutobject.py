@@ -158,10 +158,8 @@ def _operate(mesh: bpy.types.Mesh, surface: Surface, parts: Sequence[Part]) -> N
 
 def _select(bm: bmesh.types.BMesh, written: Written, before: bpy.types.Mesh) -> None:
     """Select the caps and nothing else."""
-    for elements, old in ((bm.faces, before.polygons), (bm.edges, before.edges), (bm.verts, before.vertices)):
-        chosen = np.empty(len(old), bool)
-        old.foreach_get("select", chosen)
-        if chosen.any():
+    for elements, domain in ((bm.faces, "poly"), (bm.edges, "edge"), (bm.verts, "vert")):
+        if f".select_{domain}" in before.attributes:  # absent where nothing is selected
             for element in elements:
                 element.select = False
     bm.select_history.clear()

@@ -143,9 +143,11 @@ class Model:
 
     def edge_length(self) -> float:
         """Length for the edges of a cut that suits the mesh: its mean, but at least 20 across the whole."""
-        used = self.vertices[np.unique(self.corners)]
-        if not len(used):
+        if not len(self.corners):
             return 0.0
+        is_used = np.zeros(len(self.vertices), bool)
+        is_used[self.corners] = True
+        used = self.vertices[is_used]
         ends = self.corners.copy()
         ends[:-1] = self.corners[1:]
         last = self.offsets[1:] - 1
@@ -507,6 +509,8 @@ def unrolled(points: np.ndarray, stroke: np.ndarray, sweep: Sweep) -> np.ndarray
     """Points (n, 3) near the swept surface, laid out with it in the plane: along the stroke, and away: (n, 2)."""
     flat, depth = sweep.seen(points)
     line, _ = sweep.seen(stroke)
+    middle = flat.mean(axis=0)
+    flat, line = flat - middle, line - middle
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
     begin, step = line[:-1], np.diff(line, axis=0)
     # The ends go straight on.
@@ -517,9 +521,12 @@ def unrolled(points: np.ndarray, stroke: np.ndarray, sweep: Sweep) -> np.ndarray
     along = np.empty(len(flat))
     block = max(1, 500_000 // len(step))
     for at in range(0, len(flat), block):
-        between = flat[at : at + block, None] - begin
-        share = np.clip((between * step).sum(axis=2) / squares, low, high)
-        nearest = ((between - share[..., None] * step) ** 2).sum(axis=2).argmin(axis=1)
+        points_here = flat[at : at + block]
+        ahead = points_here @ step.T - (begin * step).sum(axis=1)
+        share = np.clip(ahead / squares, low, high)
+        # Squared distances, less that of each point to the origin.
+        away = (begin**2).sum(axis=1) - 2 * points_here @ begin.T - share * (2 * ahead - share * squares)
+        nearest = away.argmin(axis=1)
         rows = np.arange(len(nearest))
         along[at : at + block] = way[nearest] + share[rows, nearest] * np.sqrt(squares[nearest])
     scale = 1.0 if sweep.eye is None else float(np.median(depth))

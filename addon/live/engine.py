@@ -19,7 +19,7 @@ from ..api import Body
 from ..native import NativeError
 from ..outlines import Plane, Sketch, Stroke
 from .reading import LostError, sketch_of
-from .solve import ALGORITHM, Lattice, SolveError, digest, solve
+from .solve import ALGORITHM, Lattice, LeftError, SolveError, digest, solve
 
 PAUSE = 0.35
 """Seconds without a change after which a change has ended."""
@@ -187,8 +187,11 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
     try:
         body, state.lattice = _solved(live, sketch, lattice)
     except (SolveError, NativeError) as error:
-        state.failed, state.since = mark, 0.0
         _tell(live, str(error))
+        if lattice is None:
+            state.failed, state.since = mark, 0.0
+        else:
+            _wait()  # the best lattice may do, but to look for it would hold up the drag
         return False
     write(ob, body, live.corner_angle, marks=lattice is None)
     slots = [state.lattice.edge_length, state.lattice.angle, *state.lattice.origin]
@@ -203,13 +206,13 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
 
 
 def _solved(live: Any, sketch: Sketch, lattice: Lattice | None) -> tuple[Body, Lattice]:
-    """Solve on the lattice that stays; if the stroke has left it, on the best one."""
+    """Solve on the lattice that stays; if the stroke has left its plane, on the best one."""
     sketch_options, body_options, pen = _options(live)
     if lattice is not None:
         try:
             return solve(sketch, sketch_options, body_options, lattice=lattice, pen=pen)
-        except SolveError:
-            pass  # the best lattice may still do, and says what is wrong if not
+        except LeftError:
+            pass  # it was turned or bent: there is nothing to keep
     return solve(sketch, sketch_options, body_options, pen=pen)
 
 

@@ -27,6 +27,10 @@ class SolveError(Exception):
     """A stroke has no body. The message says why."""
 
 
+class LeftError(SolveError):
+    """A stroke has left the plane of the lattice that it was to keep."""
+
+
 @dataclass(frozen=True, eq=False)
 class Lattice:
     """A triangle lattice in a drawing plane."""
@@ -99,7 +103,9 @@ def solve(
         options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     try:
-        patch = gridmesh.mesh_sketch(sketch.outline, holes, progress=Patience(), **options)
+        patch = gridmesh.mesh_sketch(
+            sketch.outline, holes, progress=Patience(0.5 if lattice is None else 0.01), **options
+        )
         if body_options is None:
             surface = gridmesh.flat(patch)
         else:
@@ -122,14 +128,14 @@ def moved(sketch: Sketch, plane: Plane) -> Sketch:
 
     Raises
     ------
-    SolveError
+    LeftError
         If that is tilted against the sketch's own, or faces the other way.
     """
     if sketch.plane.axes[2] @ plane.axes[2] < TILTED:
-        raise SolveError("the stroke has left its plane")
+        raise LeftError("the stroke has left its plane")
     points = project(sketch, plane)
     if np.abs(points[:, 2]).max() > 1e-3 * sketch.size:
-        raise SolveError("the stroke has left its plane")
+        raise LeftError("the stroke has left its plane")
     return Sketch(
         stroke=sketch.stroke,
         plane=plane,

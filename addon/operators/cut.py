@@ -226,8 +226,9 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         layout.use_property_decorate = False
         if self.result:
             numbers = layout.column(align=True)
-            for part in self.result.split(", ", 1):  # on one line they would be cut off
-                numbers.label(text=part)
+            parts = self.result.split(", ")
+            for at in range(0, len(parts), 2):  # on one line they would be cut off
+                numbers.label(text=", ".join(parts[at : at + 2]))
         layout.prop(self, "keep")
         if self.keep == "BOTH":
             layout.prop(self, "pieces")

@@ -31,6 +31,8 @@ class Quality:
     """The fewest that lattice bodies or sheets of this topology have: 6, and 3 for every handle of a closed body and
     for every border but one of a sheet. None where lattices have no say: other faces than triangles, edges of three
     faces, sheets with handles."""
+    triangles: bool
+    """Whether all faces are triangles."""
     worst_angle: float
     """The sharpest corner of a face, radians; 0 where a face has no area, nan where there is no face."""
     worst_face: int
@@ -100,6 +102,7 @@ def measure(vertices: np.ndarray, corners: np.ndarray, offsets: np.ndarray) -> Q
         border=on_border[irregular],
         valence=valence[irregular],
         least=least,
+        triangles=bool((sizes == 3).all()),
         worst_angle=float(angles[worst]) if worst >= 0 else float("nan"),
         worst_face=int(face[worst]) if worst >= 0 else -1,
         non_manifold=crowded + int(pinched),

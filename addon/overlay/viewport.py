@@ -16,10 +16,10 @@ MARGIN, LINE, ABOVE = 14, 18, 36
 
 # By curvature: few edges are warm, many are cold, strong colours are two or more away from regular.
 _COLOURS = (
-    ((0.95, 0.16, 0.12, 1.0), "4 edges or fewer"),
-    ((1.0, 0.62, 0.1, 1.0), "5 edges"),
-    ((0.2, 0.68, 1.0, 1.0), "7 edges"),
-    ((0.35, 0.2, 0.95, 1.0), "8 edges or more"),
+    ((0.95, 0.16, 0.12, 1.0), "4 edges or fewer", "Far too few edges"),
+    ((1.0, 0.62, 0.1, 1.0), "5 edges", "Too few edges"),
+    ((0.2, 0.68, 1.0, 1.0), "7 edges", "Too many edges"),
+    ((0.35, 0.2, 0.95, 1.0), "8 edges or more", "Far too many edges"),
 )
 
 _handles: list[Any] = []
@@ -58,7 +58,7 @@ def _look(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[Quality
 
 def colours(curvature: np.ndarray) -> np.ndarray:
     """Colours (k, 4) of irregular vertices."""
-    table = np.array([colour for colour, _ in _COLOURS], np.float32)
+    table = np.array([colour for colour, *_ in _COLOURS], np.float32)
     strong = np.abs(curvature) > 0.2
     kind = np.where(curvature > 0, np.where(strong, 0, 1), np.where(strong, 3, 2))
     return table[kind]
@@ -141,8 +141,11 @@ def _draw_text() -> None:
     blf.shadow(font, 3, 0.0, 0.0, 0.0, 0.9)
     toolbar = next((r.width for r in context.area.regions if r.type == "TOOLS"), 0)
     x, y = toolbar + MARGIN * scale, (MARGIN + ABOVE) * scale
-    kinds = [text for (_, text), here in zip(_COLOURS, _present(found), strict=True) if here]
-    tints = [colour for (colour, _), here in zip(_COLOURS, _present(found), strict=True) if here]
+    # Inside a triangle mesh numbers say it best; on borders, and of other faces, others are regular.
+    exact = found.triangles and not found.border.any()
+    seen = [entry for entry, here in zip(_COLOURS, _present(found), strict=True) if here]
+    kinds = [number if exact else words for _, number, words in seen]
+    tints = [colour for colour, *_ in seen]
     rows = [(row, (1.0, 1.0, 1.0, 1.0)) for row in lines(found)]
     rows += [(f"● {kind}", tint) for kind, tint in zip(kinds, tints, strict=True)]
     for text, tint in reversed(rows):

@@ -34,6 +34,7 @@ def test_a_torus_of_quadrilaterals_is_regular():
     found = of(bpy.context.object)
     assert len(found.irregular) == 0
     assert found.genus == 1
+    assert not found.triangles
     assert found.least is None  # lattices of triangles have no say
     bpy.context.object.modifiers.new("Triangulate", "TRIANGULATE")
     assert of(bpy.context.object).least == 9

@@ -193,6 +193,78 @@ def make(stage, fresh):
         assert not bodies()
         assert len([ob for ob in bpy.data.objects if ob.type == "MESH"]) == 1
 
+    def draw_planes():
+        """Every plane, in a view from the side: the body lies in it."""
+        yield from begin()
+        import mathutils
+
+        view = stage.view.spaces.active.region_3d
+        view.view_rotation = mathutils.Euler((1.1, 0, 0.6)).to_quaternion()
+        bpy.context.scene.cursor.rotation_euler = (0.4, 0.2, 0)
+        turn = view.view_rotation.to_matrix()
+        x, y = stage.middle()
+        wanted = {
+            "VIEW": turn.col[2],
+            "CURSOR": bpy.context.scene.cursor.matrix.to_3x3().col[2],
+            "X": mathutils.Vector((1, 0, 0)),
+            "Y": mathutils.Vector((0, 1, 0)),
+            "Z": mathutils.Vector((0, 0, 1)),
+        }
+        with stage.override():
+            tool = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT")
+            options = tool.operator_properties("object.gridmesh_draw")
+        options.triangles = 300
+        for choice, normal in wanted.items():
+            for ob in list(bpy.data.objects):
+                bpy.data.objects.remove(ob)
+            options.plane = choice
+            yield from stroke(ring((x, y), 120, 30))
+            (body,) = bodies()
+            assert abs(body.matrix_world.to_3x3().col[2].dot(normal)) > 0.999, choice
+        for ob in list(bpy.data.objects):
+            bpy.data.objects.remove(ob)
+        bpy.ops.mesh.primitive_cube_add(size=2)
+        options.plane = "SURFACE"
+        at = stage.region("WINDOW")
+        from bpy_extras.view3d_utils import location_3d_to_region_2d
+
+        top = location_3d_to_region_2d(at, view, (0.3, 0.2, 1.0))
+        yield from stroke(ring((at.x + top.x - 60, at.y + top.y), 60, 30), picture="draw_surface_1", at=0.6)
+        (body,) = bodies()
+        assert abs(body.matrix_world.to_3x3().col[2].z) > 0.999, "surface"
+        assert abs(body.matrix_world.translation.z - 1) < 1e-3
+        yield from stage.picture("draw_surface_2")
+        options.plane = "VIEW"
+        options.triangles = 2000
+
+    def pen():
+        """The pressure of the pen makes the body thick; a script draws, for no event here has pressure."""
+        yield from begin()
+        import importlib
+
+        import mathutils
+
+        gesture = importlib.import_module(_module("draw.gesture").__name__)
+        t = np.linspace(0, 2 * np.pi, 120, endpoint=False)
+        fish = np.stack([2.2 * np.cos(t), 0.8 * np.sin(t) * (1.2 + 0.5 * np.cos(t))], axis=1)
+        front = np.eye(4)
+        front[:3, :3] = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
+        pressure = 0.15 + 0.85 * (0.5 + 0.5 * np.cos(t)) ** 1.5
+        for k, width in enumerate((0.0, 1.0)):
+            front[2, 3] = 1.2 - 2.4 * k
+            done = bpy.ops.object.gridmesh_draw(
+                "EXEC_DEFAULT",
+                stroke=gesture.pack(fish, pressure),
+                matrix=front.ravel().tolist(),
+                pen=width,
+                triangles=1500,
+            )
+            assert done == {"FINISHED"}
+        view = stage.view.spaces.active.region_3d
+        view.view_rotation = mathutils.Euler((1.0, 0, 0.35)).to_quaternion()
+        yield 0.5
+        yield from stage.picture("pen")
+
     def quality():
         """Irregular vertices in the viewport, of a body and of a mesh that is not ours."""
         yield from begin()
@@ -209,4 +281,4 @@ def make(stage, fresh):
         yield from stage.picture("quality")
         bpy.context.window_manager.gridmesh_quality = False
 
-    return draw_body, draw_left, draw_hole, draw_across, live_edit, live_panel, quality
+    return draw_body, draw_left, draw_hole, draw_across, live_edit, live_panel, draw_planes, pen, quality

@@ -116,7 +116,7 @@ const TOLERANCES: [Tolerance; 3] = [
 ];
 
 /// With an edge length, the cut is drawn through vertices that are nearer than this part of it.
-const THROUGH: f64 = 0.2;
+const THROUGH: f64 = 0.3;
 
 /// Vertices that are let go one after the other, until the faces around them can be divided.
 const RELEASES: usize = 200;

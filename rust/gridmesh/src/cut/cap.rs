@@ -1,6 +1,7 @@
 //! Caps: regions of the swept surface, unrolled, filled vertex for vertex, and rolled up again.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -15,7 +16,7 @@ use super::report::Tally;
 use super::sheet::Sheet;
 use super::split::Parted;
 use crate::error::{Error, Result};
-use crate::fill::flat::{FlatOptions, fill_flat};
+use crate::fill::flat::{FlatFill, FlatOptions, fill_flat};
 use crate::fill::{FillOptions, Smooth, fill_hole};
 use crate::progress::Progress;
 
@@ -29,7 +30,10 @@ pub(super) struct Caps {
 }
 
 /// Polygons with more vertices are tried at fewer lattice angles.
-const LARGE: usize = 150;
+const LARGE: usize = 300;
+
+/// Polygons filled between two reports of progress.
+const BATCH: usize = 16;
 
 struct Capper<'a> {
     vertices: &'a [DVec3],
@@ -73,26 +77,22 @@ pub(super) fn close(
     let report = &mut tally.report;
     report.uncapped = found.uncapped;
     report.caps = found.regions.len();
-    let count = found.regions.len().max(1) as f64;
-    for (k, region) in found.regions.into_iter().enumerate() {
-        let here = progress.part(k as f64 / count, (k + 1) as f64 / count);
-        // Fills count by themselves; here they only ask whether to go on.
-        let here = here.part(0.0, 0.0);
-        here.report(0.0)?;
+    let mut polygons = vec![];
+    for region in found.regions {
         if let Region::Sheet { outline, holes } = &region
             && holes.is_empty()
         {
             if options.smooth != Smooth::Flat {
-                if capper.bulge(outline, found.inverted, here)? {
+                if capper.bulge(outline, progress.part(0.0, 0.0))? {
                     continue;
                 }
                 report.repeated += 1;
             }
-            report.folded += usize::from(capper.fill(outline, found.inverted, here)?);
+            polygons.push(outline.clone());
             continue;
         }
         report.rings += 1;
-        let alone = match &region {
+        let alone: Vec<Vec<Spot>> = match &region {
             Region::Sheet { outline, holes } => std::iter::once(outline).chain(holes).cloned().collect(),
             Region::Tube { .. } => vec![],
         };
@@ -103,12 +103,11 @@ pub(super) fn close(
         };
         let opened = bridges.open(region, sheet.width());
         let spots = bridges.spots;
-        let polygons = match opened {
-            Some(polygons) => {
-                let new = spots.iter().map(|&at| capper.node(at));
-                let new = new.collect::<Vec<_>>();
+        match opened {
+            Some(opened) => {
+                let new = spots.iter().map(|&at| capper.node(at)).collect::<Vec<_>>();
                 capper.caps.vertices.extend(new);
-                polygons
+                polygons.extend(opened);
             }
             None if alone.is_empty() => {
                 return Err(Error::CutFailed {
@@ -119,14 +118,28 @@ pub(super) fn close(
             None => {
                 // Loops that are not apart: each is closed by itself.
                 report.repeated += 1;
-                alone
+                polygons.extend(alone);
             }
-        };
-        for polygon in &polygons {
-            report.folded += usize::from(capper.fill(polygon, found.inverted, here)?);
         }
-        capper.name_sources(&polygons);
     }
+    // Reports come from the calling thread alone, between batches.
+    for (k, batch) in polygons.chunks(BATCH).enumerate() {
+        progress.report((k * BATCH) as f64 / polygons.len() as f64)?;
+        // With a single one, there is somebody to ask whether to go on.
+        let plans: Vec<_> = match batch {
+            [polygon] => vec![capper.plan(polygon, progress.part(0.0, 0.0))],
+            _ => batch.par_iter().map(|polygon| capper.plan(polygon, Progress::NONE)).collect(),
+        };
+        for (polygon, plan) in batch.iter().zip(plans) {
+            let mut plan = plan?;
+            if capper.repeats(polygon, &plan) {
+                plan = capper.plan(polygon, Progress::NONE)?;
+            }
+            report.folded += usize::from(plan.folded);
+            capper.roll_up(polygon, &plan, found.inverted);
+        }
+    }
+    capper.name_sources(&polygons);
     capper.prove()?;
     capper.measure(tally);
     Ok(capper.caps)
@@ -169,8 +182,8 @@ impl Capper<'_> {
         Node { position: self.sheet.lift(at.x, at.y), source: [u32::MAX; 3], weights: [1.0, 0.0, 0.0] }
     }
 
-    /// Fills a polygon of the unrolled sheet. True if it lies folded there.
-    fn fill(&mut self, polygon: &[Spot], inverted: bool, progress: Progress<'_>) -> Result<bool> {
+    /// Fills a polygon of the unrolled sheet.
+    fn plan(&self, polygon: &[Spot], progress: Progress<'_>) -> Result<FlatFill> {
         let n = polygon.len();
         let roll = Roll::new(self.sheet, polygon);
         let flat = polygon.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
@@ -186,12 +199,29 @@ impl Capper<'_> {
         if n > LARGE {
             (options.angles, options.placed) = (3, 1);
         }
-        let patch = fill_flat(&flat, &vec![4; n], &taken, &options, progress)?;
+        fill_flat(&flat, &vec![4; n], &taken, &options, progress)
+    }
+
+    /// True if a patch has an edge across its polygon that exists by now.
+    fn repeats(&self, polygon: &[Spot], patch: &FlatFill) -> bool {
+        let n = polygon.len();
+        patch.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]).any(|[a, b]| {
+            let (i, j) = (a.min(b) as usize, a.max(b) as usize);
+            let (Some(p), Some(q)) = (polygon.get(i), polygon.get(j)) else { return false };
+            j - i > 1 && j - i < n - 1 && self.edges.contains(&(p.node.min(q.node), p.node.max(q.node)))
+        })
+    }
+
+    /// Makes vertices and triangles of a patch.
+    fn roll_up(&mut self, polygon: &[Spot], patch: &FlatFill, inverted: bool) {
+        let n = polygon.len();
+        let roll = Roll::new(self.sheet, polygon);
+        let key = |a: u32, b: u32| (a.min(b), a.max(b));
         let base = self.first + self.caps.vertices.len() as u32;
         let name = |v: u32| polygon.get(v as usize).map_or(base + v.wrapping_sub(n as u32), |s| s.node);
-        let tree = RTree::bulk_load(
-            flat.iter().enumerate().map(|(k, p)| GeomWithData::new(p.to_array(), k)).collect(),
-        );
+        let flat = polygon.iter().map(|s| roll.flatten(s.at).to_array());
+        let tree =
+            RTree::bulk_load(flat.enumerate().map(|(k, p)| GeomWithData::new(p, k)).collect::<Vec<_>>());
         for &p in &patch.interior {
             let at = roll.unflatten(p);
             let mut node = self.node(at);
@@ -211,7 +241,6 @@ impl Capper<'_> {
             }
             self.caps.triangles.push(t);
         }
-        Ok(patch.folded)
     }
 
     /// The vertex of this number as a combination of old ones.
@@ -241,7 +270,7 @@ impl Capper<'_> {
     }
 
     /// Fills a loop so that it continues the piece around it. False if that repeats an edge of the other piece.
-    fn bulge(&mut self, outline: &[Spot], inverted: bool, progress: Progress<'_>) -> Result<bool> {
+    fn bulge(&mut self, outline: &[Spot], progress: Progress<'_>) -> Result<bool> {
         let left = self.options.keep != Keep::Right;
         let n = outline.len();
         let mut positions = self.vertices.to_vec();
@@ -285,7 +314,6 @@ impl Capper<'_> {
             }
             self.caps.triangles.push(t);
         }
-        let _ = inverted;
         Ok(true)
     }
 

@@ -126,7 +126,8 @@ fn divided_edges(faces: Polygons<'_>, parted: &Parted) -> Vec<(u32, u32)> {
         }
     }
     let divides = |(&(a, b), &[right, left, first]): (&(u32, u32), &[u32; 3])| {
-        (right == 1 && left == 1).then(|| if first == a { (a, b) } else { (b, a) })
+        let forward = if first == a { (a, b) } else { (b, a) };
+        (right == 1 && left == 1).then_some(forward)
     };
     // Sorted by the caller: the order of the table does not matter.
     found.iter().filter_map(divides).collect()

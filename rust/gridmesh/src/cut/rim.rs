@@ -412,11 +412,10 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
             if long > 1.6 * length
                 && long > 1.6 * edges[2].0
                 && !strip.parted.cut.contains_key(&(a.min(b), a.max(b)))
+                && let Some(m) = strip.split(a, b, 0.5)
             {
-                if let Some(m) = strip.split(a, b, 0.5) {
-                    done = true;
-                    queue.extend(strip.triangles_at(m));
-                }
+                done = true;
+                queue.extend(strip.triangles_at(m));
             }
         }
         if done {

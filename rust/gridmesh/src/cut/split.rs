@@ -261,7 +261,7 @@ impl Divider<'_> {
         // Begin where the line is outside: at a segment with two crossings, or after one that leaves.
         let is_alone = |k: usize| {
             let same = |j: usize| events[j].0 == events[k].0;
-            !(k > 0 && same(k - 1)) && !(k + 1 < events.len() && same(k + 1))
+            !((k > 0 && same(k - 1)) || (k + 1 < events.len() && same(k + 1)))
         };
         let start = (0..events.len())
             .find(|&k| {

@@ -307,7 +307,7 @@ impl<'a> Strip<'a> {
         if self.min_angle(x).min(self.min_angle(y)) <= before + 1e-9 {
             return false;
         }
-        let homes = [(p.face, p.home), (q.face, q.home)];
+        let homes = self.homes(&[a, b, c, d]);
         let mut new = vec![];
         for corners in [x, y] {
             let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
@@ -337,7 +337,7 @@ impl<'a> Strip<'a> {
         let least =
             |strip: &Self| parts.iter().map(|p| strip.min_angle(p.corners)).fold(f64::INFINITY, f64::min);
         let (before, old) = (least(self), self.parted.nodes[k]);
-        let homes = parts.iter().map(|p| (p.face, p.home)).collect::<Vec<_>>();
+        let homes = self.homes(&near);
         let middle = near.iter().map(|&w| self.position(w)).sum::<DVec3>() / near.len().max(1) as f64;
         // Back onto the surface.
         let (_, h) = self.nearest(middle, &homes);
