@@ -139,12 +139,20 @@ class Stage:
 
     def press_button(self, region, idname, part=""):
         """Click the first button that calls the operator, with `part` in its command."""
-        found = yield from self.buttons(region, idname)
-        for x, y, called in found:
-            if part in called:
-                yield from self.click(x, y)
-                yield 0.8
-                return
+        found = []
+        for _ in range(3):
+            yield from self.move(*self.middle())  # away from what was under it
+            yield 0.3
+            found = yield from self.buttons(region, idname)
+            for x, y, called in found:
+                yield from self.move(x, y)
+                yield 0.3
+                if (
+                    part in called and self.asked(region) == called
+                ):  # on a busy machine Blender may have been behind
+                    yield from self.click(x, y)
+                    yield 0.8
+                    return
         raise AssertionError(f"no button for {idname} {part} in {region}: {found}")
 
     def open_sidebar(self):
