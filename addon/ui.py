@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from . import cutline, meshes, strokes
+from . import cutline, meshes, preset_files, strokes
 from .operators.cut import OBJECT_OT_gridmesh_cut
 from .operators.fill import MESH_OT_gridmesh_fill
 from .operators.strokes import OBJECT_OT_gridmesh_from_strokes
@@ -58,6 +58,9 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
         row.enabled = bool(drawings)
         row.operator(idname, icon="MESH_DATA").source = "OBJECTS"
         row = column.row()
+        row.enabled = bool(drawings)
+        row.menu(VIEW3D_MT_gridmesh_presets.__name__, icon="PRESET")
+        row = column.row()
         row.enabled = bool(drawings or bodies)
         again = row.operator(idname, text="Update Bodies", icon="FILE_REFRESH")
         again.source, again.update_existing = "OBJECTS", True
@@ -65,6 +68,21 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
             column.operator(idname, text="Annotations to Mesh").source = "ANNOTATIONS"
         if not drawings and not bodies:
             self.layout.label(text="Select a drawing or a curve", icon="INFO")
+
+
+class VIEW3D_MT_gridmesh_presets(bpy.types.Menu):  # noqa: N801
+    """Make meshes from strokes with the options of a preset."""
+
+    bl_label = "Presets"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw an entry for each preset that comes with the extension."""
+        idname = OBJECT_OT_gridmesh_from_strokes.bl_idname
+        for label, properties in preset_files.shipped(idname).items():
+            entry = self.layout.operator(idname, text=label)
+            entry.source = "OBJECTS"
+            for name, value in properties.items():
+                setattr(entry, name, value)
 
 
 def _draw_cut(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -107,16 +125,16 @@ def _entries() -> Iterator[tuple[Any, Any]]:
                 yield menu, entry
 
 
-def add_menus() -> None:
+def register() -> None:
     """Add the entries to the menus that this version has."""
     for menu, entry in _entries():
         menu.append(entry)
 
 
-def remove_menus() -> None:
+def unregister() -> None:
     """Take the entries out again."""
     for menu, entry in _entries():
         menu.remove(entry)
 
 
-classes = (VIEW3D_PT_gridmesh,)
+classes = (VIEW3D_MT_gridmesh_presets, VIEW3D_PT_gridmesh)

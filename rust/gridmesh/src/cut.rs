@@ -128,9 +128,31 @@ fn divide(
     options: &CutOptions,
     progress: Progress<'_>,
 ) -> Result<Cut> {
+    let coarse = options.edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
+    match divide_with(vertices, faces, sheet.clone(), options, coarse, progress.part(0.0, 0.9)) {
+        // Drawn through vertices near by, lines may touch that were apart.
+        Err(Error::CutFailed { .. }) if coarse.is_some() => {
+            let mut cut = divide_with(vertices, faces, sheet, options, None, progress.part(0.9, 1.0))?;
+            cut.report.repeated += 1;
+            Ok(cut)
+        }
+        Ok(cut) => progress.report(1.0).map(|()| cut),
+        Err(error) => Err(error),
+    }
+}
+
+/// Divides and caps; first with this tolerance, if there is one.
+fn divide_with(
+    vertices: &[DVec3],
+    faces: Polygons<'_>,
+    sheet: Sheet,
+    options: &CutOptions,
+    coarse: Option<Tolerance>,
+    progress: Progress<'_>,
+) -> Result<Cut> {
     let mut tally = Tally::new();
     let since = Instant::now();
-    let (sheet, mut parted) = part(vertices, faces, sheet, options, &mut tally, progress.part(0.0, 0.4))?;
+    let (sheet, mut parted) = part(vertices, faces, sheet, coarse, &mut tally, progress.part(0.0, 0.4))?;
     progress.report(0.4)?;
     if let Some(length) = options.edge_length {
         rim::even_out(vertices, faces, &mut parted, length, &mut tally);
@@ -169,11 +191,10 @@ fn part(
     vertices: &[DVec3],
     faces: Polygons<'_>,
     sheet: Sheet,
-    options: &CutOptions,
+    coarse: Option<Tolerance>,
     tally: &mut Tally,
     progress: Progress<'_>,
 ) -> Result<(Sheet, Parted)> {
-    let coarse = options.edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
     let mut failed = Error::StrokeMisses;
     for nudge in 0..3 {
         let sheet = sheet.nudged(nudge)?;

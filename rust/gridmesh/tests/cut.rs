@@ -1,4 +1,5 @@
 //! Cuts of synthetic meshes keep their promises.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;

@@ -15,6 +15,7 @@ __all__ = [
     "__version__",
     "_patch",
     "_surface",
+    "combine",
     "cut",
     "fill_hole",
     "fill_holes",
@@ -118,6 +119,7 @@ def mesh_sketch(
     max_distance: float = 1.5,
     closeness: float = 0.3,
     angle: float | None = None,
+    origin: _Points | None = None,
     corner_angle: float = 0.6981317007977318,
     mirror: _Axis | Literal["auto"] | None = None,
     self_crossing: Literal["error", "union"] = "error",
@@ -125,6 +127,13 @@ def mesh_sketch(
     relax: bool = True,
     progress: _Progress | None = None,
 ) -> Patch: ...
+def combine(
+    outline: _Points,
+    other: _Points,
+    holes: Sequence[_Points] = (),
+    *,
+    how: Literal["union", "difference"] = "union",
+) -> list[tuple[npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]]: ...
 def stitch(patch: Patch) -> Surface: ...
 def flat(patch: Patch) -> Surface: ...
 def inflate(
@@ -182,6 +191,7 @@ def regrid(
     strict: bool = False,
     progress: _Progress | None = None,
 ) -> Regrid: ...
+
 @final
 class Piece:
     @property
