@@ -1,5 +1,8 @@
 //! From a drawn outline to a flat patch: the whole of the paper's section IV.
 
+mod lattices;
+mod least;
+
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -14,22 +17,12 @@ use crate::mirror;
 use crate::options::{
     BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SelfCrossing, SketchOptions, SketchReport,
 };
-use crate::orient::predicted_angles;
 use crate::outline::{Obstacle, Outline, grown, traced};
 use crate::patch::Patch;
 use crate::place::{Placed, min_angle, min_angle_off_corners, place};
 use crate::progress::Progress;
 use crate::symmetry::Symmetry;
-use crate::target::Target;
 use crate::union::{nearest_source, outer_outline};
-
-/// Lattice placements tried before the drawing is called too coarse for its edge length: shifts of
-/// the origin in edges.
-const SHIFTS: [[f64; 2]; 6] =
-    [[0.0, 0.0], [0.5, 0.29], [0.5, -0.29], [0.25, 0.43], [0.25, -0.14], [0.75, 0.14]];
-
-/// Of the lattices laid on a mirror axis, so many are tried first.
-const MIRROR_CANDIDATES: usize = 4;
 
 /// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies
 /// this close to the drawing, in edges, is good enough not to try another lattice angle.
@@ -279,45 +272,6 @@ impl Job<'_> {
         })
     }
 
-    /// The lattices to try: angles, and shifts of the origin in edges.
-    fn placements_to_try(&self, asked: Asked, effort: Effort) -> Vec<(f64, DVec2)> {
-        if let Some(symmetry) = &self.symmetry {
-            let mut lattices = mirror::placements(symmetry, self.options.angle);
-            lattices.truncate(if effort == Effort::Full { MIRROR_CANDIDATES } else { MIRROR_CANDIDATES / 2 });
-            return lattices;
-        }
-        self.angles(asked, effort).into_iter().map(|angle| (angle, DVec2::ZERO)).collect()
-    }
-
-    /// The lattices to try where those do not do.
-    fn shifts(&self, angle: f64) -> Vec<(f64, DVec2)> {
-        match &self.symmetry {
-            Some(symmetry) => {
-                mirror::placements(symmetry, self.options.angle).into_iter().skip(MIRROR_CANDIDATES).collect()
-            }
-            None if self.options.origin.is_some() => Vec::new(),
-            None => SHIFTS[1..].iter().map(|&shift| (angle, DVec2::from_array(shift))).collect(),
-        }
-    }
-
-    /// The lattice angles to try: the one asked for, or those with the fewest turns predicted.
-    fn angles(&self, asked: Asked, effort: Effort) -> Vec<f64> {
-        const CANDIDATES: usize = 4;
-        if let Some(angle) = self.options.angle {
-            return vec![angle.rem_euclid(std::f64::consts::FRAC_PI_3)];
-        }
-        let count = match (self.options.boundary, effort) {
-            (BoundaryMethod::Optimal, Effort::Full) => CANDIDATES,
-            _ => 1,
-        };
-        let edge_length = match asked {
-            Asked::EdgeLength(h) => h,
-            Asked::Triangles(n) => self.first_guess(n),
-        };
-        let angles = predicted_angles(&self.contours, edge_length, count);
-        if angles.is_empty() { vec![0.0] } else { angles }
-    }
-
     /// The outline for one placement; with a number of triangles asked for, the edge length is
     /// corrected until the number is reached within 5 % (10 % are accepted in the end). Only then
     /// is a proof worth its time.
@@ -404,98 +358,6 @@ impl Job<'_> {
             BoundaryMethod::Grown => grown(&self.contours[0], lattice, options, progress),
             BoundaryMethod::Optimal => traced(&self.contours, lattice, options, progress),
         }
-    }
-
-    /// The edge length at which a patch has about `n` triangles. The lattice path cuts off what it
-    /// cannot follow, and growth stops inside the curve: on average a patch is so many triangles for
-    /// each edge length of curve short of its area.
-    fn first_guess(&self, n: usize) -> f64 {
-        let area = self.area / (0.5 * crate::lattice::ROW_HEIGHT);
-        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.09 } else { 0.28 };
-        let short = short * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
-        2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
-    }
-
-    fn lattice(&self, edge_length: f64, angle: f64, shift: DVec2) -> Lattice {
-        let origin = self.centre + edge_length * DVec2::from_angle(angle).rotate(shift);
-        let Some(asked) = self.options.origin else {
-            return Lattice { origin, angle, edge_length };
-        };
-        // The point of the asked lattice that is nearest to the drawing: coordinates stay small.
-        let asked = Lattice { origin: asked, angle, edge_length };
-        let nearest = asked.from_units(Lattice::units(Lattice::nearest(asked.to_units(self.centre))));
-        Lattice { origin: nearest, ..asked }
-    }
-
-    /// The error for a drawing that has no patch of the size asked for: the least number of
-    /// triangles that works, searched in steps of a tenth, one placement each. Given up where the
-    /// boundary alone would take too many edges: parts thin as a hair fit no grid.
-    fn least_that_works(&mut self, asked: f64, obstacle: Obstacle, progress: Progress<'_>) -> Result<Error> {
-        const LARGEST: f64 = 1e6;
-        const MOST_EDGES: f64 = 8e3;
-        let most_edges = MOST_EDGES.max(3.0 * self.boundary_edges(asked.max(6.0) as usize));
-        let at = |step: i32| (asked.max(6.0) * 1.1f64.powi(step)).ceil() as usize;
-        let (mut fails, mut works, mut stride) = (0, None, 1);
-        let fits = |job: &Self, n: usize| (n as f64) < LARGEST && job.boundary_edges(n) < most_edges;
-        while works.is_none() && fits(self, at(fails + stride)) {
-            let step = fails + stride;
-            if self.works(at(step), progress)? {
-                works = Some(step);
-            } else {
-                fails = step;
-            }
-            // Small steps first, for drawings that nearly fit; larger ones after them.
-            stride = 1 + fails / 3;
-        }
-        let Some(mut works) = works else {
-            return Ok(Error::NoPatch { reason: obstacle.reason, at: obstacle.at.to_array() });
-        };
-        while works - fails > 1 {
-            let step = (works + fails) / 2;
-            if self.works(at(step), progress)? {
-                works = step;
-            } else {
-                fails = step;
-            }
-        }
-        Ok(Error::TooCoarse { triangles: asked.round().max(1.0) as usize, least: at(works) })
-    }
-
-    /// Whether the first placement at `n` triangles gives a valid patch.
-    fn works(&mut self, n: usize, progress: Progress<'_>) -> Result<bool> {
-        progress.report(0.9)?;
-        Ok(!self.is_hopeless(n) && self.attempt(Asked::Triangles(n), Effort::Quick, progress)?.is_ok())
-    }
-
-    /// Length of the drawing in edges at about `n` triangles.
-    fn boundary_edges(&self, n: usize) -> f64 {
-        self.contours.iter().map(ClosedCurve::length).sum::<f64>() / self.first_guess(n)
-    }
-
-    /// True if `n` triangles cannot follow the drawing: a chord-free lattice patch with `b` boundary
-    /// vertices has at least `2 b - 6`, and a path beside the faired contours is not much shorter
-    /// than they are.
-    fn is_hopeless(&self, n: usize) -> bool {
-        const SHORTER: f64 = 0.7;
-        let lattice = self.lattice(self.first_guess(n), 0.0, DVec2::ZERO);
-        // The number of samples alone shows the worst cases; no need to take them.
-        let edges = self.boundary_edges(n);
-        let needed = |edges: f64| 2.0 * SHORTER * edges - 6.0 * self.contours.len() as f64;
-        if needed(edges) <= n as f64 {
-            return false;
-        }
-        if edges > 20.0 * n as f64 {
-            return true;
-        }
-        let faired: f64 = self
-            .contours
-            .iter()
-            .map(|contour| {
-                let points = Target::new(contour, &lattice).points;
-                (0..points.len()).map(|i| points[i].distance(points[(i + 1) % points.len()])).sum::<f64>()
-            })
-            .sum();
-        needed(faired) > n as f64
     }
 
     /// The patch with its numbers.
