@@ -54,9 +54,9 @@ def _classes() -> tuple[type, ...]:
 
 def _parts() -> tuple[ModuleType, ...]:
     """Modules with more to register than classes; their `unregister` may be called at any time."""
-    from . import keys, preset_files, translations, ui
+    from . import cli, keys, preset_files, translations, ui
     from .live import engine
     from .live import properties as live
     from .overlay import ui as overlay
 
-    return (translations, preset_files, ui, overlay, live, engine, keys)
+    return (translations, preset_files, ui, overlay, live, engine, keys, cli)
