@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import glob
 import os
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -23,7 +25,10 @@ def write(path: Path, bodies: list[Body], crease_angle: float) -> None:
 
     The scene is empty before and after.
     """
-    with tempfile.TemporaryDirectory(prefix=".gridmesh-", dir=path.parent) as folder:
+    prefix = f".gridmesh-{path.name}-"
+    for left in path.parent.glob(f"{glob.escape(prefix)}????????"):
+        shutil.rmtree(left)  # of a run that was killed
+    with tempfile.TemporaryDirectory(prefix=prefix, dir=path.parent) as folder:
         draft = Path(folder) / f"body{path.suffix.lower()}"
         objects = []
         try:
