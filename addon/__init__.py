@@ -66,18 +66,10 @@ def _classes() -> tuple[type, ...]:
 
 def _parts() -> tuple[ModuleType, ...]:
     """Modules with more to register than classes; their `unregister` may be called at any time."""
-<<<<<<< HEAD
-    from . import keys, preset_files, translations, ui
-    from .draw import operator as draw
-=======
     from . import cli, keys, preset_files, translations, ui
->>>>>>> batch
+    from .draw import operator as draw
     from .live import engine
     from .live import properties as live
     from .overlay import ui as overlay
 
-<<<<<<< HEAD
-    return (translations, preset_files, ui, overlay, live, engine, draw, keys)
-=======
-    return (translations, preset_files, ui, overlay, live, engine, keys, cli)
->>>>>>> batch
+    return (translations, preset_files, ui, overlay, live, engine, draw, keys, cli)
