@@ -245,7 +245,7 @@ pub(crate) fn symmetrised(
         }
     }
     let exact = is_exact(symmetry, lattice.edge_length);
-    let mut placed = match best {
+    let placed = match best {
         Some((.., placed)) => placed,
         None if exact => return Err(Obstacle { reason: "a triangle stays inverted".to_owned(), at }),
         None => placed.clone(),
@@ -256,9 +256,6 @@ pub(crate) fn symmetrised(
             symmetry.axis.reflected(placed.patch.vertices[v]).distance(image)
         })
         .fold(0.0, f64::max);
-    // The same lattice by the name that other patches give it.
-    let angle = lattice.angle.rem_euclid(FRAC_PI_3);
-    placed.patch.lattice.angle = if angle < FRAC_PI_3 { angle } else { 0.0 };
     Ok((placed, error / lattice.edge_length))
 }
 

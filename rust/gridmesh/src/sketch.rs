@@ -363,7 +363,8 @@ impl Job<'_> {
     /// The patch with its numbers.
     fn report(&mut self, outline: &Outline, placed: Placed, mirror_error: Option<f64>) -> Sketch {
         let started = Instant::now();
-        let patch = placed.patch;
+        let mut patch = placed.patch;
+        patch.lattice = patch.lattice.of_least_angle();
         let mut report = SketchReport {
             triangles: patch.triangles.len(),
             irregular: outline.irregular(),
