@@ -124,19 +124,16 @@ def test_moving_turning_and_scaling_keeps_the_topology():
     for drawing in DRAWINGS.values():
         points = drawing["points"]
         expected = gridmesh.mesh_sketch(points, triangles=2500)
-        for angle, scale, shift in [(0.7, 3.3, (2, -1)), (2.9, 0.021, (-0.4, 7))]:
+        for angle, scale, shift in [(0.7, 3.3, (2, -1)), (1.1, 1.7, (0, 0.3)), (2.9, 0.021, (-0.4, 7))]:
             turned = points @ np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
             moved = scale * turned + np.array(shift) * np.ptp(points)
             patch = gridmesh.mesh_sketch(moved, triangles=2500)
             check_patch(patch, [moved])
-            # The lattice may be named by another of its directions, which numbers the vertices differently.
-            before, after = (
-                valences(p.triangles, len(p.vertices))[p.loops[0]].tolist() for p in (expected, patch)
-            )
             same_cost = patch.report["cost"] == pytest.approx(expected.report["cost"], rel=1e-6)
-            kept.append(same_cost and any(before[k:] + before[:k] == after for k in range(len(before))))
+            # The lattice is laid as the drawing lies: not only the topology, also the numbering is the same.
+            kept.append(same_cost and np.array_equal(patch.triangles, expected.triangles))
     # Rounding decides where two boundaries or two lattice angles are as good as each other.
-    assert np.mean(kept) >= 0.9, kept
+    assert np.mean(kept) >= 0.95, kept
 
 
 @pytest.mark.parametrize("threads", [1, 2, 5])
