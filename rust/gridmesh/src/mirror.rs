@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 use crate::assemble::{Region, assemble};
 use crate::axial::Axial;
 use crate::curve::ClosedCurve;
-use crate::deviation::{beside, deviation};
+use crate::deviation::{beside, crossings, deviation};
 use crate::error::{Error, Result};
 use crate::lattice::{Lattice, ROW_HEIGHT};
 use crate::options::SketchOptions;
@@ -236,12 +236,11 @@ pub(crate) fn symmetrised(
         let Some(found) = both.placed_by(side, options) else { continue };
         // The mean, unless it bends triangles that a single side leaves in shape.
         let angle = min_angle(&found.patch) * if side == Side::Mean { 1.1 } else { 1.0 };
-        let bridged = found.bridged_inlets;
-        let is_better = |&(fewest, least, _): &(usize, f64, Placed)| {
-            bridged < fewest || bridged == fewest && angle > least
-        };
+        let lost = found.lost();
+        let is_better =
+            |&(fewest, least, _): &(usize, f64, Placed)| lost < fewest || lost == fewest && angle > least;
         if best.as_ref().is_none_or(is_better) {
-            best = Some((bridged, angle, found));
+            best = Some((lost, angle, found));
         }
     }
     let exact = is_exact(symmetry, lattice.edge_length);
@@ -308,6 +307,7 @@ impl Both<'_> {
             return None;
         }
         let found = pockets(&beside, &vertices, &patch.triangles, &arcs, INLET * h);
+        let crossing = if options.relax { crossings(&beside, &vertices, &arcs).len() } else { 0 };
         let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
         let triangles = patch.triangles.clone();
         Some(Placed {
@@ -315,6 +315,7 @@ impl Both<'_> {
             released_corners: self.placed.corners.saturating_sub(kept),
             max_deviation: farthest / h,
             bridged_inlets: found.occupied.len(),
+            crossings: crossing,
             ..self.placed.clone()
         })
     }

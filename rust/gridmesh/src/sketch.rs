@@ -210,7 +210,10 @@ impl Job<'_> {
         loop {
             let (lattice, outline) = match outlines.next() {
                 Some(next) => next,
-                None if best.as_ref().is_some_and(|(_, _, placed, _)| !placed.is_bridged(self.options)) => {
+                None if best
+                    .as_ref()
+                    .is_some_and(|(_, _, placed, _)| placed.fault(self.options).is_none()) =>
+                {
                     break;
                 }
                 None => {
@@ -246,9 +249,9 @@ impl Job<'_> {
             }
         }
         if let Some((_, outline, placed, mirror_error)) = best {
-            if placed.is_bridged(self.options) {
-                let at = placed.patch.inlets.first().map_or(DVec2::ZERO, |inlet| inlet[0]);
-                return Ok(Err(Obstacle { reason: "an inlet is narrower than the grid".to_owned(), at }));
+            if let Some(reason) = placed.fault(self.options) {
+                let at = placed.patch.inlets.first().map_or(self.centre, |inlet| inlet[0]);
+                return Ok(Err(Obstacle { reason: reason.to_owned(), at }));
             }
             return Ok(Ok(self.report(&outline, placed, mirror_error)));
         }
@@ -409,9 +412,9 @@ fn check_origin(options: &SketchOptions, outline: &ClosedCurve, edge_length: f64
 fn faults(placed: &Placed) -> f64 {
     let (angle, distance) = ENOUGH;
     let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
-    // A patch that bridges an inlet serves only to say where.
-    let bridged = 100.0 * placed.bridged_inlets as f64;
-    bridged + 4.0 * starved + (placed.max_deviation - distance).max(0.0)
+    // A patch that has lost a part of the drawing serves only to say where.
+    let lost = 100.0 * placed.lost() as f64;
+    lost + 4.0 * starved + (placed.max_deviation - distance).max(0.0)
 }
 
 /// The centroid of the enclosed area.
