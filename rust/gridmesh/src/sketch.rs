@@ -201,10 +201,11 @@ impl Job<'_> {
         self.lap("boundary", started);
         // Where no angle gives a boundary a shift does not either.
         let shifts = match effort {
-            Effort::Full if is_passable => self.shifts(lattices[0].0),
+            Effort::Full if is_passable => self.shifts(&lattices),
             _ => Vec::new(),
         };
-        let mut shifts = shifts.into_iter().enumerate();
+        let part_of = |k: usize| 0.4 + 0.5 * k as f64 / shifts.len() as f64;
+        let mut shifts = shifts.iter().copied().enumerate();
         let mut outlines = outlines.into_iter();
         let mut best: Option<(f64, Outline, Placed, Option<f64>)> = None;
         loop {
@@ -219,7 +220,7 @@ impl Job<'_> {
                 None => {
                     let Some((k, (angle, shift))) = shifts.next() else { break };
                     let started = Instant::now();
-                    let part = progress.part(0.4 + 0.1 * k as f64, 0.5 + 0.1 * k as f64);
+                    let part = progress.part(part_of(k), part_of(k + 1));
                     let found = self.outline(asked, effort, angle, shift, part)?;
                     self.lap("boundary", started);
                     match found {

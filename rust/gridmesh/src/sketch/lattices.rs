@@ -31,13 +31,18 @@ impl Job<'_> {
     }
 
     /// The lattices to try where those do not do.
-    pub(super) fn shifts(&self, angle: f64) -> Vec<(f64, DVec2)> {
+    pub(super) fn shifts(&self, tried: &[(f64, DVec2)]) -> Vec<(f64, DVec2)> {
         match &self.symmetry {
             Some(symmetry) => {
                 mirror::placements(symmetry, self.options.angle).into_iter().skip(MIRROR_CANDIDATES).collect()
             }
             None if self.options.origin.is_some() => Vec::new(),
-            None => SHIFTS[1..].iter().map(|&shift| (angle, DVec2::from_array(shift))).collect(),
+            None => {
+                let of = |&(angle, _): &(f64, DVec2)| {
+                    SHIFTS[1..].iter().map(move |&shift| (angle, DVec2::from_array(shift)))
+                };
+                tried.iter().flat_map(of).collect()
+            }
         }
     }
 
