@@ -2,12 +2,14 @@
 
 mod lattices;
 mod least;
+mod size;
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use glam::DVec2;
 use rayon::prelude::*;
+use size::Miss;
 
 use crate::contours::read_contours;
 use crate::curve::ClosedCurve;
@@ -17,7 +19,7 @@ use crate::mirror;
 use crate::options::{
     BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SelfCrossing, SketchOptions, SketchReport,
 };
-use crate::outline::{Obstacle, Outline, grown, traced};
+use crate::outline::{Obstacle, Outline};
 use crate::patch::Patch;
 use crate::place::{Placed, min_angle, min_angle_off_corners, place};
 use crate::progress::Progress;
@@ -139,13 +141,6 @@ enum Effort {
     Full,
     /// One.
     Quick,
-}
-
-/// Why a lattice angle gives no boundary of the size asked for.
-struct Miss {
-    obstacle: Obstacle,
-    /// There is a boundary, but with too many or too few triangles: a shift of the lattice may help.
-    is_of_count: bool,
 }
 
 struct Job<'a> {
@@ -274,94 +269,6 @@ impl Job<'_> {
                 .and_then(|p| mirror::symmetrised(&self.contours, symmetry, outline, p, self.options))
                 .map(|(placed, error)| (placed, Some(error))),
         })
-    }
-
-    /// The outline for one placement; with a number of triangles asked for, the edge length is
-    /// corrected until the number is reached within 5 % (10 % are accepted in the end). Only then
-    /// is a proof worth its time.
-    fn outline(
-        &self,
-        asked: Asked,
-        effort: Effort,
-        angle: f64,
-        shift: DVec2,
-        progress: Progress<'_>,
-    ) -> Result<Result<(Lattice, Outline), Miss>> {
-        const CORRECTIONS: usize = 6;
-        let unproved = SketchOptions { proof_nodes: 0, ..self.options.clone() };
-        let mut edge_length = match asked {
-            Asked::EdgeLength(h) => h,
-            Asked::Triangles(n) => self.first_guess(n),
-        };
-        let mut best: Option<(f64, Lattice, Outline)> = None;
-        let mut obstacle = Obstacle {
-            reason: "the number of triangles is not reached".to_owned(),
-            at: self.contours[0].points()[0],
-        };
-        for _ in 0..CORRECTIONS {
-            progress.report(0.0)?;
-            let lattice = self.lattice(edge_length, angle, shift);
-            let outline = match self.path(&lattice, &unproved, progress)? {
-                Ok(outline) => outline,
-                Err(found) => {
-                    obstacle = found;
-                    break;
-                }
-            };
-            let Asked::Triangles(n) = asked else {
-                best = Some((0.0, lattice, outline));
-                break;
-            };
-            let ratio = outline.triangles() as f64 / n as f64;
-            let off = (ratio - 1.0).abs();
-            if best.as_ref().is_none_or(|(least, ..)| off < *least) {
-                best = Some((off, lattice, outline));
-            }
-            if off <= 0.05 {
-                break;
-            }
-            edge_length *= ratio.sqrt().clamp(0.7, 1.4);
-        }
-        let allowed = match asked {
-            Asked::EdgeLength(_) => 0.0,
-            // A handful of triangles comes in few sizes: 6, 10, 13, 14, 16...
-            Asked::Triangles(n) => f64::max(0.1, 6.0 / n as f64),
-        };
-        let is_near = |outline: &Outline| match asked {
-            Asked::EdgeLength(_) => true,
-            Asked::Triangles(n) => (outline.triangles() as f64 / n as f64 - 1.0).abs() <= allowed,
-        };
-        let Some((off, lattice, mut outline)) = best else {
-            return Ok(Err(Miss { obstacle, is_of_count: false }));
-        };
-        if off > allowed {
-            return Ok(Err(Miss { obstacle, is_of_count: true }));
-        }
-        let is_asked = self.options.proof_nodes > 0 && self.options.boundary == BoundaryMethod::Optimal;
-        if is_asked && effort == Effort::Full && !outline.optimal {
-            // It may come out a little larger or smaller.
-            if let Ok(proved) = self.path(&lattice, self.options, progress)?
-                && is_near(&proved)
-            {
-                outline = proved;
-            }
-        }
-        Ok(Ok((lattice, outline)))
-    }
-
-    fn path(
-        &self,
-        lattice: &Lattice,
-        options: &SketchOptions,
-        progress: Progress<'_>,
-    ) -> Result<Result<Outline, Obstacle>> {
-        if let Some(symmetry) = &self.symmetry {
-            return mirror::traced(&self.contours, symmetry, lattice, options, progress);
-        }
-        match options.boundary {
-            BoundaryMethod::Grown => grown(&self.contours[0], lattice, options, progress),
-            BoundaryMethod::Optimal => traced(&self.contours, lattice, options, progress),
-        }
     }
 
     /// The patch with its numbers.
