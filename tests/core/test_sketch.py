@@ -8,7 +8,7 @@ import re
 import gridmesh
 import numpy as np
 import pytest
-from checks import check_patch, valences
+from checks import check_patch
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from sketches import DRAWINGS, SHAPES, blob, circle
@@ -142,7 +142,14 @@ FJORDS = [
     [(-0.004, -0.911), (0.115, -0.783), (0.182, -0.674), (0.147, -0.525), (0.126, -0.307), (-0.116, -0.245)]
     + [(-0.101, -0.19), (0.167, -0.269), (0.202, -0.516), (0.238, -0.681), (0.159, -0.818), (0.05, -0.929)],
     [(-0.207, -0.916), (-0.115, -0.798), (0.022, -0.588), (0.156, -0.477), (0.364, -0.271), (0.399, -0.075)]
-    + [(0.411, -0.077), (0.374, -0.277), (0.164, -0.486), (0.031, -0.596), (-0.105, -0.805), (-0.195, -0.913)],
+    + [
+        (0.411, -0.077),
+        (0.374, -0.277),
+        (0.164, -0.486),
+        (0.031, -0.596),
+        (-0.105, -0.805),
+        (-0.195, -0.913),
+    ],
 ]
 
 
