@@ -11,6 +11,7 @@ from xml.parsers import expat
 import addon_utils
 import bmesh
 import bpy
+import numpy as np
 
 from .. import strokes
 from ..outlines import Stroke
@@ -73,18 +74,21 @@ def meshes(
 
 def _weld(mesh: bpy.types.Mesh) -> None:
     """Join the vertices that are at exactly the same place."""
+    points = np.empty(len(mesh.vertices) * 3, np.float32)
+    mesh.vertices.foreach_get("co", points)
+    points += 0.0  # -0 is 0
+    places = points.view("V12")  # compared as bytes: one key, not three
+    _, first, which = np.unique(places, return_index=True, return_inverse=True)
+    doubles = np.flatnonzero(first[which] != np.arange(len(places)))
+    if not len(doubles):
+        return
     bm = bmesh.new()
     try:
         bm.from_mesh(mesh)
-        targets: dict[tuple[float, ...], bmesh.types.BMVert] = {}
-        doubles = {}
-        for vertex in bm.verts:
-            first = targets.setdefault(vertex.co.to_tuple(), vertex)
-            if first is not vertex:
-                doubles[vertex] = first
-        if doubles:
-            bmesh.ops.weld_verts(bm, targetmap=doubles)
-            bm.to_mesh(mesh)
+        bm.verts.ensure_lookup_table()
+        targets = zip(doubles.tolist(), first[which[doubles]].tolist(), strict=True)
+        bmesh.ops.weld_verts(bm, targetmap={bm.verts[at]: bm.verts[to] for at, to in targets})
+        bm.to_mesh(mesh)
     finally:
         bm.free()
 

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import gc
 import glob
 import os
+import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -68,8 +70,24 @@ def safely(path: Path, make: Callable[[Path], None], faces: int = 0) -> None:
             os.fsync(file.fileno())
         draft.chmod(0o666 & ~_umask())
         draft.replace(path)
+    except BaseException:
+        _release()
+        raise
     finally:
-        draft.unlink(missing_ok=True)
+        for left in path.parent.glob(
+            f"{glob.escape(draft.name)}*"
+        ):  # Blender writes to a name with an @ first
+            left.unlink()
+
+
+def _release() -> None:
+    """Close the files that a failed exporter left open: a deleted one still fills the disk.
+
+    Python keeps the frames of the last error that was printed.
+    """
+    for name in ("last_exc", "last_type", "last_value", "last_traceback"):
+        vars(sys).pop(name, None)
+    gc.collect()
 
 
 def _umask() -> int:
