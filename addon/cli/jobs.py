@@ -189,12 +189,13 @@ def checked(
 
 
 def select(items: list[Job], part: str | None, shard: str | None) -> list[Job]:
-    """Items of a range "100-199", counted from 0, and of those the ones of a shard "3/8", counted from 1."""
+    """Items of a range "100-199" or "100", counted from 0, and of those the ones of a shard "3/8", counted from 1."""
     if part is not None:
-        match = re.fullmatch(r"(\d+)-(\d+)", part)
-        if not match or int(match[1]) > int(match[2]):
+        match = re.fullmatch(r"(\d+)(?:-(\d+))?", part)
+        first, last = (int(match[1]), int(match[2] or match[1])) if match else (1, 0)
+        if first > last:
             raise JobError(f"--range {part}: write the first and the last item, as in 100-199")
-        items = items[int(match[1]) : int(match[2]) + 1]
+        items = items[first : last + 1]
     if shard is not None:
         match = re.fullmatch(r"(\d+)/(\d+)", shard)
         if not match or not 1 <= int(match[1]) <= int(match[2]):
