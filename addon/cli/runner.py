@@ -143,7 +143,8 @@ class _Stop:
     def forget(self) -> None:
         """Let signals do what they did before."""
         for number, handler in self.before:
-            signal.signal(number, handler)
+            # Blender's own handler is not Python's to know, nor to set again; no more than the exit comes after.
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
 
 
 def _digest(path: Path) -> str | None:

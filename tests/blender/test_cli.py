@@ -119,3 +119,14 @@ def test_a_signal_finishes_the_item_and_tells_how_to_resume(tmp_path, undisturbe
     assert "--resume" in rest
     assert batch(path, "--resume").returncode == 0
     assert outputs(tmp_path) == undisturbed
+
+
+def test_a_handler_of_blender_itself_is_not_put_back(tmp_path, monkeypatch):
+    """A real Blender handles signals in C: Python is told None, and refuses to set that."""
+    from addon.cli import runner
+
+    asked = []
+    monkeypatch.setattr(runner.signal, "signal", lambda number, handler: asked.append(handler))
+    stop = runner._Stop(None)
+    stop.forget()
+    assert asked[2:] == [signal.SIG_DFL] * 2

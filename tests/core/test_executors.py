@@ -1,9 +1,13 @@
 """`map_sketches` over executors: threads, processes, and a cluster of several workers."""
 
 import multiprocessing
+import re
+import subprocess
+import sys
 import threading
 import warnings
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
 
 import gridmesh
 import numpy as np
@@ -67,6 +71,20 @@ def test_a_dask_cluster_of_four_workers_gives_the_same(drawings, local):
         ):
             assert len(client.scheduler_info(n_workers=-1)["workers"]) == 4
             assert told(gridmesh.map_sketches(drawings, executor=executor, **OPTIONS)) == local
+
+
+def test_the_example_of_the_manual_runs(tmp_path):
+    pytest.importorskip("distributed", reason="DASK IS MISSING, so no cluster was tested")
+    page = (Path(__file__).parents[2] / "docs" / "batch.md").read_text(encoding="utf-8")
+    (code,) = [
+        code for code in re.findall(r"^```python\n(.*?)^```", page, re.M | re.S) if "LocalCluster" in code
+    ]
+    script = tmp_path / "cluster.py"
+    script.write_text(
+        code + "        print([len(body.triangles) for body in same] == [len(b.triangles) for b in bodies])\n"
+    )
+    ran = subprocess.run([sys.executable, script], capture_output=True, text=True, check=False)
+    assert ran.stdout.strip() == "True", ran.stdout + ran.stderr
 
 
 def test_stitched_only_and_empty():
