@@ -8,6 +8,7 @@ Exit code 77 where there is no real Blender: nothing was tested then.
 import json
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -137,6 +138,11 @@ def command_line(blender, package):
     }
     failed = 0
     for name, words in steps.items():
+        if name == "remove":
+            failed += (wrong := interrupted(blender, profile, farm)) != ""
+            print(
+                f"{'FAILED' if wrong else 'PASSED'}  command line: interrupted{chr(10) * bool(wrong)}{wrong}"
+            )
         done = run(blender, profile, words)
         wrong = [] if done.returncode == CODES.get(name, 0) else [f"exit code {done.returncode}"]
         if name in SAYS and not re.search(SAYS[name], done.stdout, re.MULTILINE):
@@ -152,14 +158,41 @@ def command_line(blender, package):
         print(
             f"{'PASSED' if good else 'FAILED'}  command line: {name}{'' if good else chr(10).join(['', *wrong, done.stdout])}"
         )
-    print(f"command line: {len(steps) - failed} passed, {failed} failed, 0 skipped", flush=True)
+    print(f"command line: {len(steps) + 1 - failed} passed, {failed} failed, 0 skipped", flush=True)
     return failed
 
 
+def interrupted(blender, profile, folder):
+    """What is wrong with a batch that is told to stop; nothing if all is well."""
+    job = {"op": "strokes", "in": "ring.svg"}
+    items = [json.dumps({**job, "id": f"{n}", "out": f"many/{n}.ply"}) + "\n" for n in range(50)]
+    (folder / "many.jsonl").write_text("".join(items))
+    words = ["--background", "--command", "gridmesh", "batch", blender.path(folder / "many.jsonl")]
+    with subprocess.Popen(
+        command(blender, profile, words), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    ) as process:
+        told = []
+        for line in process.stdout:
+            told.append(line)
+            if line.startswith("[2/"):
+                process.send_signal(signal.SIGINT)
+    done = len(list((folder / "many").glob("*.ply")))
+    good = process.returncode == 130 and "--resume" in "".join(told) and 2 <= done < 50
+    return "" if good else f"exit code {process.returncode}, {done} files\n{''.join(told)}"
+
+
+def command(blender, profile, words):
+    return blender.command([blender.program, *words], BLENDER_USER_RESOURCES=blender.path(profile))
+
+
 def run(blender, profile, words):
-    command = blender.command([blender.program, *words], BLENDER_USER_RESOURCES=blender.path(profile))
     return subprocess.run(
-        command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, timeout=600
+        command(blender, profile, words),
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        check=False,
+        timeout=600,
     )
 
 
