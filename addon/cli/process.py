@@ -39,9 +39,11 @@ class Worker:
 
     def do(self, item: dict[str, Any]) -> dict[str, Any]:
         """Result of a job; an error if the process died over it or was stopped."""
+        self.killed = ""
         if self.process is None:
             self._start()
-        self.killed = ""
+            if self._answer() is None:
+                return self._buried()
         self.said.seek(0)
         self.said.truncate()
         reason = f"it took longer than {self.limits.seconds:g} seconds; raise --max-seconds"
@@ -51,14 +53,19 @@ class Worker:
         try:
             self.process.stdin.write(json.dumps(item) + "\n")
             self.process.stdin.flush()
-            for line in self.process.stdout:
-                if line.startswith(MARK):
-                    return json.loads(line.removeprefix(MARK))
+            answer = self._answer()
         except BrokenPipeError:
-            pass  # it died; told below
+            answer = None  # it died
         finally:
             timer.cancel()
-        return self._buried()
+        return self._buried() if answer is None else answer
+
+    def _answer(self) -> dict[str, Any] | None:
+        """Next thing that the worker says; None if it died."""
+        for line in self.process.stdout:
+            if line.startswith(MARK):
+                return json.loads(line.removeprefix(MARK))
+        return None
 
     def kill(self, reason: str) -> None:
         """End the process now; its item becomes an error with this reason."""

@@ -23,6 +23,7 @@ def serve(megabytes: float) -> int:
         os.dup2(2, 1)
         _prepare()
         limits.limit(megabytes)
+        print(f"{MARK}{{}}", file=answers, flush=True)  # from now on time counts
         for line in sys.stdin:
             answers.write(f"{MARK}{json.dumps(work(**json.loads(line)))}\n")
             answers.flush()

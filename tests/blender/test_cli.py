@@ -8,7 +8,6 @@ import subprocess
 import pytest
 from batches import BAD, ROOT, SHAPES, batch, command, item, outputs, results, write_jobs
 
-
 SAME = ("ply", "obj", "stl")
 """Formats of which the same meshes are the same bytes."""
 

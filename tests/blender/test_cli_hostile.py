@@ -11,6 +11,13 @@ import pytest
 from batches import BAD, ROOT, SHAPES, batch, command, item, outputs, results, run, write_jobs
 
 SQUARE = SHAPES / "square.json"
+MORE = """
+import sys
+print("@gridmesh {}", flush=True)
+sys.stdin.readline()
+sys.exit("memory allocation of 99 bytes failed")
+"""
+
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg">'
 
 
@@ -124,6 +131,7 @@ def test_a_million_holes_and_too_much_memory(tmp_path):
 
 
 def test_items_that_take_too_long_are_stopped(tmp_path):
+    # On a slow machine Blender itself takes as long to start; that does not count.
     items = [item(1, SQUARE, "out/dense.ply", triangles=5_000_000), item(2, SQUARE, "out/last.ply")]
     ran = batch(write_jobs(tmp_path, items), "--max-seconds", "4")
     assert ran.returncode == 1, ran.stdout + ran.stderr
@@ -228,3 +236,29 @@ def test_a_terminal_shows_a_bar_and_only_what_went_wrong(tmp_path):
     assert "error ibad" in text
     assert "ok i0" not in text
     assert "\x1b[31m" not in text
+
+
+def test_a_worker_that_does_not_start_is_told(tmp_path, monkeypatch):
+    from addon.cli import process
+
+    monkeypatch.setattr(process, "_command", lambda **_: [sys.executable, "-c", "raise SystemExit('no bpy')"])
+    worker = process.Worker(process.Limits(), scripts=False)
+    for _ in range(2):
+        answer = worker.do({})
+        assert answer["kind"] == "crashed"
+        assert "no bpy" in answer["message"]
+    worker.close()
+
+
+def test_an_item_that_kills_its_worker_stops_nothing(tmp_path, monkeypatch):
+    from addon.cli import process
+
+    kill = "import sys; print('@gridmesh {}', flush=True); sys.stdin.readline(); __import__('os').abort()"
+    monkeypatch.setattr(process, "_command", lambda **_: [sys.executable, "-c", kill])
+    worker = process.Worker(process.Limits(), scripts=False)
+    answer = worker.do({})
+    assert answer["kind"] == "crashed"
+    monkeypatch.setattr(process, "_command", lambda **_: [sys.executable, "-c", MORE])
+    answer = worker.do({})
+    assert answer["kind"] == "out_of_memory"
+    worker.close()

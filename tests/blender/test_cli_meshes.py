@@ -91,6 +91,18 @@ def test_fill_reads_every_format_alike(tmp_path, balls):
         assert volume(ob) == pytest.approx(4.05, abs=0.1)
 
 
+def test_the_buffer_of_a_gltf_is_part_of_the_input(tmp_path):
+    from addon.cli import jobs
+
+    ball()
+    path = save(tmp_path / "a ball.gltf")
+    (job,) = jobs.read(write_jobs(tmp_path, [{"id": "a", "op": "fill", "in": path.name, "out": "a.ply"}]))
+    assert [file.name for file in job.files()] == ["a ball.gltf", "a ball.bin"]
+    before = job.key()
+    job.files()[1].write_bytes(b"other")
+    assert job.key() != before
+
+
 def test_a_blend_file_keeps_everything_else(tmp_path):
     ball("Leaf 1")
     ball("Leaf 2", z=3)
@@ -113,23 +125,30 @@ def test_a_blend_file_keeps_everything_else(tmp_path):
 
 def test_cut_closes_both_sides(tmp_path):
     ball(opened=False)
-    path = save(tmp_path / "ball.blend")
+    save(tmp_path / "ball.blend")
+    sides = {"both": 2, "left": 1, "right": 1}
+    params = {"stroke": ACROSS, "edge_length": 0.2}
+    items = [
+        {
+            "id": keep,
+            "op": "cut",
+            "in": "ball.blend",
+            "params": {**params, "keep": keep},
+            "out": f"{keep}.blend",
+        }
+        for keep in sides
+    ]
+    ran = batch(write_jobs(tmp_path, items))
+    assert ran.returncode == 0, ran.stdout + ran.stderr
     volumes = []
-    for keep, pieces in (("both", 2), ("left", 1), ("right", 1)):
-        out = tmp_path / f"{keep}.blend"
-        ran = run(
-            "cut", path, "-o", out, "--stroke", json.dumps(ACROSS), "--keep", keep, "--edge-length", "0.2"
-        )
-        assert ran.returncode == 0, ran.stdout + ran.stderr
-        result = results(tmp_path)[str(path)]
-        assert result["pieces"] == pieces
+    for keep, result in results(tmp_path).items():
+        assert result["pieces"] == sides[keep]
         assert result["triangles"] > 20
         assert 0 < result["min_angle"] < np.pi / 3 + 1e-9
-        found = load(out)
-        assert len(found) == pieces
+        found = load(tmp_path / f"{keep}.blend")
+        assert len(found) == sides[keep]
         assert not any(map(open_edges, found.values()))
         volumes.append(sum(map(volume, found.values())))
-        (tmp_path / f"{keep}.report.jsonl").unlink()
     assert volumes[1] + volumes[2] == pytest.approx(volumes[0])
     assert volumes[1] < volumes[2]
 
