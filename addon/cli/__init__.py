@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line: many files, unattended.
 
-    arguments -> jobs (checked as a whole) -> runner (one worker process, restarted when it dies)
-    worker -> work -> inputs, api, outputs
+    arguments -> jobs (from a file, or `listing`; by the table in `params`) -> runner -> process (the worker, restarted when it dies)
+    worker -> loading, inputs -> making (what the operators are made of) -> outputs, pictures
 
-Only `outputs`, `worker` and `register` need bpy.
+Only `loading`, `making`, `outputs`, `pictures`, `worker` and `register` need bpy: a run is watched by a process that no file can crash.
 """
 
 from typing import Any

@@ -4,10 +4,19 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from pathlib import Path
+from typing import Any
 
-from . import jobs, runner
+from . import jobs, listing, params, runner
+from .process import Limits
+
+_HELP = {
+    "strokes": "make smooth bodies of closed strokes",
+    "fill": "fill the holes of meshes",
+    "cut": "cut meshes along a stroke",
+}
 
 
 def main(argv: list[str]) -> int:
@@ -15,40 +24,120 @@ def main(argv: list[str]) -> int:
     if argv[:1] == ["worker"]:
         from . import worker
 
-        return worker.serve()
+        return worker.serve(float(argv[1]))
     try:
         chosen = _parser().parse_args(argv)
     except SystemExit as stop:  # Blender would leave at once
         return stop.code if isinstance(stop.code, int) else 2
     try:
-        items = jobs.select(jobs.read(chosen.jobs), chosen.range, chosen.shard)
-        report = chosen.report or _report_beside(chosen.jobs, chosen.shard, chosen.range)
-        return runner.run(items, report, resume=chosen.resume, limit=chosen.max_megabytes * 1_000_000)
+        items = jobs.read(chosen.jobs) if chosen.op == "batch" else _listed(chosen)
+        items = jobs.select(items, chosen.range, chosen.shard)
+        return runner.run(items, chosen.report or _report(chosen), _settings(chosen))
     except jobs.JobError as error:
-        print(f"gridmesh: {error}", file=sys.stderr)
+        for line in str(error).splitlines():
+            print(f"gridmesh: {line}", file=sys.stderr)
         return 2
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser("gridmesh", description="Smooth bodies from files of drawings.")
-    verbs = parser.add_subparsers(required=True, metavar="COMMAND")
+    parser = argparse.ArgumentParser(
+        "gridmesh", description="Bodies from drawings, filled holes and cut meshes, for any number of files."
+    )
+    verbs = parser.add_subparsers(required=True, metavar="COMMAND", dest="op")
+    for op, known in params.OPS.items():
+        verb = verbs.add_parser(op, help=_HELP[op], description=f"{_HELP[op].capitalize()}.")
+        endings = ", ".join(jobs.INPUTS[op])
+        verb.add_argument("inputs", nargs="+", metavar="IN", help=f"files, folders or patterns: {endings}")
+        verb.add_argument(
+            "-o",
+            "--out",
+            required=True,
+            help=f"file to write: {', '.join(jobs.OUTPUTS)}; with several inputs {listing.STEM} stands for each one's name",
+        )
+        verb.add_argument("--object", metavar="PATTERN", help="only objects whose name fits, as 'Leaf*'")
+        for name, param in known.items():
+            _add(verb, name, param)
+        _add_common(verb)
     batch = verbs.add_parser("batch", help="run a file of jobs, one JSON object a line")
-    batch.add_argument("jobs", type=Path, help="file with one JSON object a line: id, op, in, params, out")
-    batch.add_argument("--range", metavar="A-B", help="only items A to B, counted from 0, both included")
-    batch.add_argument("--shard", metavar="K/N", help="only every Nth item, beginning with the Kth, from 1")
     batch.add_argument(
-        "--resume", action="store_true", help="skip what the report says is done and unchanged"
+        "jobs", type=Path, help="file with one JSON object a line: id, op, in, object, params, out"
     )
-    batch.add_argument(
-        "--report", type=Path, help="file with a line for each item (default: beside the jobs)"
-    )
-    batch.add_argument(
-        "--max-megabytes", type=float, default=100.0, help="refuse larger input files (default: 100)"
-    )
+    _add_common(batch)
     return parser
 
 
-def _report_beside(path: Path, shard: str | None, part: str | None) -> Path:
-    suffix = f".shard-{shard.replace('/', '-of-')}" if shard else ""
-    suffix += f".range-{part}" if part else ""
-    return path.with_name(f"{path.stem}{suffix}.report.jsonl")
+def _add(verb: argparse.ArgumentParser, name: str, param: params.Param) -> None:
+    option = "--" + name.replace("_", "-")
+    text = param.help.replace("%", "%%")
+    if param.kind == "switch":
+        verb.add_argument(option, action=argparse.BooleanOptionalAction, default=None, help=text)
+    elif param.kind == "choice":
+        verb.add_argument(option, choices=param.choices, help=text)
+    elif param.kind == "stroke":
+        verb.add_argument(option, type=_stroke, required=True, metavar="FILE|OBJECT|POINTS", help=text)
+    else:
+        verb.add_argument(option, type=int if param.kind == "count" else float, metavar="N", help=text)
+
+
+def _stroke(text: str) -> Any:
+    """Points if this is a JSON list, else a name."""
+    if not text.lstrip().startswith("["):
+        return text
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"no list of points: {error}") from error
+
+
+def _add_common(verb: argparse.ArgumentParser) -> None:
+    add = verb.add_argument_group("which items, and how").add_argument
+    add("--range", metavar="A-B", help="only items A to B, counted from 0, both included")
+    add("--shard", metavar="K/N", help="only every Nth item, beginning with the Kth, from 1")
+    add("--resume", action="store_true", help="skip what the report says is done and unchanged")
+    add("--report", type=Path, help="file with a line for each item (default: beside jobs or output)")
+    add("--render", action="store_true", help="a picture of each output, beside it")
+    add(
+        "--engine",
+        choices=("workbench", "cycles"),
+        default="workbench",
+        help="what renders (default: workbench)",
+    )
+    scripts = verb.add_mutually_exclusive_group()
+    scripts.add_argument(
+        "--disable-autoexec",
+        action="store_false",
+        dest="scripts",
+        help=".blend files do not run scripts (default)",
+    )
+    scripts.add_argument("--enable-autoexec", action="store_true", dest="scripts", help=".blend files may")
+    verb.set_defaults(scripts=False)
+    allowed = Limits()
+    for option, default, text in (
+        ("--max-megabytes", allowed.input_megabytes, "refuse larger input files"),
+        ("--max-memory", allowed.memory_megabytes, "megabytes of memory for an item, on Linux; 0: any"),
+        ("--max-seconds", allowed.seconds, "stop items that take longer; 0: none"),
+    ):
+        add(option, type=float, default=default, metavar="N", help=f"{text} (default: {default:g})")
+
+
+def _listed(chosen: argparse.Namespace) -> list[jobs.Job]:
+    given = {name: getattr(chosen, name) for name in params.OPS[chosen.op]}
+    given = {name: value for name, value in given.items() if value is not None}
+    return listing.listed(chosen.op, chosen.inputs, chosen.object, given, chosen.out)
+
+
+def _settings(chosen: argparse.Namespace) -> runner.Settings:
+    allowed = Limits(chosen.max_megabytes, chosen.max_memory, chosen.max_seconds)
+    return runner.Settings(chosen.resume, allowed, chosen.scripts, chosen.render, chosen.engine)
+
+
+def _report(chosen: argparse.Namespace) -> Path:
+    """Where the report goes if it is not said."""
+    suffix = f".shard-{chosen.shard.replace('/', '-of-')}" if chosen.shard else ""
+    suffix += f".range-{chosen.range}" if chosen.range else ""
+    if chosen.op == "batch":
+        return chosen.jobs.with_name(f"{chosen.jobs.stem}{suffix}.report.jsonl")
+    out = Path.cwd() / chosen.out
+    stem = out.stem.replace(listing.STEM, chosen.op)
+    folder = next(parent for parent in out.parents if listing.STEM not in str(parent))
+    return folder / f"{stem}{suffix}.report.jsonl"

@@ -16,8 +16,8 @@ class InputError(ValueError):
     """A file holds no curves. The message says why."""
 
 
-def curves(path: Path, data: bytes) -> list[Stroke]:
-    """Closed curves of a file, in the plane z = 0.
+def curves(path: Path, data: bytes, *, cyclic: bool = True) -> list[Stroke]:
+    """Curves of a file, in the plane z = 0; closed unless it is said that they are not.
 
     JSON: {"points": [[x, y], ...], "holes": [[[x, y], ...], ...]}, or a list of curves.
     CSV: x, y in each row; an empty row between curves.
@@ -34,7 +34,7 @@ def curves(path: Path, data: bytes) -> list[Stroke]:
         if points.ndim != 2 or points.shape[1] != 2:
             raise InputError(f"a curve has shape {points.shape}; it must be a list of points [x, y]")
     return [
-        Stroke(np.column_stack([points, np.zeros(len(points))]), True, path.stem, "", at, len(arrays))
+        Stroke(np.column_stack([points, np.zeros(len(points))]), cyclic, path.stem, "", at, len(arrays))
         for at, points in enumerate(arrays)
     ]
 

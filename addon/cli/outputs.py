@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bodies to files, through Blender's own exporters: whole, or not at all."""
+"""Objects to files, through Blender's own exporters: whole, or not at all."""
 
 from __future__ import annotations
 
+import gc
 import glob
 import os
-import shutil
+import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
@@ -14,63 +16,100 @@ from mathutils import Matrix
 
 from .. import meshes
 from ..api import Body
+from .loading import said
+from .whole import is_whole
 
 
 class OutputError(RuntimeError):
     """A file could not be written. The message says why."""
 
+    kind = "output"
 
-def write(path: Path, bodies: list[Body], crease_angle: float) -> None:
-    """Write the bodies to a temporary folder beside `path`, and rename the finished file.
 
-    The scene is empty before and after.
-    """
-    prefix = f".gridmesh-{path.name}-"
-    for left in path.parent.glob(f"{glob.escape(prefix)}????????"):
-        shutil.rmtree(left)  # of a run that was killed
-    with tempfile.TemporaryDirectory(prefix=prefix, dir=path.parent) as folder:
-        draft = Path(folder) / f"body{path.suffix.lower()}"
-        objects = []
+def placed(name: str, bodies: list[Body], crease_angle: float) -> list[bpy.types.Object]:
+    """Make objects of the bodies, in the scene."""
+    made = []
+    for body in bodies:
+        mesh = bpy.data.meshes.new(name)
+        ob = bpy.data.objects.new(name, mesh)
+        meshes.fill(mesh, body, crease_angle)
+        ob.matrix_world = Matrix(body.sketch.plane.matrix.tolist())
+        bpy.context.scene.collection.objects.link(ob)
+        made.append(ob)
+    bpy.context.view_layer.update()
+    return made
+
+
+def write(path: Path, objects: list[bpy.types.Object]) -> None:
+    """Write the objects; a .blend file gets everything that is loaded."""
+    for ob in bpy.context.view_layer.objects:
+        ob.select_set(ob in objects)
+    bpy.context.view_layer.objects.active = objects[0]
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    faces = sum(len(ob.evaluated_get(depsgraph).data.polygons) for ob in objects)
+    safely(path, _export, faces)
+
+
+def safely(path: Path, make: Callable[[Path], None], faces: int = 0) -> None:
+    """Let a file be made under a temporary name beside `path`, look whether it is whole, and rename it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    prefix, suffix = f".gridmesh-{path.name}-", path.suffix.lower()
+    for left in path.parent.glob(f"{glob.escape(prefix)}????????*"):
+        left.unlink()  # of a run that was killed
+    number, name = tempfile.mkstemp(prefix=prefix, suffix=suffix, dir=path.parent)
+    os.close(number)
+    draft = Path(name)
+    try:
         try:
-            for body in bodies:
-                objects.append(_object(path.stem, body, crease_angle))
-            _export(draft, objects)
+            make(draft)
         except RuntimeError as error:  # what Blender's operators raise
-            raise OutputError(str(error).strip()) from error
-        finally:
-            for ob in objects:
-                mesh = ob.data
-                bpy.data.objects.remove(ob)
-                bpy.data.meshes.remove(mesh)
-        if not draft.exists() or not draft.stat().st_size:
-            raise OutputError("Blender wrote no file")
+            raise OutputError(said(error)) from error
+        if not is_whole(draft, faces):
+            raise OutputError(f"'{path.name}' could not be written to its end; is the disk full?")
         with draft.open("rb+") as file:
             os.fsync(file.fileno())
+        draft.chmod(0o666 & ~_umask())
         draft.replace(path)
+    except BaseException:
+        _release()
+        raise
+    finally:
+        for left in path.parent.glob(
+            f"{glob.escape(draft.name)}*"
+        ):  # Blender writes to a name with an @ first
+            left.unlink()
 
 
-def _object(name: str, body: Body, crease_angle: float) -> bpy.types.Object:
-    mesh = bpy.data.meshes.new(name)
-    ob = bpy.data.objects.new(name, mesh)
-    meshes.fill(mesh, body, crease_angle)
-    ob.matrix_world = Matrix(body.sketch.plane.matrix.tolist())
-    bpy.context.scene.collection.objects.link(ob)
-    return ob
+def _release() -> None:
+    """Close the files that a failed exporter left open: a deleted one still fills the disk.
+
+    Python keeps the frames of the last error that was printed.
+    """
+    for name in ("last_exc", "last_type", "last_value", "last_traceback"):
+        vars(sys).pop(name, None)
+    gc.collect()
 
 
-def _export(path: Path, objects: list[bpy.types.Object]) -> None:
-    bpy.context.view_layer.update()
+def _umask() -> int:
+    """Permissions that new files do not get; asking sets it."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _export(path: Path) -> None:
     name, suffix = str(path), path.suffix
+    axes = {"forward_axis": "Y", "up_axis": "Z", "export_selected_objects": True}
     if suffix == ".blend":
-        bpy.data.libraries.write(name, set(objects), fake_user=False)
-        return
-    if suffix == ".ply":
-        done = bpy.ops.wm.ply_export(filepath=name, forward_axis="Y", up_axis="Z")
+        path.unlink()  # or it would be kept as a backup
+        done = bpy.ops.wm.save_as_mainfile(filepath=name, copy=True, compress=False)
+    elif suffix == ".ply":
+        done = bpy.ops.wm.ply_export(filepath=name, **axes)
     elif suffix == ".obj":
-        done = bpy.ops.wm.obj_export(filepath=name, export_materials=False, forward_axis="Y", up_axis="Z")
+        done = bpy.ops.wm.obj_export(filepath=name, export_materials=False, **axes)
     elif suffix == ".stl":
-        done = bpy.ops.wm.stl_export(filepath=name, forward_axis="Y", up_axis="Z")
+        done = bpy.ops.wm.stl_export(filepath=name, **axes)
     else:
-        done = bpy.ops.export_scene.gltf(filepath=name, export_format="GLB")
+        done = bpy.ops.export_scene.gltf(filepath=name, export_format="GLB", use_selection=True)
     if done != {"FINISHED"}:
         raise OutputError(f"Blender's exporter answered {done}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run jobs in a worker process that is started again when a file crashes it, and report each. No bpy is imported."""
+"""Run jobs one after the other, and report each. No bpy is imported."""
 
 from __future__ import annotations
 
@@ -7,78 +7,151 @@ import hashlib
 import json
 import os
 import signal
-import subprocess
 import sys
-import threading
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
 from ..native import NATIVE_VERSION
 from .jobs import Job, JobError
-from .worker import MARK
+from .process import Limits, Worker
+from .telling import Teller
 
 INTERRUPTED = 130
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-def run(items: list[Job], report: Path, *, resume: bool, limit: float) -> int:
+@dataclass(frozen=True)
+class Settings:
+    """What holds for all items of a run."""
+
+    resume: bool = False
+    limits: Limits = field(default_factory=Limits)
+    scripts: bool = False
+    """Whether .blend files may run their own scripts."""
+    render: bool = False
+    engine: str = "workbench"
+
+
+def run(items: list[Job], report: Path, settings: Settings) -> int:
     """Run all items; 0 if all are done, 1 if some failed, 130 if a signal ended the run before the last."""
-    done = _done(report) if resume else {}
-    stop = threading.Event()
-    before = [(number, signal.signal(number, lambda *_: stop.set())) for number in SIGNALS]
-    worker = Worker()
+    done = _done(report) if settings.resume else {}
+    worker = Worker(settings.limits, scripts=settings.scripts)
+    stop = _Stop(worker)
     failed = finished = skipped = 0
+    teller = Teller(len(items))
+    unwritten = None
     try:
-        with _opened(report, resume) as file:
+        with _opened(report, settings.resume) as file:
             for item in items:
-                if stop.is_set():
+                if stop.asked:
                     break
-                result = _one(item, done.get(item.id), worker, limit)
+                result = _one(item, done.get(item.id), worker, settings)
                 finished += 1
+                teller.item(finished, result)
                 if result is None:
                     skipped += 1
                     continue
                 failed += result["status"] == "error"
-                file.write(json.dumps(result, ensure_ascii=False).encode() + b"\n")
-                file.flush()
-                os.fsync(file.fileno())
-                _tell(finished, len(items), result)
+                try:
+                    file.write(
+                        b"\n" * (unwritten is not None)
+                        + json.dumps(result, ensure_ascii=False).encode()
+                        + b"\n"
+                    )
+                    os.fsync(file.fileno())
+                except (
+                    OSError
+                ) as error:  # a full disk: the files that there is room for are made all the same
+                    unwritten = error
     finally:
         worker.close()
-        for number, handler in before:
-            signal.signal(number, handler)
-    print(
-        f"{finished - skipped - failed} done, {failed} failed, {skipped} skipped; report: {report}",
-        flush=True,
-    )
+        stop.forget()
+    teller.line(f"{finished - skipped - failed} done, {failed} failed, {skipped} skipped; report: {report}")
+    if unwritten is not None:
+        teller.line(f"the report is not complete: {unwritten}")
     if finished < len(items):
-        print(f"stopped with {len(items) - finished} items to go; run again with --resume", flush=True)
+        teller.line(f"stopped with {len(items) - finished} items to go; run again with --resume")
         return INTERRUPTED
-    return 1 if failed else 0
+    return 1 if failed or unwritten is not None else 0
 
 
-def _one(item: Job, before: dict[str, Any] | None, worker: Worker, limit: float) -> dict[str, Any] | None:
+def _one(
+    item: Job, before: dict[str, Any] | None, worker: Worker, settings: Settings
+) -> dict[str, Any] | None:
     """Result of an item; None if it was done before."""
-    head = {"id": item.id, "in": str(item.source), "out": str(item.out), "version": NATIVE_VERSION}
+    head = {
+        "id": item.id,
+        "op": item.op,
+        "in": str(item.source),
+        "out": str(item.out),
+        "version": NATIVE_VERSION,
+    }
+    picture = item.out.with_suffix(".png") if settings.render else None
+    if item.problem is not None:
+        return head | _error(*item.problem)
     try:
-        size = item.source.stat().st_size
+        size, limit = item.size(), settings.limits.input_megabytes * 1e6
         if size > limit:
-            reason = f"it has {size / 1e6:.1f} megabytes, {limit / 1e6:g} are allowed; raise --max-megabytes"
-            return head | {"status": "error", "kind": "too_large", "message": reason}
-        key = item.key(item.source.read_bytes())
+            text = f"it has {size / 1e6:.1f} megabytes, {limit / 1e6:g} are allowed; raise --max-megabytes"
+            return head | _error("too_large", text)
+        key = item.key()
     except OSError as error:
-        return head | {"status": "error", "kind": type(error).__name__.lower(), "message": str(error)}
-    if before is not None and before.get("key") == key and before.get("digest") == _digest(item.out):
+        return head | _error(type(error).__name__.lower(), str(error))
+    pictured = picture is None or picture.exists()
+    if (
+        before is not None
+        and before.get("key") == key
+        and before.get("digest") == _digest(item.out)
+        and pictured
+    ):
         return None
-    asked = {"source": str(item.source), "out": str(item.out), "params": item.params}
+    asked = {
+        "op": item.op,
+        "source": str(item.source),
+        "pattern": item.object,
+        "params": item.params,
+        "out": str(item.out),
+        "scripts": settings.scripts,
+        "picture": None if picture is None else str(picture),
+        "engine": settings.engine,
+    }
     result = head | {"key": key} | worker.do(asked)
     return result if result["status"] == "error" else result | {"digest": _digest(item.out)}
+
+
+def _error(kind: str, message: str) -> dict[str, Any]:
+    return {"status": "error", "kind": kind, "message": message}
+
+
+class _Stop:
+    """Whether a signal asked to stop. The first lets the item at hand be finished, the second does not."""
+
+    def __init__(self, worker: Worker) -> None:
+        self.asked = False
+        self.worker = worker
+        self.before = [(number, signal.signal(number, self._hear)) for number in SIGNALS]
+
+    def _hear(self, *_: object) -> None:
+        if self.asked:
+            self.worker.kill("stopped by the user")
+        else:
+            # Not `print`: the signal may have come in the middle of one.
+            os.write(sys.stderr.fileno(), b"\nfinishing this item; once more stops at once\n")
+        self.asked = True
+
+    def forget(self) -> None:
+        """Let signals do what they did before."""
+        for number, handler in self.before:
+            # Blender's own handler is not Python's to know, nor to set again; no more than the exit comes after.
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
 
 
 def _digest(path: Path) -> str | None:
     """Hash of a file; None if there is none."""
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError:
         return None
 
@@ -98,61 +171,10 @@ def _done(report: Path) -> dict[str, dict[str, Any]]:
 
 def _opened(report: Path, resume: bool) -> IO[bytes]:
     try:
-        file = report.open("ab" if resume else "wb")
+        report.parent.mkdir(parents=True, exist_ok=True)
+        file = report.open("ab" if resume else "wb", buffering=0)
+        if file.tell():
+            file.write(b"\n")  # the last line may have been cut off
     except OSError as error:
         raise JobError(f"the report cannot be written: {error}") from error
-    if file.tell():
-        file.write(b"\n")  # the last line may have been cut off
     return file
-
-
-def _tell(at: int, total: int, result: dict[str, Any]) -> None:
-    message = f": {result['message']}" if result.get("message") else ""
-    print(f"[{at}/{total}] {result['status']} {result['id']}{message}", flush=True)
-
-
-class Worker:
-    """A process that does jobs one after the other; it is started with the first."""
-
-    def __init__(self) -> None:
-        self.process: subprocess.Popen[str] | None = None
-
-    def do(self, item: dict[str, Any]) -> dict[str, Any]:
-        """Result of a job; an error of kind "crashed" if the process died over it."""
-        if self.process is None:
-            self.process = subprocess.Popen(
-                _command(),
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                encoding="utf-8",
-                errors="replace",
-                cwd=Path(__file__).parents[2],
-                start_new_session=True,  # Ctrl-C is for this process; the item at hand is finished
-            )
-        try:
-            self.process.stdin.write(json.dumps(item) + "\n")
-            self.process.stdin.flush()
-            for line in self.process.stdout:
-                if line.startswith(MARK):
-                    return json.loads(line.removeprefix(MARK))
-        except BrokenPipeError:
-            pass  # it died; told below
-        code = self.process.wait()
-        self.process = None
-        return {"status": "error", "kind": "crashed", "message": f"the worker process ended with code {code}"}
-
-    def close(self) -> None:
-        """Let the process end."""
-        if self.process is not None:
-            self.process.stdin.close()
-            self.process.wait()
-
-
-def _command() -> list[str]:
-    """How a worker is started: by Blender if this is Blender, else by Python with the `bpy` module."""
-    binary = getattr(sys.modules.get("bpy"), "app", None)
-    if binary is not None and binary.binary_path:
-        return [binary.binary_path, "--background", "--command", "gridmesh", "worker"]
-    package = __package__.rpartition(".")[0]
-    return [sys.executable, "-m", package, "worker"]

@@ -315,12 +315,12 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         self.report({"INFO"}, self.result)
         if notes:
             self.report({"INFO"}, listed(notes))
-        warnings = _warnings(report, capped=self.use_cap)
+        warnings = warnings_of(report, capped=self.use_cap)
         if warnings:
             self.report({"WARNING"}, listed(warnings))
 
 
-def _warnings(report: dict[str, Any], *, capped: bool) -> list[str]:
+def warnings_of(report: dict[str, Any], *, capped: bool) -> list[str]:
     """What the cut tells about itself that a user should look at."""
     warnings = []
     if capped and report["open_lines"]:

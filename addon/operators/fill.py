@@ -83,7 +83,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         except api.NativeError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        jobs = [_Job(EditMesh(ob)) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
+        jobs = [Job(EditMesh(ob)) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
         several = len(jobs) > 1
         for job in jobs:
             job.find(self)
@@ -99,11 +99,11 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         problems = [job.name(problem, several) for job in jobs for problem in job.found.problems]
         if not any(job.patches for job in jobs):
             return self._refuse(jobs, problems)
-        _add_all([job for job in jobs if job.patches], quads=self.use_quads)
+        add_all([job for job in jobs if job.patches], quads=self.use_quads)
         self._tell(jobs, problems, perf_counter() - started)
         return {"FINISHED"}
 
-    def _refuse(self, jobs: list[_Job], problems: list[str]) -> set[str]:
+    def _refuse(self, jobs: list[Job], problems: list[str]) -> set[str]:
         """Say why nothing was filled, and select what stands in the way."""
         for job in jobs:
             job.edited.point_out(job.found.problems)
@@ -116,7 +116,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
             self.report({"WARNING"}, "There are no holes")
         return {"CANCELLED"}
 
-    def _tell(self, jobs: list[_Job], problems: list[str], seconds: float) -> None:
+    def _tell(self, jobs: list[Job], problems: list[str], seconds: float) -> None:
         """Report numbers, and what the user should know."""
         reports = [report for job in jobs for report in job.reports]
         faces = [len(face.verts) for job in jobs for face in job.added.faces]
@@ -140,7 +140,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
             left.append(f"{counted(broken, 'layer')} of data not continued: a value at a hole is not finite")
         if left:
             self.report({"INFO"}, listed(left))
-        for warning in _warnings(reports):
+        for warning in warnings_of(reports):
             self.report({"WARNING"}, warning)
         if problems:
             self.report({"WARNING"}, f"{counted(len(problems), 'selection')} left out:\n{listed(problems)}")
@@ -164,7 +164,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
 
 
 @dataclass
-class _Job:
+class Job:
     """The work on one of the meshes being edited."""
 
     edited: EditMesh
@@ -177,9 +177,16 @@ class _Job:
     def find(self, options: MESH_OT_gridmesh_fill) -> None:
         """Find the holes, and leave out those with bad positions."""
         if options.holes == "ALL":
-            self.found = self.edited.all_holes(options.max_edges)
+            self.find_all(options.max_edges)
         else:
-            self.found = self.edited.selected_holes(close_chains=options.close_chains)
+            self._check(self.edited.selected_holes(close_chains=options.close_chains))
+
+    def find_all(self, max_edges: int) -> None:
+        """Find all holes of at most so many edges, 0: any number, and leave out those with bad positions."""
+        self._check(self.edited.all_holes(max_edges))
+
+    def _check(self, found: Found) -> None:
+        self.found = found
         if not self.found.holes:
             return
         try:
@@ -224,7 +231,7 @@ class _Job:
         return f"{own}: {problem.reason}" if several and own not in problem.reason else problem.reason
 
 
-def _add_all(jobs: list[_Job], *, quads: bool) -> None:
+def add_all(jobs: list[Job], *, quads: bool) -> None:
     """Put all patches into their meshes; if one fails, no mesh keeps any."""
     try:
         for job in jobs:
@@ -237,7 +244,7 @@ def _add_all(jobs: list[_Job], *, quads: bool) -> None:
         job.edited.finish(job.added, quads=quads)
 
 
-def _forgive_unselected(jobs: list[_Job]) -> None:
+def _forgive_unselected(jobs: list[Job]) -> None:
     """Meshes without a selection are none of the user's trouble while another one has one."""
     idle = [job for job in jobs if not job.edited.has_selection()]
     if len(idle) < len(jobs):
@@ -245,7 +252,7 @@ def _forgive_unselected(jobs: list[_Job]) -> None:
             job.found = Found()
 
 
-def _left_open(jobs: list[_Job], max_edges: int) -> list[str]:
+def _left_open(jobs: list[Job], max_edges: int) -> list[str]:
     larger = sum(job.found.larger for job in jobs)
     hidden = sum(job.found.hidden for job in jobs)
     left = []
@@ -256,7 +263,7 @@ def _left_open(jobs: list[_Job], max_edges: int) -> list[str]:
     return left
 
 
-def _warnings(reports: list[dict]) -> list[str]:
+def warnings_of(reports: list[dict]) -> list[str]:
     """What the fills tell about themselves that a user should look at."""
     warnings = []
     crossed = sum(report.get("self_intersections", 0) > 0 for report in reports)

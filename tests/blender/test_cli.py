@@ -1,60 +1,20 @@
-"""The scripted batch: runs of the whole command in processes of their own."""
+"""The scripted batch: files of jobs from strokes to bodies."""
 
-import json
 import os
+import re
 import signal
 import subprocess
-import sys
-from pathlib import Path
 
 import pytest
+from batches import BAD, ROOT, SHAPES, batch, command, item, outputs, results, write_jobs
 
-ROOT = Path(__file__).parents[2]
-SHAPES = ROOT / "tests" / "sketches" / "shapes"
-BAD = ROOT / "tests" / "sketches" / "bad"
-
-
-def command(jobs, *options):
-    return [sys.executable, "-m", "addon", "batch", str(jobs), *options]
-
-
-def batch(jobs, *options):
-    return subprocess.run(command(jobs, *options), cwd=ROOT, capture_output=True, text=True, check=False)
-
-
-def write_jobs(folder, items):
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / "jobs.jsonl"
-    path.write_text("".join(json.dumps(item) + "\n" for item in items), encoding="utf-8")
-    return path
-
-
-def item(at, source, out, **params):
-    return {
-        "id": f"i{at}",
-        "op": "strokes",
-        "in": str(source),
-        "out": out,
-        "params": {"triangles": 200, **params},
-    }
-
-
-def results(folder):
-    lines = [
-        line
-        for path in folder.glob("*.report.jsonl")
-        for line in path.read_text(encoding="utf-8").splitlines()
-    ]
-    return {result["id"]: result for result in map(json.loads, filter(None, lines))}
-
-
-def outputs(folder):
-    return {path.name: path.read_bytes() for path in (folder / "out").iterdir()}
+SAME = ("ply", "obj", "stl")
+"""Formats of which the same meshes are the same bytes."""
 
 
 def good(count=6):
     shapes = [SHAPES / f"{name}.json" for name in ("square", "circle", "bean", "star", "arrow", "dumbbell")]
-    return [item(at, shapes[at % 6], f"out/{at}.ply", depth=0.5 + 0.1 * at) for at in range(count)]
+    return [item(at, shapes[at % 6], f"out/{at}.{SAME[at % 3]}", depth=0.5 + 0.1 * at) for at in range(count)]
 
 
 @pytest.fixture(scope="module")
@@ -105,13 +65,29 @@ def test_bad_items_are_named_and_stop_nothing(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "change", [{"id": "i0"}, {"out": "out/0.ply"}, {"op": "melt"}, {"out": "a.txt"}, {"params": {"x": 1}}]
+    "change",
+    [
+        {"op": "melt"},
+        {"out": "a.txt"},
+        {"params": {"x": 1}},
+        {"params": {"depth": "deep"}},
+        {"op": "fill"},
+        {"object": 3},
+    ],
 )
 def test_bad_jobs_are_refused_before_the_first_runs(tmp_path, change):
     ran = batch(write_jobs(tmp_path, [good()[0], good()[1] | change]))
     assert ran.returncode == 2
     assert "line 2" in ran.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_all_bad_lines_are_named(tmp_path):
+    path = write_jobs(tmp_path, [good()[0] | {"op": "melt"}, good()[1], good()[2] | {"in": 5}])
+    path.write_text(path.read_text() + "{\n")
+    ran = batch(path)
+    assert ran.returncode == 2
+    assert re.findall(r"line (\d):", ran.stderr) == ["1", "3", "4"]
 
 
 def test_shards_and_ranges_are_the_whole(tmp_path, undisturbed):
@@ -146,3 +122,14 @@ def test_a_signal_finishes_the_item_and_tells_how_to_resume(tmp_path, undisturbe
     assert "--resume" in rest
     assert batch(path, "--resume").returncode == 0
     assert outputs(tmp_path) == undisturbed
+
+
+def test_a_handler_of_blender_itself_is_not_put_back(tmp_path, monkeypatch):
+    """A real Blender handles signals in C: Python is told None, and refuses to set that."""
+    from addon.cli import runner
+
+    asked = []
+    monkeypatch.setattr(runner.signal, "signal", lambda number, handler: asked.append(handler))
+    stop = runner._Stop(None)
+    stop.forget()
+    assert asked[2:] == [signal.SIG_DFL] * 2

@@ -273,7 +273,10 @@ fn inflate(
 /// inflate : bool
 ///     True: inflated bodies. False: only stitched, as by `stitch`.
 /// threads : int, optional
-///     Number of threads; None: one per processor. Results do not depend on it.
+///     Number of threads; None: one per processor, or with an executor one per task. Results do not depend on it.
+/// executor : concurrent.futures.Executor, optional
+///     Does the work elsewhere: processes, or the machines of a cluster (`distributed.Client.get_executor()`), which
+///     need this module too. Results are the same bytes on processors of the same kind.
 /// progress : callable, optional
 ///     Called from this thread with the fraction of drawings done; cancels by returning False.
 /// **options
@@ -301,17 +304,29 @@ fn inflate(
 /// (True, 'too_few_points')
 #[pyfunction]
 #[pyo3(
-    signature = (outlines, *, inflate = None, threads = None, progress = None, **options),
-    text_signature = "(outlines, *, inflate=True, threads=None, progress=None, **options)"
+    signature = (outlines, *, inflate = None, threads = None, executor = None, progress = None, **options),
+    text_signature = "(outlines, *, inflate=True, threads=None, executor=None, progress=None, **options)"
 )]
 fn map_sketches(
     py: Python<'_>,
     outlines: &Bound<'_, PyAny>,
     inflate: Option<&Bound<'_, PyAny>>,
     threads: Option<&Bound<'_, PyAny>>,
+    executor: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Py<PyList>> {
+    if let Some(executor) = executor {
+        let others = options.map_or_else(|| Ok(PyDict::new(py)), |options| options.copy())?;
+        if let Some(inflate) = inflate {
+            others.set_item("inflate", inflate)?;
+        }
+        let spread = py.import("gridmesh._spread")?.getattr("spread")?;
+        return Ok(spread
+            .call1((executor, outlines, threads, progress, others))?
+            .cast_into::<PyList>()?
+            .unbind());
+    }
     let job = job(inflate, threads, options)?;
     let watch = Watch::new(progress)?;
     let mut drawings = Vec::new();

@@ -1,4 +1,5 @@
 from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
 from typing import Any, Literal, TypedDict, Unpack, final
 
 import numpy as np
@@ -241,6 +242,7 @@ def map_sketches(
     *,
     inflate: bool = True,
     threads: int | None = None,
+    executor: Executor | None = None,
     progress: _Progress | None = None,
     **options: Unpack[_Options],
 ) -> list[Surface | GridMeshError]: ...

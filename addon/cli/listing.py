@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Jobs for the files, folders and patterns of a command line. No bpy."""
+
+from __future__ import annotations
+
+import glob
+from pathlib import Path
+from typing import Any
+
+from . import jobs
+from .jobs import Job, JobError
+
+STEM = "{name}"
+"""In the output's name: stands for that of the input without its ending."""
+
+
+def listed(op: str, words: list[str], pattern: str | None, chosen: dict[str, Any], out: str) -> list[Job]:
+    """One job for each input file, in the order of the words and of the names.
+
+    Raises
+    ------
+    JobError
+        If there are no files, or the output's name does not tell them apart.
+    """
+    sources = [path for word in words for path in _files(op, word)]
+    sources = list(dict.fromkeys(sources))
+    if len(sources) > 1 and STEM not in out:
+        raise JobError(f"{len(sources)} inputs and one output; write {STEM} in it, as in 'bodies/{STEM}.ply'")
+    here = Path.cwd()
+    found = [
+        jobs.checked(str(path), op, path, pattern, dict(chosen), here / out.replace(STEM, path.stem), here)
+        for path in sources
+    ]
+    return jobs.marked(found, [f"'{path}'" for path in sources])
+
+
+def _files(op: str, word: str) -> list[Path]:
+    """Files that a word means; one that names a single file need not exist."""
+    path = Path.cwd() / word
+    if path.is_dir():
+        found = sorted(
+            file for file in path.iterdir() if file.suffix.lower() in jobs.INPUTS[op] and file.is_file()
+        )
+        if not found:
+            raise JobError(f"'{word}' has no files that end in {', '.join(jobs.INPUTS[op])}")
+        return found
+    if glob.has_magic(word) and not path.exists():
+        matches = sorted(Path(file).absolute() for file in glob.glob(word, recursive=True))  # noqa: PTH207 (takes absolute patterns)
+        found = [file for file in matches if file.suffix.lower() in jobs.INPUTS[op]]
+        if not found:
+            raise JobError(f"'{word}' matches no files that end in {', '.join(jobs.INPUTS[op])}")
+        return found
+    return [path]

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The three operations on a loaded file, through what the operators are made of."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+
+from .. import api, cutline, cutting, strokes
+from ..api import Body
+from ..cutobject import Caps, Target
+from ..operators import cut as cut_operator
+from ..operators import fill as fill_operator
+from ..outlines import Stroke
+from . import jobs, loading, params
+from .loading import LoadError
+from .outputs import placed
+
+_CORNER = math.radians(40.0)
+
+
+class MakeError(ValueError):
+    """Nothing could be made. The message says why."""
+
+    def __init__(self, kind: str, message: str) -> None:
+        super().__init__(message)
+        self.kind = kind
+
+
+@dataclass
+class Made:
+    """Objects to be written, numbers, and what the user should know."""
+
+    objects: list[bpy.types.Object]
+    numbers: dict[str, Any]
+    notes: list[str] = field(default_factory=list)
+
+
+def strokes_to_bodies(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: bool) -> Made:
+    """Make a body of each closed stroke."""
+    found, reasons, notes = loading.drawn(source, pattern, scripts=scripts)
+    sketches, failures, more = api.sketches_of(
+        found, close_gaps=options.get("close_gaps", 0.2), holes=options.get("holes", True)
+    )
+    corner = options.get("corner_angle", _CORNER)
+    sketch_options = {key: value for key, value in options.items() if key in params.SKETCH}
+    if "edge_length" not in options:
+        sketch_options.setdefault("triangles", 2000)
+    body_options = {key: value for key, value in options.items() if key in params.BODY}
+    bodies, refused = api.build(sketches, sketch_options, {**body_options, "corner_angle": corner})
+    reasons = reasons + [str(failure) for failure in failures + refused]
+    if not bodies:
+        raise MakeError("strokes", "; ".join(reasons))
+    crossed = sum(body.report.get("self_intersections", 0) > 0 for body in bodies)
+    notes = reasons + notes + more + ([f"{crossed} bodies cut through themselves"] if crossed else [])
+    return Made(
+        placed(source.stem, bodies, corner), _numbers("bodies", len(bodies), _of_bodies(bodies)), notes
+    )
+
+
+def _of_bodies(bodies: list[Body]) -> list[dict[str, Any]]:
+    return [{**body.report, "triangles": len(body.triangles)} for body in bodies]
+
+
+def _numbers(what: str, n: int, reports: list[dict[str, Any]]) -> dict[str, Any]:
+    return {
+        what: n,
+        "triangles": sum(int(report["triangles"]) for report in reports),
+        "irregular": sum(int(report["irregular"]) for report in reports),
+        "min_angle": min(
+            (float(report["min_angle"]) for report in reports if report["triangles"]), default=None
+        ),
+    }
+
+
+def fill(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: bool) -> Made:
+    """Fill the holes of every mesh."""
+    found, notes = loading.meshes(source, pattern, scripts=scripts, weld=options.get("weld"))
+    most = options.get("max_open_edges", 200_000)
+    reports: list[dict[str, Any]] = []
+    reasons: list[str] = []
+    larger = 0
+    for ob in found:
+        n_open = _open_edges(ob.data)
+        if n_open > most:
+            text = f"'{ob.name}' has {n_open} open edges, {most} are allowed; raise max_open_edges"
+            raise MakeError("too_many_holes", text)
+        if not n_open:
+            continue
+        if not ob.is_editable or not ob.data.is_editable:
+            raise MakeError("linked", f"'{ob.name}' is linked from another file; make it local first")
+        job = _filled(ob, options)
+        reports += job.reports
+        reasons += [f"'{ob.name}': {problem.reason}" for problem in job.found.problems]
+        larger += job.found.larger + job.found.hidden
+    if reasons and not reports:
+        raise MakeError("holes", "; ".join(reasons))
+    notes = notes + reasons + fill_operator.warnings_of(reports)
+    if larger:
+        notes.append(f"{larger} holes left open: hidden, or with more than max_edges edges")
+    return Made(found, _numbers("holes", len(reports), reports), notes)
+
+
+def _filled(ob: bpy.types.Object, options: dict[str, Any]) -> fill_operator.Job:
+    """Fill the holes of one mesh; the job tells what came of it."""
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.object.mode_set(mode="EDIT")
+    try:
+        job = fill_operator.Job(fill_operator.EditMesh(ob))
+        job.find_all(options.get("max_edges", 100))
+        job.fill(options.get("smooth", "tangent"), lambda _: True)
+        if job.patches:
+            fill_operator.add_all([job], quads=options.get("quads", False))
+    finally:
+        bpy.ops.object.mode_set(mode="OBJECT")
+    return job
+
+
+def _open_edges(mesh: bpy.types.Mesh) -> int:
+    """How many edges have one face or none."""
+    edges = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", edges)
+    return int((np.bincount(edges, minlength=len(mesh.edges)) < 2).sum())
+
+
+def cut(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: bool) -> Made:
+    """Cut every mesh along the stroke. Those that it does not meet stay as they are."""
+    found, notes = loading.meshes(source, pattern, scripts=scripts, weld=options.get("weld"))
+    points, cyclic, direction = _line(options)
+    cutting.require_finite(points)
+    sweep, _ = cutline.sweep_of(options.get("direction", direction).upper(), points, None)
+    keep, together = options.get("keep", "both"), options.get("together", False)
+    smooth, cap = options.get("smooth", "flat"), options.get("cap", True)
+    objects: list[bpy.types.Object] = []
+    reports: list[dict[str, Any]] = []
+    pieces, missed = 0, []
+    for ob in found:
+        target = Target(ob)
+        stroke = cutting.checked(
+            points - target.origin, cyclic=cyclic, sweep=sweep, close_gaps=options.get("close_gaps", 0.1)
+        )
+        try:
+            division = cutting.divide(
+                target.model,
+                stroke,
+                sweep,
+                together=together,
+                keep=keep,
+                cap=cap,
+                edge_length=options.get("edge_length") or None,
+                gap=options.get("gap", 0.0),
+                smooth=smooth,
+            )
+        except cutting.CutError as error:
+            missed.append(f"'{ob.name}': {error}")
+            objects.append(ob)
+            continue
+        if any(part.is_empty for part in division.parts):
+            missed.append(f"'{ob.name}': the stroke leaves nothing of it on one side")
+            objects.append(ob)
+            continue
+        caps = Caps(smooth == "flat", False, None)
+        objects += target.apply(bpy.context, division.parts, stroke, sweep, caps, together=together)
+        reports.append(_of_caps(division, gap=bool(options.get("gap"))))
+        pieces += len(division.parts)
+        notes += cut_operator.warnings_of(division.report, capped=cap)
+    if not reports:
+        raise MakeError("cut", "; ".join(missed))
+    return Made(objects, _numbers("pieces", pieces, reports), notes + missed)
+
+
+def _of_caps(division: cutting.Division, *, gap: bool) -> dict[str, Any]:
+    report = division.report
+    sides = 1 if gap else len(division.parts)
+    return {
+        "triangles": sum(len(part.caps) for part in division.parts),
+        "irregular": report["cap_irregular"] * sides,
+        "min_angle": report["cap_min_angle"],
+    }
+
+
+def _line(options: dict[str, Any]) -> tuple[np.ndarray, bool, str]:
+    """Points of the stroke, whether it is closed, and what it is swept along unless that is said."""
+    stroke, closed = options["stroke"], options.get("closed")
+    if isinstance(stroke, list):
+        points = np.array(stroke, float)
+        if points.shape[1] == 2:
+            points = np.column_stack([points, np.zeros(len(points))])
+        return points, bool(closed), "z"
+    if jobs.is_file(stroke):
+        found, direction = loading.line(Path(stroke), cyclic=bool(closed)), "z"
+    else:
+        found, direction = _of_object(stroke), "plane"
+    if len(found) != 1:
+        raise LoadError(f"the stroke '{Path(stroke).name}' has {len(found)} curves; one is needed")
+    return np.asarray(found[0].points, float), found[0].cyclic if closed is None else closed, direction
+
+
+def _of_object(name: str) -> list[Stroke]:
+    ob = bpy.context.view_layer.objects.get(name)
+    if ob is None or ob.type not in strokes.SOURCE_TYPES:
+        raise LoadError(f"it has no drawing or curve named '{name}' to cut along")
+    reading = strokes.read_objects(bpy.context, [ob])
+    if not reading.strokes:
+        raise LoadError("; ".join([*map(str, reading.failures), *reading.notes]))
+    return reading.strokes
+
+
+OPS = {"strokes": strokes_to_bodies, "fill": fill, "cut": cut}

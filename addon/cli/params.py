@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parameters of each operation: their names, what values they take, and what they do. No bpy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+class ParameterError(ValueError):
+    """A parameter that is not one. The message says what is allowed."""
+
+
+@dataclass(frozen=True)
+class Param:
+    """One parameter. Whether a value suits a drawing is told when the item runs, not here."""
+
+    kind: str
+    """"number", "count" (a whole number from 0), "switch", "choice" or "stroke"."""
+    help: str
+    choices: tuple[str, ...] = ()
+    least: float = -math.inf
+    most: float = math.inf
+
+    def check(self, name: str, value: Any) -> None:
+        """Raise ParameterError if the value is of another kind."""
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if self.kind == "switch":
+            good, allowed = isinstance(value, bool), "true or false"
+        elif self.kind == "choice":
+            good, allowed = value in self.choices, " or ".join(self.choices)
+        elif self.kind == "stroke":
+            good = (isinstance(value, str) and bool(value) and "\0" not in value) or _is_line(value)
+            allowed = "a file, the name of an object, or a list of points"
+        elif self.kind == "count":
+            good, allowed = isinstance(value, int) and number and value >= 0, "a whole number from 0"
+        else:
+            good = number and math.isfinite(value) and self.least <= value <= self.most
+            bounded = math.isfinite(self.most)
+            allowed = f"a number from {self.least:g} to {self.most:g}" if bounded else "a finite number"
+        if not good:
+            raise ParameterError(f"{name} is {_shortened(value)}; it must be {allowed}")
+
+
+_SMOOTH = ("flat", "tangent", "curvature")
+_GAPS = "largest gap that is closed, relative to the stroke"
+
+SKETCH = {
+    "triangles": Param("count", "triangles of one side (2000)"),
+    "edge_length": Param("number", "length of the edges, instead of their number"),
+    "boundary": Param("choice", "how the rim is found", ("optimal", "grown")),
+    "max_distance": Param("number", "how far the rim may stray, in edge lengths"),
+    "angle": Param("number", "angle of the triangle grid, radians; the best one if not given"),
+    "corner_angle": Param("number", "turns sharper than this are corners, radians"),
+    "self_crossing": Param("choice", "what becomes of outlines that cross themselves", ("error", "union")),
+}
+BODY = {
+    "depth": Param("number", "how thick bodies are"),
+    "profile": Param("choice", "shape of the section", ("round", "even", "flat", "peak")),
+}
+
+_WELD = Param(
+    "switch", "join vertices at the same place (in .ply, .glb and .gltf files, which tear meshes at seams)"
+)
+
+OPS: Mapping[str, Mapping[str, Param]] = {
+    "strokes": {
+        **SKETCH,
+        **BODY,
+        "close_gaps": Param("number", f"{_GAPS} (0.2)", least=0, most=1),
+        "holes": Param("switch", "outlines inside others are holes (true)"),
+    },
+    "fill": {
+        "weld": _WELD,
+        "smooth": Param("choice", "how patches continue the surface (tangent)", _SMOOTH),
+        "max_edges": Param("count", "holes with more edges stay open; 0: none does (100)"),
+        "quads": Param("switch", "join triangles to quads where that gives good ones (false)"),
+        "max_open_edges": Param("count", "meshes with more open edges are refused (200000)"),
+    },
+    "cut": {
+        "weld": _WELD,
+        "stroke": Param("stroke", "file (.json, .csv, .svg), object of the .blend file, or points"),
+        "closed": Param("switch", "whether the stroke is closed; otherwise as it was drawn"),
+        "direction": Param(
+            "choice",
+            "what the stroke is swept along (z; in a .blend file its normal)",
+            ("plane", "x", "y", "z"),
+        ),
+        "keep": Param("choice", "side that is kept (both)", ("left", "right", "both")),
+        "together": Param("switch", "both sides stay one object (false)"),
+        "cap": Param("switch", "close the pieces where they were cut (true)"),
+        "edge_length": Param("number", "length of the edges along the cut; 0: as the mesh has them (0)"),
+        "smooth": Param("choice", "shape of the caps (flat)", _SMOOTH),
+        "gap": Param("number", "width of what is taken away (0)"),
+        "close_gaps": Param("number", f"{_GAPS} (0.1)", least=0, most=1),
+    },
+}
+
+
+def check(op: str, params: dict[str, Any]) -> None:
+    """Check the parameters of an item.
+
+    Raises
+    ------
+    ParameterError
+        If one is unknown, has a value of another kind, or is missing.
+    """
+    known = OPS[op]
+    if unknown := sorted(params.keys() - known.keys()):
+        raise ParameterError(f"unknown parameter '{unknown[0]}'; allowed: {', '.join(sorted(known))}")
+    for name, value in params.items():
+        known[name].check(name, value)
+    if op == "strokes" and {"triangles", "edge_length"} <= params.keys():
+        raise ParameterError("give triangles or edge_length, not both")
+    if op == "cut" and "stroke" not in params:
+        raise ParameterError("the cut has no 'stroke'")
+
+
+def _is_line(value: Any) -> bool:
+    """Whether this is a list of two or more points of the same dimension, 2 or 3."""
+    if not isinstance(value, list) or len(value) < 2:
+        return False
+    dimensions = {len(point) if isinstance(point, list) else 0 for point in value}
+    numbers = (number for point in value if isinstance(point, list) for number in point)
+    return dimensions in ({2}, {3}) and all(
+        isinstance(number, int | float) and not isinstance(number, bool) and math.isfinite(number)
+        for number in numbers
+    )
+
+
+def _shortened(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 40 else text[:37] + "..."

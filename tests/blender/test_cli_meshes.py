@@ -1,0 +1,319 @@
+"""Meshes and drawings from files through the command line: filled, cut, made into bodies."""
+
+import json
+
+import bmesh
+import bpy
+import numpy as np
+import pytest
+from batches import SHAPES, batch, results, run, write_jobs
+
+ACROSS = [[-2, 0.1], [2, 0.2]]
+SUFFIXES = ("ply", "obj", "stl", "glb", "gltf", "blend")
+
+
+def ball(name="Ball", *, z=0.0, opened=True):
+    """A sphere with UVs, without its upper end."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=16, location=(0, 0, z))
+    ob = bpy.context.object
+    ob.name = name
+    if opened:
+        bm = bmesh.new()
+        bm.from_mesh(ob.data)
+        top = [face for face in bm.faces if face.calc_center_median().z > 0.8]
+        bmesh.ops.delete(bm, geom=top, context="FACES")
+        bm.to_mesh(ob.data)
+        bm.free()
+    return ob
+
+
+def save(path):
+    """Write what is in the scene."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    name = str(path)
+    axes = {"forward_axis": "Y", "up_axis": "Z"}
+    done = {
+        ".ply": lambda: bpy.ops.wm.ply_export(filepath=name, **axes),
+        ".obj": lambda: bpy.ops.wm.obj_export(filepath=name, **axes),
+        ".stl": lambda: bpy.ops.wm.stl_export(filepath=name, **axes),
+        ".glb": lambda: bpy.ops.export_scene.gltf(filepath=name, export_format="GLB"),
+        ".gltf": lambda: bpy.ops.export_scene.gltf(filepath=name, export_format="GLTF_SEPARATE"),
+        ".blend": lambda: bpy.ops.wm.save_as_mainfile(filepath=name, copy=True),
+    }[path.suffix]()
+    assert done == {"FINISHED"}
+    return path
+
+
+def load(path):
+    """Mesh objects of a .ply or .blend file."""
+    if path.suffix == ".blend":
+        bpy.ops.wm.open_mainfile(filepath=str(path))
+    else:
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        bpy.ops.wm.ply_import(filepath=str(path), forward_axis="Y", up_axis="Z")
+    return {ob.name: ob for ob in bpy.context.scene.objects if ob.type == "MESH"}
+
+
+def open_edges(ob):
+    """Edges without two faces, where vertices at the same place are one."""
+    bm = bmesh.new()
+    bm.from_mesh(ob.data)
+    bmesh.ops.remove_doubles(bm, verts=bm.verts, dist=1e-6)
+    return sum(not edge.is_manifold for edge in bm.edges)
+
+
+def volume(ob):
+    bm = bmesh.new()
+    bm.from_mesh(ob.data)
+    bmesh.ops.remove_doubles(bm, verts=bm.verts, dist=1e-6)
+    return bm.calc_volume()
+
+
+@pytest.fixture
+def balls(tmp_path):
+    """The same open sphere in every format."""
+    ball()
+    return [save(tmp_path / "in" / f"ball {suffix}.{suffix}") for suffix in SUFFIXES]
+
+
+def test_fill_reads_every_format_alike(tmp_path, balls):
+    ran = run("fill", tmp_path / "in", "-o", tmp_path / "out" / "{name}.ply", "--smooth", "curvature")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    found = results(tmp_path / "out")
+    assert len(found) == len(balls)
+    numbers = [(one["holes"], one["triangles"], one["irregular"]) for one in found.values()]
+    assert len(set(numbers)) == 1
+    assert numbers[0][0] == 1
+    assert numbers[0][1] > 24
+    for path in balls:
+        (ob,) = load(tmp_path / "out" / f"{path.stem}.ply").values()
+        assert open_edges(ob) == 0
+        assert volume(ob) == pytest.approx(4.05, abs=0.1)
+
+
+def test_the_buffer_of_a_gltf_is_part_of_the_input(tmp_path):
+    from addon.cli import jobs
+
+    ball()
+    path = save(tmp_path / "a ball.gltf")
+    (job,) = jobs.read(write_jobs(tmp_path, [{"id": "a", "op": "fill", "in": path.name, "out": "a.ply"}]))
+    assert [file.name for file in job.files()] == ["a ball.gltf", "a ball.bin"]
+    before = job.key()
+    job.files()[1].write_bytes(b"other")
+    assert job.key() != before
+
+
+def test_a_blend_file_keeps_everything_else(tmp_path):
+    ball("Leaf 1")
+    ball("Leaf 2", z=3)
+    ball("Stone", z=6)
+    twin = bpy.data.objects.new("Twin", bpy.data.objects["Leaf 1"].data)
+    bpy.context.collection.objects.link(twin)
+    ball("Leaf hidden", z=9).hide_set(True)
+    bpy.ops.object.light_add()
+    path = save(tmp_path / "wood.blend")
+    ran = run("fill", path, "-o", tmp_path / "filled.blend", "--object", "Leaf*")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert result["status"] == "warning"
+    assert "Leaf hidden" in result["message"]
+    assert result["holes"] == 2
+    found = load(tmp_path / "filled.blend")
+    assert {name for name, ob in found.items() if not open_edges(ob)} == {"Leaf 1", "Leaf 2", "Twin"}
+    assert "Light" in {ob.name for ob in bpy.data.objects} or "Point" in {ob.name for ob in bpy.data.objects}
+
+
+def test_cut_closes_both_sides(tmp_path):
+    ball(opened=False)
+    save(tmp_path / "ball.blend")
+    sides = {"both": 2, "left": 1, "right": 1}
+    params = {"stroke": ACROSS, "edge_length": 0.2}
+    items = [
+        {
+            "id": keep,
+            "op": "cut",
+            "in": "ball.blend",
+            "params": {**params, "keep": keep},
+            "out": f"{keep}.blend",
+        }
+        for keep in sides
+    ]
+    ran = batch(write_jobs(tmp_path, items))
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    volumes = []
+    for keep, result in results(tmp_path).items():
+        assert result["pieces"] == sides[keep]
+        assert result["triangles"] > 20
+        assert 0 < result["min_angle"] < np.pi / 3 + 1e-9
+        found = load(tmp_path / f"{keep}.blend")
+        assert len(found) == sides[keep]
+        assert not any(map(open_edges, found.values()))
+        volumes.append(sum(map(volume, found.values())))
+    assert volumes[1] + volumes[2] == pytest.approx(volumes[0])
+    assert volumes[1] < volumes[2]
+
+
+def test_strokes_to_cut_along_come_from_files_and_objects(tmp_path):
+    ball(opened=False)
+    bpy.ops.curve.primitive_bezier_circle_add(radius=0.5, location=(0, 0, 3))
+    bpy.context.object.name = "Ring"
+    save(tmp_path / "ball.blend")
+    angles = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    circle = (0.5 * np.column_stack([np.cos(angles), np.sin(angles)])).tolist()
+    (tmp_path / "ring.json").write_text(json.dumps({"points": circle}))
+    (tmp_path / "line.csv").write_text("-2,0.1\n2,0.2\n")
+    strokes = {
+        "object": {"stroke": "Ring"},
+        "json": {"stroke": "ring.json", "closed": True},
+        "points": {"stroke": circle, "closed": True},
+        "csv": {"stroke": "line.csv"},
+    }
+    items = [
+        {"id": key, "op": "cut", "in": "ball.blend", "params": params, "out": f"out/{key}.blend"}
+        for key, params in strokes.items()
+    ]
+    jobs = write_jobs(tmp_path, items)
+    ran = batch(jobs)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    for key in strokes:
+        found = [ob for ob in load(tmp_path / "out" / f"{key}.blend").values() if ob.type == "MESH"]
+        assert len(found) == 2
+        assert not any(map(open_edges, found))
+        if key != "csv":
+            core = min(map(volume, found))
+            assert core == pytest.approx(1.4, abs=0.15), key
+    # The file of the stroke is part of the input.
+    (tmp_path / "line.csv").write_text("-2,0.2\n2,0.3\n")
+    assert "1 done, 0 failed, 3 skipped" in batch(jobs, "--resume").stdout
+
+
+def test_a_stroke_beside_a_mesh_leaves_a_name_in_the_report(tmp_path):
+    ball(opened=False)
+    ball("Far", z=9, opened=False).location.y = 9
+    path = save(tmp_path / "balls.blend")
+    ran = run("cut", path, "-o", tmp_path / "cut.blend", "--stroke", json.dumps(ACROSS))
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert result["status"] == "warning"
+    assert "'Far'" in result["message"]
+    assert len(load(tmp_path / "cut.blend")) == 3
+    nothing = run("cut", path, "-o", tmp_path / "no.blend", "--stroke", "[[0, 50], [9, 50]]")
+    assert nothing.returncode == 1
+    assert not (tmp_path / "no.blend").exists()
+
+
+SVG = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 300 100">
+<path d="M 0 0 H 100 V 100 H 0 z M 30 30 V 70 H 70 V 30 z"/><circle cx="200" cy="50" r="40"/></svg>"""
+
+
+def test_an_svg_has_outlines_and_holes(tmp_path):
+    (tmp_path / "Möbel 1.svg").write_text(SVG)
+    ran = run("strokes", tmp_path / "*.svg", "-o", tmp_path / "{name}.blend", "--triangles", "300")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert result["bodies"] == 2
+    assert result["status"] == "ok"
+    genus = []
+    for ob in load(tmp_path / "Möbel 1.blend").values():
+        mesh = ob.data
+        assert open_edges(ob) == 0
+        genus.append(1 - (len(mesh.vertices) - len(mesh.edges) + len(mesh.polygons)) // 2)
+    assert sorted(genus) == [0, 1]
+
+
+def test_drawings_of_a_blend_file_by_name(tmp_path):
+    for name in ("Leaf 1", "Leaf 2", "Other"):
+        bpy.ops.curve.primitive_bezier_circle_add(radius=1)
+        bpy.context.object.name = name
+    drawing = (
+        bpy.data.grease_pencils_v3 if hasattr(bpy.data, "grease_pencils_v3") else bpy.data.grease_pencils
+    )
+    data = drawing.new("Leaf drawn")
+    frame = data.layers.new("Layer").frames.new(bpy.context.scene.frame_current)
+    angles = np.linspace(0, 2 * np.pi, 50, endpoint=False)
+    frame.drawing.add_strokes([len(angles)])
+    stroke = frame.drawing.strokes[0]
+    stroke.cyclic = True
+    for point, angle in zip(stroke.points, angles, strict=True):
+        point.position = (np.cos(angle), 0, 2 * np.sin(angle))
+    bpy.context.collection.objects.link(bpy.data.objects.new("Leaf drawn", data))
+    path = save(tmp_path / "drawn.blend")
+    ran = run("strokes", path, "-o", tmp_path / "bodies.ply", "--object", "Leaf*", "--triangles", "200")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert result["bodies"] == 3
+    none = run("strokes", path, "-o", tmp_path / "none.ply", "--object", "Twig*")
+    assert none.returncode == 1
+    assert "Twig*" in none.stdout
+
+
+def test_bodies_written_as_blend_can_be_read_again(tmp_path):
+    made = run("strokes", SHAPES / "bean.json", "-o", tmp_path / "bean.blend", "--triangles", "200")
+    assert made.returncode == 0, made.stdout + made.stderr
+    cut = run(
+        "cut", tmp_path / "bean.blend", "-o", tmp_path / "cut.ply", "--stroke", "[[-9, 0.01], [9, 0.02]]"
+    )
+    assert cut.returncode == 0, cut.stdout + cut.stderr
+
+
+def test_the_command_lines_of_one_operation_are_those_of_a_batch(tmp_path):
+    shapes = [SHAPES / f"{name}.json" for name in ("bean", "star")]
+    ran = run(
+        "strokes", *shapes, "-o", tmp_path / "a" / "{name}.ply", "--triangles", "200", "--profile", "even"
+    )
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    items = [
+        {
+            "id": path.stem,
+            "op": "strokes",
+            "in": str(path),
+            "params": {"triangles": 200, "profile": "even"},
+            "out": f"b/{path.stem}.ply",
+        }
+        for path in shapes
+    ]
+    assert batch(write_jobs(tmp_path, items)).returncode == 0
+    for path in shapes:
+        name = f"{path.stem}.ply"
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["fill", "none/*.ply", "-o", "a.ply"], "matches no files"),
+        (["strokes", "a.json", "b.json", "-o", "a.ply"], "{name}"),
+        (["cut", "a.ply", "-o", "b.ply", "--stroke", "Ring"], "only a .blend"),
+        (["cut", "a.ply", "-o", "b.ply", "--stroke", "[[0, 0], [1]]"], "list of points"),
+        (["fill", "a.txt", "-o", "b.ply"], "a.txt"),
+        (["fill", "a.ply"], "--out"),
+        (["strokes", "a.json", "-o", "a.ply", "--close-gaps", "2"], "from 0 to 1"),
+    ],
+)
+def test_bad_command_lines_say_what_is_wrong(words, said):
+    ran = run(*words)
+    assert ran.returncode == 2
+    assert said in ran.stderr
+
+
+def test_pictures_show_what_was_made(tmp_path):
+    ran = run("strokes", SHAPES / "star.json", "-o", tmp_path / "star.ply", "--triangles", "200", "--render")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    image = bpy.data.images.load(str(tmp_path / "star.png"))
+    pixels = np.array(image.pixels[:]).reshape(*image.size, 4)
+    shown = np.abs(pixels[..., :3] - pixels[0, 0, :3]).max(axis=2) > 0.05
+    shown |= pixels[..., 3] != pixels[0, 0, 3]
+    assert 0.1 < shown.mean() < 0.8
+    (tmp_path / "star.png").unlink()
+    again = run(
+        "strokes",
+        SHAPES / "star.json",
+        "-o",
+        tmp_path / "star.ply",
+        "--triangles",
+        "200",
+        "--resume",
+        "--render",
+    )
+    assert "1 done" in again.stdout
+    assert (tmp_path / "star.png").exists()
