@@ -67,9 +67,10 @@ def _classes() -> tuple[type, ...]:
 def _parts() -> tuple[ModuleType, ...]:
     """Modules with more to register than classes; their `unregister` may be called at any time."""
     from . import cli, keys, preset_files, translations, ui
+    from .draw import cut_tool
     from .draw import operator as draw
     from .live import engine
     from .live import properties as live
     from .overlay import ui as overlay
 
-    return (translations, preset_files, ui, overlay, live, engine, draw, keys, cli)
+    return (translations, preset_files, ui, overlay, live, engine, draw, cut_tool, keys, cli)

@@ -209,6 +209,10 @@ GERMAN = {
     ),
     "Facing the view, through the 3D cursor": "Der Ansicht zugewandt, durch den 3D-Cursor",
     "GridMesh Draw": "GridMesh zeichnen",
+    "GridMesh Cut": "GridMesh schneiden",
+    "Cut the active mesh.\nDrag across it, then click the side to keep; Enter keeps both": (
+        "Das aktive Mesh zerschneiden.\nQuer darüber ziehen, dann die Seite anklicken, die bleibt; Eingabe behält beide"
+    ),
     "How much the pressure of the pen drives the depth of the body": (
         "Wie sehr der Druck des Stifts die Tiefe des Körpers bestimmt"
     ),

@@ -36,8 +36,10 @@ def of_layouts():
     """Literal texts that are drawn, or translated before they are shown."""
     for path in sorted(ADDON.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "bl_description":  # of tools
-                yield ast.literal_eval(node.value)
+            if isinstance(node, ast.ClassDef) and any(
+                "WorkSpaceTool" in ast.unparse(base) for base in node.bases
+            ):
+                yield from of_tool(node)
             if isinstance(node, ast.Call):
                 if ast.unparse(node.func).endswith("pgettext_iface"):
                     literals = (
@@ -55,6 +57,13 @@ def of_layouts():
                 for keyword in node.keywords:
                     if keyword.arg == "text" and isinstance(keyword.value, ast.Constant):
                         yield keyword.value.value
+
+
+def of_tool(node):
+    """Name and description of a tool; tools are no classes of Blender's."""
+    for line in node.body:
+        if isinstance(line, ast.Assign) and ast.unparse(line.targets[0]) in {"bl_label", "bl_description"}:
+            yield ast.literal_eval(line.value)
 
 
 def of_presets():

@@ -67,12 +67,19 @@ def main():
         words = blender.command([blender.program, *install], **settings)
         subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
     window = ["--window-geometry", "0", "0", "1280", "800", "--enable-event-simulate"]
-    play = ["--python", blender.path(SHARE / "scenes.py"), "--", blender.path(pictures)]
+    play = [
+        "--python-exit-code",
+        "1",
+        "--python",
+        blender.path(SHARE / "scenes.py"),
+        "--",
+        blender.path(pictures),
+    ]
     words = ["sh", "-c", SHELL, "window", blender.path(SHARE), blender.program, *window, *play]
     try:
-        done = subprocess.run(blender.command(words, **settings), check=False, timeout=1200)
+        done = subprocess.run(blender.command(words, **settings), check=False, timeout=2400)
     except subprocess.TimeoutExpired:
-        sys.exit("Blender did not come to an end within 20 minutes")
+        sys.exit("Blender did not come to an end within 40 minutes")
     if arguments.documentation and done.returncode == 0:
         target = ROOT / "docs" / "pictures" / "windows"
         target.mkdir(parents=True, exist_ok=True)

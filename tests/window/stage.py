@@ -51,6 +51,12 @@ class Stage:
         self.window.event_simulate("MOUSEMOVE", "NOTHING", x=self.mouse[0], y=self.mouse[1])
         yield STEP
 
+    def glide(self, path):
+        """Move along points that come faster than the window is drawn: Blender calls all but the last in between."""
+        for x, y in path[:-1]:
+            self.window.event_simulate("INBETWEEN_MOUSEMOVE", "NOTHING", x=int(x), y=int(y))
+        yield from self.move(*path[-1])
+
     def press(self, button="LEFTMOUSE", value="PRESS", **held):
         self.window.event_simulate(button, value, x=self.mouse[0], y=self.mouse[1], **held)
         yield STEP
@@ -136,6 +142,24 @@ class Stage:
             except RuntimeError:
                 return ""
         return bpy.context.window_manager.clipboard
+
+    def press_property(self, name, columns, top, bottom):
+        """Click the field of a property, found by the data path that Blender copies from what is under the mouse.
+
+        columns : x at which it is looked for, from `top` down to `bottom`.
+        """
+        manager = bpy.context.window_manager
+        for column in columns:
+            for y in range(int(top), int(bottom), -9):
+                manager.clipboard = ""
+                yield from self.move(column, y)
+                yield from self.press("C", "PRESS", ctrl=True, shift=True, alt=True)
+                yield from self.press("C", "RELEASE", ctrl=True, shift=True, alt=True)
+                if manager.clipboard.endswith(name):
+                    yield from self.click(column, y - 4)
+                    yield 0.8
+                    return
+        raise AssertionError(f"no field of {name}")
 
     def press_button(self, region, idname, part=""):
         """Click the first button that calls the operator, with `part` in its command."""
