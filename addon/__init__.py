@@ -18,9 +18,12 @@ def register() -> None:
     """Register all classes, menu entries and the like; if one fails, none stays."""
     import bpy
 
+    from . import translations
+
     done = []
     try:
         for cls in _classes():
+            translations.claim(cls)
             bpy.utils.register_class(cls)
             done.append(cls)
         for part in _parts():

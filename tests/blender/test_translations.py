@@ -102,6 +102,23 @@ def test_blender_knows_them():
     translations.register()
 
 
+def test_words_of_blender_do_not_come_before_ours():
+    """ "Triangles" was "Triangulieren" in German, a verb: Blender's word for something else."""
+    table = translations.table()["de_DE"]
+    for cls in addon._classes():
+        if not issubclass(cls, (bpy.types.Operator, bpy.types.PropertyGroup)):
+            continue
+        rna = cls.bl_rna
+        if issubclass(cls, bpy.types.Operator):
+            group, name = cls.bl_idname.split(".")
+            rna = getattr(getattr(bpy.ops, group), name).get_rna_type()
+        for option in rna.properties:
+            if option.identifier in {"rna_type", "name", "bl_idname"} or option.is_hidden:
+                continue
+            assert option.translation_context == translations.CONTEXT, f"{cls.__name__}.{option.identifier}"
+            assert option.name in OWN or (option.translation_context, option.name) in table
+
+
 @pytest.mark.parametrize("idname", [folder.name for folder in preset_files.FOLDER.iterdir()])
 def test_presets_run_and_set_options_that_exist(idname):
     group, name = idname.split(".")

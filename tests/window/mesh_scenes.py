@@ -144,7 +144,7 @@ def cut_side():
             yield from stroke(across())
             assert [ob.bl_idname for ob in stage.window.modal_operators] == ["OBJECT_OT_gridmesh_cut"]
             yield from stage.move(x, y + (90 if upper else -90))
-            yield from stage.picture(f"cut_3_drawn_{'upper' if upper else 'lower'}")
+            yield from stage.picture("cut_side_0" if upper else "cut_side_1")
             yield from stage.click(*stage.mouse)
             yield 0.8
             (kept,) = mesh_objects()
@@ -152,9 +152,11 @@ def cut_side():
             assert (max(heights) > 1.4) == upper, "the wrong side was kept"
             assert (min(heights) < -1.4) != upper, "the other side is still there"
             if upper:
-                yield from stage.picture("cut_4_kept")
                 yield from stage.key("Z", ctrl=True)
                 yield 0.8
+        turn_view(0.9, 0.0, 0.4)
+        yield from stage.open_redo_panel()
+        yield from stage.picture("cut_side_2")
         for end in ("ESC", "RIGHTMOUSE"):
             before = len(mesh_objects()[0].data.vertices)
             yield from stroke(across(), end=end)

@@ -7,6 +7,7 @@ The window is on a screen in memory (Xvfb). Exit code 77 where there is no real 
 """
 
 import argparse
+import re
 import shutil
 import subprocess
 import sys
@@ -81,11 +82,25 @@ def main():
     except subprocess.TimeoutExpired:
         sys.exit("Blender did not come to an end within 40 minutes")
     if arguments.documentation and done.returncode == 0:
-        target = ROOT / "docs" / "pictures" / "windows"
-        target.mkdir(parents=True, exist_ok=True)
-        for picture in pictures.glob("*.png"):
-            shutil.copy(picture, target)
+        illustrate(pictures, complete=not arguments.scenes)
     sys.exit(done.returncode)
+
+
+def illustrate(pictures, *, complete):
+    """Put the pictures that the documentation shows into it; complete : it has no others."""
+    target = ROOT / "docs" / "pictures" / "windows"
+    texts = "".join(
+        page.read_text(encoding="utf-8") for page in (*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"))
+    )
+    shown = set(re.findall(r"pictures/windows/(\w+\.png)", texts))
+    if complete:
+        if missing := [name for name in sorted(shown) if not (pictures / name).exists()]:
+            sys.exit(f"the documentation shows pictures that no scene takes: {', '.join(missing)}")
+        shutil.rmtree(target, ignore_errors=True)
+    target.mkdir(parents=True, exist_ok=True)
+    for picture in pictures.glob("*.png"):
+        if picture.name in shown:
+            shutil.copy(picture, target)
 
 
 main()

@@ -5,6 +5,7 @@ A scene is a generator. Each `yield` lets Blender handle what happened and draw;
 
 import subprocess
 from pathlib import Path
+from time import monotonic
 
 import bpy
 
@@ -20,6 +21,8 @@ class Stage:
         self.mouse = (640, 400)
         self.clicks = 0
         self.keys = 0
+        self.searched = 0.0
+        """Seconds in which a button was looked for that a user sees at once."""
 
     @property
     def window(self):
@@ -163,7 +166,7 @@ class Stage:
 
     def press_button(self, region, idname, part=""):
         """Click the first button that calls the operator, with `part` in its command."""
-        found = []
+        found, started = [], monotonic()
         for _ in range(3):
             yield from self.move(*self.middle())  # away from what was under it
             yield 0.3
@@ -174,6 +177,7 @@ class Stage:
                 if (
                     part in called and self.asked(region) == called
                 ):  # on a busy machine Blender may have been behind
+                    self.searched += monotonic() - started
                     yield from self.click(x, y)
                     yield 0.8
                     return
@@ -186,12 +190,14 @@ class Stage:
             yield from self.key("N")
             yield 0.5
         at = self.region("UI")
-        clicks = self.clicks
+        clicks, started = self.clicks, monotonic()
         for y in range(at.y + at.height - 20, at.y + 40, -25):
             if at.active_panel_category == "GridMesh":
                 break
-            self.clicks = clicks  # a user sees which tab it is
+            self.clicks, began = clicks, monotonic()  # a user sees which tab it is
             yield from self.click(at.x + at.width - 8, y)
+            self.searched += began - started
+            started = began
         yield 0.5
         assert at.active_panel_category == "GridMesh", at.active_panel_category
 
@@ -199,6 +205,7 @@ class Stage:
 
     def open_redo_panel(self):
         """Open the panel at the lower left by a click on its header; return its region."""
+        self.view.spaces.active.show_region_hud = True
         yield 0.5
         hud = self.region("HUD")
         if hud.height < 50:
