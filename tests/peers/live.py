@@ -13,13 +13,12 @@
     uv run tests/peers/live.py [MOVES]
 
 One point of a stroke of 500 is moved MOVES times (200) by less than an edge: milliseconds from the changed stroke to the end of Blender's update,
-in which a body of 5000 triangles has followed; wall clock and processor time. Then how much of the boundary is other than before
-each move, and the preview of a stroke of 2000 triangles for each event of the mouse.
+in which a body of 5000 triangles has followed; wall clock and processor time. Then the preview of a stroke of
+2000 triangles for each event of the mouse.
 """
 
 from __future__ import annotations
 
-import difflib
 import os
 import sys
 import tempfile
@@ -69,9 +68,8 @@ def drag():
     home = np.empty(len(data) * 3, np.float32)
     data.foreach_get("vector", home)
     random = np.random.default_rng(3)
-    wall, cpu, changed = [], [], []
+    wall, cpu = [], []
     engine.timing.clear()
-    before = None
     for _ in range(MOVES):
         moved = home.reshape(-1, 3).copy()
         moved[40, :2] += random.uniform(-0.6, 0.6, 2) * edge
@@ -81,32 +79,12 @@ def drag():
         bpy.context.view_layer.update()
         wall.append(1000 * (perf_counter() - began[0]))
         cpu.append(1000 * (process_time() - began[1]))
-        path = border(body)
-        if before is not None:
-            alike = difflib.SequenceMatcher(None, path, before, autojunk=False).get_matching_blocks()
-            changed.append(1 - sum(block.size for block in alike) / len(path))
-        before = path
     own = 1000 * np.array(engine.timing)
     print(
         f"live: {len(body.data.polygons)} triangles, {len(own)} updates for {MOVES} moves; all in: least "
         f"{min(wall):.1f} ms, median {np.median(wall):.1f} ms; processor: least {min(cpu):.1f} ms, "
         f"median {np.median(cpu):.1f} ms; GridMesh's part: least {own.min():.1f} ms, median {np.median(own):.1f} ms"
     )
-    print(
-        f"boundary that is other than before a move: median {100 * np.median(changed):.1f} %, most {100 * max(changed):.1f} %"
-    )
-
-
-def border(body):
-    """Turns of the lattice path that is the body's silhouette, from its vertices' numbers of triangles in front."""
-    mesh = body.data
-    corners = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
-    front = corners.reshape(-1, 3)[: len(mesh.polygons) // 2]
-    edges = np.sort(front[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    edges, uses = np.unique(edges, axis=0, return_counts=True)
-    rim = np.unique(edges[uses == 1])  # boundary vertices come first, in the order of the path
-    return np.bincount(front.ravel())[rim].tolist()
 
 
 def preview():

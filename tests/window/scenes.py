@@ -40,8 +40,8 @@ def finish(results):
 bpy.context.preferences.view.show_splash = False
 bpy.context.preferences.system.viewport_aa = "FXAA"
 wanted = os.environ.get("SCENES", "").split()
-known = {scene.__name__ for scene in SCENES}
-if not known.issuperset(wanted):
-    print(f"unknown: {set(wanted) - known}; there are {sorted(known)}")
+known = {scene.__name__: scene for scene in SCENES}
+if not known.keys() >= set(wanted):
+    print(f"unknown: {set(wanted) - known.keys()}; there are {', '.join(known)}")
     os._exit(2)
-perform([(scene.__name__, scene) for scene in SCENES if not wanted or scene.__name__ in wanted], finish)
+perform([(name, known[name]) for name in wanted or known], finish)

@@ -19,7 +19,8 @@ def fresh(mode="OBJECT", axis="FRONT"):
         bpy.data.objects.remove(ob)
     view = stage.view.spaces.active
     view.overlay.show_cursor = view.overlay.show_wireframes = False
-    view.show_region_ui = view.show_region_hud = False
+    with stage.override():
+        view.show_region_ui = view.show_region_hud = False
     view.shading.type = "SOLID"
     with stage.override():
         bpy.ops.view3d.view_axis(type=axis)

@@ -130,7 +130,7 @@ class Stage:
             yield from self.move(at.x + at.width // 2 - 10, y)
             called = self.asked(region)
             if idname in called and called != before:
-                found.append((self.mouse[0], y - 6, called))
+                found.append((self.mouse[0], y, called))
             before = called
         return found
 
@@ -172,15 +172,17 @@ class Stage:
             yield 0.3
             found = yield from self.buttons(region, idname)
             for x, y, called in found:
-                yield from self.move(x, y)
-                yield 0.3
-                if (
-                    part in called and self.asked(region) == called
-                ):  # on a busy machine Blender may have been behind
-                    self.searched += monotonic() - started
-                    yield from self.click(x, y)
-                    yield 0.8
-                    return
+                if part not in called:
+                    continue
+                # Well inside the button; but on a busy machine Blender was behind, and its top was not seen.
+                for below in (6, 2, 0):
+                    yield from self.move(x, y - below)
+                    yield 0.3
+                    if self.asked(region) == called:
+                        self.searched += monotonic() - started
+                        yield from self.click(x, y - below)
+                        yield 0.8
+                        return
         raise AssertionError(f"no button for {idname} {part} in {region}: {found}")
 
     def open_sidebar(self):
@@ -205,7 +207,8 @@ class Stage:
 
     def open_redo_panel(self):
         """Open the panel at the lower left by a click on its header; return its region."""
-        self.view.spaces.active.show_region_hud = True
+        with self.override():
+            self.view.spaces.active.show_region_hud = True
         yield 0.5
         hud = self.region("HUD")
         if hud.height < 50:
