@@ -206,7 +206,7 @@ def pen():
     front[:3, :3] = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
     pressure = 0.15 + 0.85 * (0.5 + 0.5 * np.cos(t)) ** 1.5
     for k, width in enumerate((0.0, 1.0)):
-        front[2, 3] = 1.2 - 2.4 * k
+        front[2, 3] = 1.5 - 3.0 * k
         drawn = {"stroke": gesture.pack(fish, pressure), "matrix": front.ravel().tolist()}
         assert bpy.ops.object.gridmesh_draw("EXEC_DEFAULT", **drawn, pen=width, triangles=1500) == {
             "FINISHED"

@@ -155,7 +155,7 @@ def menus():
     yield from stage.move(*stage.middle())
     with stage.override():
         bpy.ops.wm.call_menu(name="VIEW3D_MT_object_convert")
-    yield from beside()
+    yield 0.5
     yield from stage.picture("menu_convert")
     yield from stage.choose("Strokes to Mesh")
     assert len(mesh_objects()) == 1, "the menu made nothing"
@@ -163,13 +163,6 @@ def menus():
     grease_pencil([whale()])
     yield from stage.search("Strokes to Mesh")
     assert len(mesh_objects()) == 1, "the search made nothing"
-
-
-def beside():
-    """To the title of the menu that has opened: no tooltip hides its entries."""
-    yield 0.5
-    yield from stage.move(stage.mouse[0], stage.mouse[1] + 24)
-    yield 0.5
 
 
 def sprites():
@@ -180,7 +173,7 @@ def sprites():
     yield from stage.move(*stage.middle())
     with stage.override():
         bpy.ops.wm.call_menu(name="VIEW3D_MT_gridmesh_presets")
-    yield from beside()
+    yield 0.5
     yield from stage.picture("sprite_1_presets")
     yield from stage.choose("Sprite Standard")
     (sheet,) = mesh_objects()

@@ -38,6 +38,7 @@ def finish(results):
 
 
 bpy.context.preferences.view.show_splash = False
+bpy.context.preferences.view.show_tooltips = False  # they hide what the pictures show
 bpy.context.preferences.system.viewport_aa = "FXAA"
 wanted = os.environ.get("SCENES", "").split()
 known = {scene.__name__: scene for scene in SCENES}
