@@ -18,9 +18,12 @@ def register() -> None:
     """Register all classes, menu entries and the like; if one fails, none stays."""
     import bpy
 
+    from . import translations
+
     done = []
     try:
         for cls in _classes():
+            translations.claim(cls)
             bpy.utils.register_class(cls)
             done.append(cls)
         for part in _parts():
@@ -67,9 +70,10 @@ def _classes() -> tuple[type, ...]:
 def _parts() -> tuple[ModuleType, ...]:
     """Modules with more to register than classes; their `unregister` may be called at any time."""
     from . import cli, keys, preset_files, translations, ui
+    from .draw import cut_tool
     from .draw import operator as draw
     from .live import engine
     from .live import properties as live
     from .overlay import ui as overlay
 
-    return (translations, preset_files, ui, overlay, live, engine, draw, keys, cli)
+    return (translations, preset_files, ui, overlay, live, engine, draw, cut_tool, keys, cli)

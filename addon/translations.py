@@ -7,6 +7,8 @@ holds every language to be complete.
 
 from __future__ import annotations
 
+import inspect
+
 import bpy
 
 GERMAN = {
@@ -209,6 +211,10 @@ GERMAN = {
     ),
     "Facing the view, through the 3D cursor": "Der Ansicht zugewandt, durch den 3D-Cursor",
     "GridMesh Draw": "GridMesh zeichnen",
+    "GridMesh Cut": "GridMesh schneiden",
+    "Cut the active mesh.\nDrag across it, then click the side to keep; Enter keeps both": (
+        "Das aktive Mesh zerschneiden.\nQuer darüber ziehen, dann die Seite anklicken, die bleibt; Eingabe behält beide"
+    ),
     "How much the pressure of the pen drives the depth of the body": (
         "Wie sehr der Druck des Stifts die Tiefe des Körpers bestimmt"
     ),
@@ -342,15 +348,36 @@ GERMAN = {
     "With the slope of the surface": "Mit der Neigung der Fläche",
 }
 
+CONTEXT = "GridMesh"
+"""Of the names of options."""
+
 LANGUAGES: dict[str, dict[str, str]] = {"de_DE": GERMAN}
 
 
 def table() -> dict[str, dict[tuple[str, str], str]]:
-    """Translations as Blender wants them: operators' names have a context of their own."""
+    """Translations as Blender wants them: operators' names have a context of their own, and so have our options."""
     return {
-        locale: {(context, text): said for text, said in texts.items() for context in ("*", "Operator")}
+        locale: {
+            (context, text): said for text, said in texts.items() for context in ("*", "Operator", CONTEXT)
+        }
         for locale, texts in LANGUAGES.items()
     }
+
+
+def claim(cls: type) -> None:
+    """Give the options of a class, before it is registered, the context of our translations.
+
+    Without it Blender's own translation comes first, and that means something else: its "Triangles" is a verb in German.
+    """
+    for base in cls.__mro__:
+        if not base.__module__.startswith(__package__):
+            continue
+        # In modules with postponed evaluation options are text until somebody asks for them.
+        base.__annotations__ = inspect.get_annotations(base, eval_str=True)
+        for option in base.__annotations__.values():
+            keywords = getattr(option, "keywords", None)
+            if keywords is not None:
+                keywords.setdefault("translation_context", CONTEXT)
 
 
 def register() -> None:

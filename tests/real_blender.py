@@ -118,6 +118,8 @@ def _install_debian() -> None:
     settings = ['Acquire::Check-Valid-Until "false";', 'APT::Install-Recommends "false";', *routes]
     (DEBIAN / "etc/apt/apt.conf.d/90gridmesh").write_text("\n".join(settings) + "\n")
     excluded = [f"path-exclude=/usr/share/{name}/*" for name in ("doc", "man", "locale", "info")]
+    # One other language than English, to see it in a window.
+    excluded += [f"path-include=/usr/share/locale/{name}" for name in ("languages", "de/*")]
     (DEBIAN / "etc/dpkg/dpkg.cfg.d/90gridmesh").write_text("\n".join(excluded) + "\n")
     policy = DEBIAN / "usr/sbin/policy-rc.d"
     policy.write_text("#!/bin/sh\nexit 101\n")

@@ -102,8 +102,8 @@ class DrawnCut:
 
     _preview: Preview | None = None
 
-    def begin_drawing(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Wait for a line."""
+    def begin_drawing(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Wait for a line; the tool of the toolbar begins it at once, with the press that called it."""
         if context.area is None or context.area.type != "VIEW_3D":
             self.report({"ERROR"}, "A cut is drawn in a 3D view; start it from there")
             return {"CANCELLED"}
@@ -114,6 +114,9 @@ class DrawnCut:
         context.workspace.status_text_set(_DRAW)
         context.area.header_text_set(_DRAW)
         context.window_manager.modal_handler_add(self)
+        pressed = event.type == "LEFTMOUSE" and event.value == "PRESS"
+        if pressed and context.region is not None and context.region.type == "WINDOW":
+            self._begin_line(context.region, event)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -148,10 +151,13 @@ class DrawnCut:
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
             region = self._region_at(event)
             if region is not None:
-                preview.region, preview.points = region, []
-                self._drawing = True
-                self._extend(event)
+                self._begin_line(region, event)
         return {"RUNNING_MODAL"}
+
+    def _begin_line(self, region: Any, event: bpy.types.Event) -> None:
+        self._preview.region, self._preview.points = region, []
+        self._drawing = True
+        self._extend(event)
 
     def _region_at(self, event: bpy.types.Event) -> Any:
         """Return the view under the mouse."""

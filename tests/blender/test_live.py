@@ -1,5 +1,7 @@
 """Bodies that follow their stroke."""
 
+import difflib
+
 import bpy
 import numpy as np
 import pytest
@@ -72,6 +74,36 @@ def test_to_and_fro_gives_the_same_bytes(drawn):
     redraw(drawing, bean())
     engine.settle()
     assert bytes_of(body) == before
+
+
+def turns(body):
+    """Turns of the lattice path that is the silhouette, from how many triangles of the front each vertex has."""
+    corners = np.empty(len(body.data.loops), np.int32)
+    body.data.loops.foreach_get("vertex_index", corners)
+    front = corners.reshape(-1, 3)[: len(body.data.polygons) // 2]
+    edges = np.sort(front[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, uses = np.unique(edges, axis=0, return_counts=True)
+    return np.bincount(front.ravel())[np.unique(edges[uses == 1])].tolist()
+
+
+def test_the_mesh_does_not_pop(drawn):
+    drawing, body = drawn
+    body.gridmesh_live.triangles = 2000
+    bpy.context.view_layer.update()
+    engine.settle()
+    edge = body.gridmesh_live.lattice[0]
+    random = np.random.default_rng(5)
+    changed, before, amount = [], turns(body), 0.0
+    for _ in range(60):
+        amount += random.uniform(-0.9, 0.9) * edge
+        redraw(drawing, bump(bean(), amount, width=8.0))
+        now = turns(body)
+        alike = difflib.SequenceMatcher(None, now, before, autojunk=False).get_matching_blocks()
+        changed.append(1 - sum(block.size for block in alike) / len(now))
+        before = now
+    print(f"boundary changed by a move: median {np.median(changed):.3f}, most {max(changed):.3f}")
+    assert max(changed) > 0, "nothing has moved"
+    assert np.median(changed) <= 0.1
 
 
 def test_the_result_depends_on_the_stroke_alone(drawn):

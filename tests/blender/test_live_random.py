@@ -124,6 +124,8 @@ def test_random_edits(tmp_path):
     assert min(done.values()) > 0
     assert len(engine._states) <= 3 * len(engine.bodies()) + STEPS
     assert waiting < STEPS
+    # Undo steps and bodies that came with the steps take some; a mesh that is leaked at each would take 50 MB in 1000.
+    assert not memory or max(memory) - memory[0] <= 10 + 0.03 * STEPS, memory
     print(f"steps {done}, waiting {waiting}, bodies {len(engine.bodies())}, megabytes every 50 steps {memory}, "
           f"most {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024}")  # fmt: skip
 

@@ -22,3 +22,13 @@ def test_links_lead_somewhere(page):
     links = [link.split("#")[0] for link in re.findall(r"\]\(([^)\s]+)\)", text)]
     missing = [link for link in links if link and "://" not in link and not (page.parent / link).exists()]
     assert not missing
+
+
+def test_no_picture_of_a_window_is_left_over():
+    pages = [*DOCS.glob("*.md"), ROOT / "README.md"]
+    shown = {
+        name
+        for page in pages
+        for name in re.findall(r"pictures/windows/(\w+\.png)", page.read_text(encoding="utf-8"))
+    }
+    assert {path.name for path in (DOCS / "pictures" / "windows").iterdir()} == shown

@@ -36,8 +36,10 @@ def of_layouts():
     """Literal texts that are drawn, or translated before they are shown."""
     for path in sorted(ADDON.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "bl_description":  # of tools
-                yield ast.literal_eval(node.value)
+            if isinstance(node, ast.ClassDef) and any(
+                "WorkSpaceTool" in ast.unparse(base) for base in node.bases
+            ):
+                yield from of_tool(node)
             if isinstance(node, ast.Call):
                 if ast.unparse(node.func).endswith("pgettext_iface"):
                     literals = (
@@ -55,6 +57,13 @@ def of_layouts():
                 for keyword in node.keywords:
                     if keyword.arg == "text" and isinstance(keyword.value, ast.Constant):
                         yield keyword.value.value
+
+
+def of_tool(node):
+    """Name and description of a tool; tools are no classes of Blender's."""
+    for line in node.body:
+        if isinstance(line, ast.Assign) and ast.unparse(line.targets[0]) in {"bl_label", "bl_description"}:
+            yield ast.literal_eval(line.value)
 
 
 def of_presets():
@@ -91,6 +100,23 @@ def test_blender_knows_them():
     translations.unregister()
     translations.unregister()
     translations.register()
+
+
+def test_words_of_blender_do_not_come_before_ours():
+    """ "Triangles" was "Triangulieren" in German, a verb: Blender's word for something else."""
+    table = translations.table()["de_DE"]
+    for cls in addon._classes():
+        if not issubclass(cls, (bpy.types.Operator, bpy.types.PropertyGroup)):
+            continue
+        rna = cls.bl_rna
+        if issubclass(cls, bpy.types.Operator):
+            group, name = cls.bl_idname.split(".")
+            rna = getattr(getattr(bpy.ops, group), name).get_rna_type()
+        for option in rna.properties:
+            if option.identifier in {"rna_type", "name", "bl_idname"} or option.is_hidden:
+                continue
+            assert option.translation_context == translations.CONTEXT, f"{cls.__name__}.{option.identifier}"
+            assert option.name in OWN or (option.translation_context, option.name) in table
 
 
 @pytest.mark.parametrize("idname", [folder.name for folder in preset_files.FOLDER.iterdir()])

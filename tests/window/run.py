@@ -7,6 +7,7 @@ The window is on a screen in memory (Xvfb). Exit code 77 where there is no real 
 """
 
 import argparse
+import re
 import shutil
 import subprocess
 import sys
@@ -67,18 +68,39 @@ def main():
         words = blender.command([blender.program, *install], **settings)
         subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
     window = ["--window-geometry", "0", "0", "1280", "800", "--enable-event-simulate"]
-    play = ["--python", blender.path(SHARE / "scenes.py"), "--", blender.path(pictures)]
+    play = [
+        "--python-exit-code",
+        "1",
+        "--python",
+        blender.path(SHARE / "scenes.py"),
+        "--",
+        blender.path(pictures),
+    ]
     words = ["sh", "-c", SHELL, "window", blender.path(SHARE), blender.program, *window, *play]
     try:
-        done = subprocess.run(blender.command(words, **settings), check=False, timeout=1200)
+        done = subprocess.run(blender.command(words, **settings), check=False, timeout=2400)
     except subprocess.TimeoutExpired:
-        sys.exit("Blender did not come to an end within 20 minutes")
+        sys.exit("Blender did not come to an end within 40 minutes")
     if arguments.documentation and done.returncode == 0:
-        target = ROOT / "docs" / "pictures" / "windows"
-        target.mkdir(parents=True, exist_ok=True)
-        for picture in pictures.glob("*.png"):
-            shutil.copy(picture, target)
+        illustrate(pictures, complete=not arguments.scenes)
     sys.exit(done.returncode)
+
+
+def illustrate(pictures, *, complete):
+    """Put the pictures that the documentation shows into it; complete : it has no others."""
+    target = ROOT / "docs" / "pictures" / "windows"
+    texts = "".join(
+        page.read_text(encoding="utf-8") for page in (*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"))
+    )
+    shown = set(re.findall(r"pictures/windows/(\w+\.png)", texts))
+    if complete:
+        if missing := [name for name in sorted(shown) if not (pictures / name).exists()]:
+            sys.exit(f"the documentation shows pictures that no scene takes: {', '.join(missing)}")
+        shutil.rmtree(target, ignore_errors=True)
+    target.mkdir(parents=True, exist_ok=True)
+    for picture in pictures.glob("*.png"):
+        if picture.name in shown:
+            shutil.copy(picture, target)
 
 
 main()

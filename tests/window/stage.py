@@ -5,6 +5,7 @@ A scene is a generator. Each `yield` lets Blender handle what happened and draw;
 
 import subprocess
 from pathlib import Path
+from time import monotonic
 
 import bpy
 
@@ -20,6 +21,8 @@ class Stage:
         self.mouse = (640, 400)
         self.clicks = 0
         self.keys = 0
+        self.searched = 0.0
+        """Seconds in which a button was looked for that a user sees at once."""
 
     @property
     def window(self):
@@ -50,6 +53,12 @@ class Stage:
         self.mouse = (int(x), int(y))
         self.window.event_simulate("MOUSEMOVE", "NOTHING", x=self.mouse[0], y=self.mouse[1])
         yield STEP
+
+    def glide(self, path):
+        """Move along points that come faster than the window is drawn: Blender calls all but the last in between."""
+        for x, y in path[:-1]:
+            self.window.event_simulate("INBETWEEN_MOUSEMOVE", "NOTHING", x=int(x), y=int(y))
+        yield from self.move(*path[-1])
 
     def press(self, button="LEFTMOUSE", value="PRESS", **held):
         self.window.event_simulate(button, value, x=self.mouse[0], y=self.mouse[1], **held)
@@ -121,7 +130,7 @@ class Stage:
             yield from self.move(at.x + at.width // 2 - 10, y)
             called = self.asked(region)
             if idname in called and called != before:
-                found.append((self.mouse[0], y - 6, called))
+                found.append((self.mouse[0], y, called))
             before = called
         return found
 
@@ -137,22 +146,43 @@ class Stage:
                 return ""
         return bpy.context.window_manager.clipboard
 
+    def press_property(self, name, columns, top, bottom):
+        """Click the field of a property, found by the data path that Blender copies from what is under the mouse.
+
+        columns : x at which it is looked for, from `top` down to `bottom`.
+        """
+        manager = bpy.context.window_manager
+        for column in columns:
+            for y in range(int(top), int(bottom), -9):
+                manager.clipboard = ""
+                yield from self.move(column, y)
+                yield from self.press("C", "PRESS", ctrl=True, shift=True, alt=True)
+                yield from self.press("C", "RELEASE", ctrl=True, shift=True, alt=True)
+                if manager.clipboard.endswith(name):
+                    yield from self.click(column, y - 4)
+                    yield 0.8
+                    return
+        raise AssertionError(f"no field of {name}")
+
     def press_button(self, region, idname, part=""):
         """Click the first button that calls the operator, with `part` in its command."""
-        found = []
+        found, started = [], monotonic()
         for _ in range(3):
             yield from self.move(*self.middle())  # away from what was under it
             yield 0.3
             found = yield from self.buttons(region, idname)
             for x, y, called in found:
-                yield from self.move(x, y)
-                yield 0.3
-                if (
-                    part in called and self.asked(region) == called
-                ):  # on a busy machine Blender may have been behind
-                    yield from self.click(x, y)
-                    yield 0.8
-                    return
+                if part not in called:
+                    continue
+                # Well inside the button; but on a busy machine Blender was behind, and its top was not seen.
+                for below in (6, 2, 0):
+                    yield from self.move(x, y - below)
+                    yield 0.3
+                    if self.asked(region) == called:
+                        self.searched += monotonic() - started
+                        yield from self.click(x, y - below)
+                        yield 0.8
+                        return
         raise AssertionError(f"no button for {idname} {part} in {region}: {found}")
 
     def open_sidebar(self):
@@ -162,12 +192,14 @@ class Stage:
             yield from self.key("N")
             yield 0.5
         at = self.region("UI")
-        clicks = self.clicks
+        clicks, started = self.clicks, monotonic()
         for y in range(at.y + at.height - 20, at.y + 40, -25):
             if at.active_panel_category == "GridMesh":
                 break
-            self.clicks = clicks  # a user sees which tab it is
+            self.clicks, began = clicks, monotonic()  # a user sees which tab it is
             yield from self.click(at.x + at.width - 8, y)
+            self.searched += began - started
+            started = began
         yield 0.5
         assert at.active_panel_category == "GridMesh", at.active_panel_category
 
@@ -175,6 +207,8 @@ class Stage:
 
     def open_redo_panel(self):
         """Open the panel at the lower left by a click on its header; return its region."""
+        with self.override():
+            self.view.spaces.active.show_region_hud = True
         yield 0.5
         hud = self.region("HUD")
         if hud.height < 50:

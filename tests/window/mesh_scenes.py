@@ -1,0 +1,169 @@
+"""Filling holes and cutting, with mouse and keyboard."""
+
+import bpy
+import numpy as np
+from mathutils import Vector
+from setting import fresh, grease_pencil, mesh_objects, numbers_of, select, stage, stroke, tool, turn_view
+
+
+def holed_ball():
+    """A sphere with a hole, in Edit Mode, the hole's rim selected."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=1.5)
+    ob = bpy.context.object
+    bpy.ops.object.shade_smooth()
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_mode(type="FACE")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    import bmesh
+
+    bm = bmesh.from_edit_mesh(ob.data)
+    for face in bm.faces:
+        face.select_set((face.calc_center_median() - Vector((0, -1.2, 0.9))).length < 0.75)
+    bmesh.update_edit_mesh(ob.data)
+    bpy.ops.mesh.delete(type="FACE")
+    bpy.ops.mesh.select_mode(type="EDGE")
+    bpy.ops.mesh.select_non_manifold()
+    return ob
+
+
+def faces():
+    ob = bpy.context.object
+    ob.update_from_editmode()
+    return len(ob.data.polygons)
+
+
+def fill():
+    """Fill a hole by the panel's button, the redo panel, the Face menu, and undo."""
+    yield from fresh()
+    with stage.override():
+        holed_ball()
+    turn_view(1.0, 0.0, 0.2)
+    bpy.ops.ed.undo_push(message="hole")
+    yield from stage.open_sidebar()
+    open_faces = faces()
+    yield from stage.picture("fill_1_hole")
+    yield from stage.press_button("UI", "gridmesh_fill", "")
+    filled = faces()
+    assert filled > open_faces, "the panel's button filled nothing"
+    yield from stage.picture("fill_2_filled")
+    yield from stage.move(*stage.middle())
+    yield from stage.key("Z", ctrl=True)
+    yield 0.8
+    assert faces() == open_faces, "undo left the patch"
+    yield from stage.move(*stage.middle())
+    yield from stage.key("F", ctrl=True)
+    yield 0.5
+    yield from stage.picture("fill_3_menu")
+    yield from stage.choose("Grid Patch Fill")
+    assert faces() == filled, "the Face menu filled nothing"
+    yield from stage.key("Z", ctrl=True)
+    yield 0.8
+    yield from stage.press_button("UI", "gridmesh_fill", "ALL")
+    assert faces() == filled, "Fill All Holes filled nothing"
+    hud = yield from stage.open_redo_panel()
+    assert (yield from numbers_of(hud, "max_edges", "40")), "Max Edges could not be changed"
+    assert faces() == filled, "the redo panel did not fill again"
+
+
+def ball(**options):
+    """A sphere in Object Mode, the only object."""
+    with stage.override():
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=1.5, **options)
+    ob = bpy.context.view_layer.objects.active
+    for face in ob.data.polygons:
+        face.use_smooth = True
+    return ob
+
+
+def wave(n=60):
+    """(n, 3) points of a line across the ball, in front of it."""
+    t = np.linspace(-2, 2, n)
+    return np.stack([t, 0 * t - 2, 0.35 * np.sin(2.5 * t)], axis=1)
+
+
+def cut():
+    """Cut a ball along a stroke, by the panel's button."""
+    yield from fresh()
+    target = ball()
+    line = grease_pencil([wave()], "Cut")
+    line.data.layers[0].frames[0].drawing.strokes[0].cyclic = False
+    select(target)
+    line.select_set(True)
+    bpy.ops.ed.undo_push(message="Stroke")
+    yield from stage.open_sidebar()
+    yield from stage.picture("cut_1_stroke")
+    yield from stage.press_button("UI", "gridmesh_cut", "OBJECTS")
+    assert len(mesh_objects()) == 2, "nothing was cut"
+    stage.view.spaces.active.overlay.show_wireframes = True
+    turn_view(0.9, 0.0, 0.4)
+    smaller = min(mesh_objects(), key=lambda ob: len(ob.data.polygons))
+    smaller.location.z += 1.2 if max(v.co.z for v in smaller.data.vertices) > 1.2 else -1.2
+    yield from stage.open_redo_panel()
+    yield from stage.picture("cut_2_capped")
+
+
+def cut_drawn():
+    """A line drawn by the panel's button, and Enter keeps both sides; Esc leaves everything as it was."""
+    yield from fresh()
+    ball()
+    bpy.ops.ed.undo_push(message="Ball")
+    yield from stage.open_sidebar()
+    yield from stage.press_button("UI", "gridmesh_cut", "DRAWN")
+    path = across()
+    yield from stage.drag(path)
+    yield from stage.key("RET")
+    yield 1.0
+    assert len(mesh_objects()) == 2, "the drawn line cut nothing"
+    yield from stage.move(*stage.middle())
+    yield from stage.key("Z", ctrl=True)
+    yield 0.8
+    assert len(mesh_objects()) == 1, "undo left the cut"
+    yield from stage.press_button("UI", "gridmesh_cut", "DRAWN")
+    yield from stage.drag(path)
+    yield from stage.key("ESC")
+    yield 0.8
+    assert not stage.window.modal_operators, "Esc did not end the drawing of a cut"
+    assert len(mesh_objects()) == 1, "Esc cut all the same"
+
+
+def across():
+    """Points in the window, of a line across the ball."""
+    x, y = stage.middle()
+    return [(x - 250 + 12 * k, y + 25 * np.sin(0.25 * k)) for k in range(36)]
+
+
+def cut_side():
+    """The tool in the toolbar: drag across the ball, then click the side that is kept; once each."""
+    yield from fresh()
+    ball()
+    bpy.ops.ed.undo_push(message="Ball")
+    yield from tool("gridmesh.cut")
+    x, y = stage.middle()
+    try:
+        for upper in (True, False):
+            yield from stroke(across())
+            assert [ob.bl_idname for ob in stage.window.modal_operators] == ["OBJECT_OT_gridmesh_cut"]
+            yield from stage.move(x, y + (90 if upper else -90))
+            yield from stage.picture("cut_side_0" if upper else "cut_side_1")
+            yield from stage.click(*stage.mouse)
+            yield 0.8
+            (kept,) = mesh_objects()
+            heights = [vertex.co.z for vertex in kept.data.vertices]
+            assert (max(heights) > 1.4) == upper, "the wrong side was kept"
+            assert (min(heights) < -1.4) != upper, "the other side is still there"
+            if upper:
+                yield from stage.key("Z", ctrl=True)
+                yield 0.8
+        turn_view(0.9, 0.0, 0.4)
+        yield from stage.open_redo_panel()
+        yield from stage.picture("cut_side_2")
+        for end in ("ESC", "RIGHTMOUSE"):
+            before = len(mesh_objects()[0].data.vertices)
+            yield from stroke(across(), end=end)
+            assert not stage.window.modal_operators, end
+            assert len(mesh_objects()[0].data.vertices) == before, end
+    finally:
+        yield from tool("builtin.select_box")
+
+
+SCENES = (fill, cut, cut_drawn, cut_side)
