@@ -375,3 +375,39 @@ def test_random_loops(n: int, seed: int, rough: float, wild: bool, smooth: str) 
     centre = loop.mean(axis=0)
     if len(fill.vertices):
         assert np.abs(fill.vertices - centre).max() < 20 * size
+
+
+@settings(deadline=None, max_examples=300)
+@given(st.data())
+def test_any_loop_is_filled_or_refused(data: st.DataObject) -> None:
+    """Repeated and touching vertices, flat triangles, edges of many faces: no crash, no edge made worse."""
+    count = data.draw(st.integers(3, 14))
+    seed = data.draw(st.integers(0, 2**32 - 1))
+    rng = np.random.default_rng(seed)
+    # Points of a coarse grid coincide, lie on lines and on each other's edges.
+    flat = data.draw(st.booleans())
+    vertices = rng.integers(0, data.draw(st.integers(2, 5)), (count, 3)).astype(float)
+    if flat:
+        vertices[:, 2] = 0.0
+    faces = rng.integers(0, count, (data.draw(st.integers(0, 12)), 3)).astype(np.int32)
+    if data.draw(st.booleans()):
+        loop = rng.permutation(count)[: data.draw(st.integers(3, count))]
+    else:
+        loop = rng.integers(0, count, data.draw(st.integers(0, count + 2)))
+    try:
+        fill = gridmesh.fill_hole(vertices, faces, loop)
+    except gridmesh.GridMeshError:
+        return
+    assert np.isfinite(fill.vertices).all()
+    size = max(np.ptp(vertices[loop], axis=0).max(), 1e-9)
+    if len(fill.vertices):
+        assert np.abs(fill.vertices - vertices[loop].mean(axis=0)).max() < 20 * size
+    patch: dict[tuple[int, int], int] = {}
+    for a, b in half_edges(fill.triangles).tolist():
+        patch[min(a, b), max(a, b)] = patch.get((min(a, b), max(a, b)), 0) + 1
+    around = {(min(a, b), max(a, b)) for a, b in zip(loop.tolist(), np.roll(loop, -1).tolist(), strict=True)}
+    assert {edge for edge, times in patch.items() if times == 1} == around
+    assert max(patch.values()) <= 2
+    sound = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]
+    old = {(min(a, b), max(a, b)) for a, b in half_edges(sound).tolist()}
+    assert not (patch.keys() - around) & old
