@@ -2,27 +2,32 @@
 """GridMesh: smooth bodies with clean triangle meshes from drawn strokes.
 
     operators.strokes -> strokes, curves (from Blender) -> outlines, api (numpy only) -> meshes (to Blender)
+    draw -> outlines of its own; live keeps bodies up to date with their strokes; overlay shows what meshes are like
     operators.fill -> editmesh (from Blender) -> holes, api (no bpy) -> editmesh, attributes (to Blender)
+    operators.cut -> cutline, cutobject (from Blender) -> cutting (no bpy) -> cutmesh, cutcorners (to Blender)
 
 `properties` holds what the redo panel shows, `ui` the sidebar and the menus. The native module `gridmesh` is
-imported when it is first needed, so that the extension registers, and can say what is wrong, without it; and
-bpy only in `register`, so that `outlines` and `api` run in plain Python.
+imported by `native` when it is first needed, so that the extension registers, and can say what is wrong, without it;
+and bpy only in `register`, so that `outlines` and `api` run in plain Python.
 """
+
+from types import ModuleType
 
 
 def register() -> None:
-    """Register all classes and menu entries; if one fails, none stays."""
+    """Register all classes, menu entries and the like; if one fails, none stays."""
     import bpy
-
-    from . import ui
 
     done = []
     try:
         for cls in _classes():
             bpy.utils.register_class(cls)
             done.append(cls)
-        ui.add_menus()
+        for part in _parts():
+            part.register()
     except BaseException:
+        for part in reversed(_parts()):
+            part.unregister()
         for cls in reversed(done):
             bpy.utils.unregister_class(cls)
         raise
@@ -32,9 +37,8 @@ def unregister() -> None:
     """Undo `register`, also where it was undone in part."""
     import bpy
 
-    from . import ui
-
-    ui.remove_menus()
+    for part in reversed(_parts()):
+        part.unregister()
     for cls in reversed(_classes()):
         if cls.is_registered:
             bpy.utils.unregister_class(cls)
@@ -42,6 +46,30 @@ def unregister() -> None:
 
 def _classes() -> tuple[type, ...]:
     from . import ui
-    from .operators import fill, strokes
+    from .draw import operator as draw
+    from .live import properties as live
+    from .live import ui as live_ui
+    from .operators import cut, fill, strokes
+    from .overlay import ui as overlay
 
-    return (*strokes.classes, *fill.classes, *ui.classes)
+    return (
+        *strokes.classes,
+        *fill.classes,
+        *cut.classes,
+        *overlay.classes,
+        *live.classes,
+        *draw.classes,
+        *ui.classes,
+        *live_ui.classes,
+    )
+
+
+def _parts() -> tuple[ModuleType, ...]:
+    """Modules with more to register than classes; their `unregister` may be called at any time."""
+    from . import cli, keys, preset_files, translations, ui
+    from .draw import operator as draw
+    from .live import engine
+    from .live import properties as live
+    from .overlay import ui as overlay
+
+    return (translations, preset_files, ui, overlay, live, engine, draw, keys, cli)

@@ -6,72 +6,21 @@ numpy only, no bpy: everything here runs in plain Python. Points are float64 in 
 
 from __future__ import annotations
 
-import importlib
-import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .native import MANIFEST, NATIVE_VERSION, NativeError, native  # noqa: F401 (known to callers from here)
 from .outlines import Sketch, Stroke, StrokeError, area, nest, prepare, project
-
-MANIFEST = tomllib.loads((Path(__file__).parent / "blender_manifest.toml").read_text(encoding="utf-8"))
-
-NATIVE_VERSION: str = MANIFEST["version"]
-"""Version of the `gridmesh` module that this extension is shipped with; newer patch releases serve too."""
 
 Progress = Callable[[float], object]
 """Called with the fraction that is done, from any thread; cancels by returning False."""
 
 
-class NativeError(RuntimeError):
-    """The module `gridmesh` cannot be used. The message says why and what to do."""
-
-
 class CancelledError(Exception):
     """The user asked to stop. Nothing was made."""
-
-
-def native(*needed: str) -> Any:
-    """Import the module `gridmesh` and check that it has this extension's version and what is needed of it.
-
-    Raises
-    ------
-    NativeError
-        If it is missing, was built for another platform, or has another version.
-    """
-    try:
-        module = importlib.import_module("gridmesh")
-    except (ImportError, OSError) as error:
-        raise NativeError(
-            f"The native module 'gridmesh' could not be loaded ({error}); "
-            "install the GridMesh extension for this platform again and restart Blender"
-        ) from error
-    version = getattr(module, "__version__", "of unknown version")
-    if not _serves(version):
-        raise NativeError(
-            f"The native module 'gridmesh' is {version}, this extension needs {NATIVE_VERSION}; "
-            "update GridMesh and every extension that brings the module, then restart Blender"
-        )
-    missing = [name for name in needed if not hasattr(module, name)]
-    if missing:
-        where = getattr(module, "__file__", None) or "an unknown place"
-        raise NativeError(
-            f"The native module 'gridmesh' ({version}, from {where}) is an unfinished build without "
-            f"'{missing[0]}'; install GridMesh {NATIVE_VERSION} again and restart Blender"
-        )
-    return module
-
-
-def _serves(version: str) -> bool:
-    """Whether a module of this version has the functions used here: same minor release, not older."""
-    try:
-        found, needed = (tuple(int(part) for part in v.split(".")[:3]) for v in (version, NATIVE_VERSION))
-    except ValueError:
-        return False
-    return found[:2] == needed[:2] and found >= needed
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,6 +192,16 @@ def fill(
         if error.kind == "cancelled":
             raise CancelledError from error
         return [str(error)] * len(indices)
+
+
+def expected_triangles(sketches: list[Sketch], sketch_options: dict[str, Any]) -> float:
+    """About how many flat triangles these sketches get with these options."""
+    if (triangles := sketch_options.get("triangles")) is not None:
+        return float(triangles) * len(sketches)
+    length = sketch_options["edge_length"]
+    if length <= 0:
+        return 0.0
+    return sum(area(sketch.outline) for sketch in sketches) / (np.sqrt(3) / 4 * length**2)
 
 
 def suggested_edge_length(sketches: list[Sketch], triangles: int) -> float | None:

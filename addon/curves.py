@@ -24,7 +24,14 @@ def read(context: bpy.types.Context, ob: bpy.types.Object) -> tuple[list[Stroke]
     if ob.mode == "EDIT":
         ob.update_from_editmode()
     with _bare(context, ob) as mesh:
-        points, lines, failure = _outlines(mesh) if mesh is not None else (np.zeros((0, 3)), [], "")
+        return strokes_of(ob, mesh)
+
+
+def strokes_of(
+    ob: bpy.types.Object, mesh: bpy.types.Mesh | None
+) -> tuple[list[Stroke], list[Failure], list[str]]:
+    """Strokes of a curve or text object out of the mesh of its wires or flat faces; see `read`."""
+    points, lines, failure = _outlines(mesh) if mesh is not None else (np.zeros((0, 3)), [], "")
     if failure:
         return [], [Failure(f"'{ob.name}'", failure)], []
     if not lines:

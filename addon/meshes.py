@@ -38,7 +38,10 @@ class Transaction:
 
     def new(self, collection: Any, *arguments: Any) -> Any:
         """Make a data block with `collection.new` and remember it."""
-        block = collection.new(*arguments)
+        return self.remember(collection, collection.new(*arguments))
+
+    def remember(self, collection: Any, block: Any) -> Any:
+        """Remember a data block that was made in another way."""
         self._made.append((collection, block))
         return block
 
@@ -107,9 +110,17 @@ def separate_blocked(
 
 
 def place(
-    context: bpy.types.Context, bodies: list[Body], *, update: bool, collection: str, crease_angle: float
+    context: bpy.types.Context,
+    bodies: list[Body],
+    *,
+    update: bool,
+    collection: str,
+    crease_angle: float,
+    made: list[bpy.types.Object] | None = None,
 ) -> list[str]:
     """Make an object of every body, or bring the one made earlier up to date; return what is worth telling.
+
+    The objects are appended to `made`, one for each body.
 
     collection : "SOURCE", "ACTIVE" or "NEW". crease_angle : in radians, creases from which on are marked sharp.
     In Object Mode the objects become the selection, the first one active. If anything fails, everything made
@@ -124,8 +135,10 @@ def place(
             objects.append(ob if ob is not None else _new_object(body, into, transaction, crease_angle))
         for body, ob in zip(bodies, objects, strict=True):
             if body.sketch.stroke.key in before:
-                _refresh(ob, body, crease_angle)
+                refresh(ob, body, crease_angle)
     _show(context, objects)
+    if made is not None:
+        made += objects
     return list(dict.fromkeys(transaction.notes))
 
 
@@ -166,21 +179,22 @@ def fill(mesh: bpy.types.Mesh, body: Body, crease_angle: float) -> None:
     mesh.update(calc_edges=True)
     layer = mesh.uv_layers.new(name=UV_MAP, do_init=False)
     layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
-    _mark_creases(mesh, body, crease_angle)
+    mark_creases(mesh, body, crease_angle)
 
 
-def _mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
+def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
+    """Mark the edges along the rim sharp where front and back meet at more than `angle`, and no others."""
     edges = np.empty(len(mesh.edges) * 2, np.int32)
     mesh.edges.foreach_get("vertices", edges)
     sides = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("edge_index", sides)
     edges, sides = edges.reshape(-1, 2), sides.reshape(-1, 3)
     sharp = rim_creases(body.vertices, body.triangles, body.silhouette, edges, sides, angle)
-    if sharp.any():
+    if sharp.any() or mesh.attributes.get("sharp_edge") is not None:
         mesh.edges.foreach_set("use_edge_sharp", sharp)
 
 
-def _refresh(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
+def refresh(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
     """Replace the geometry of an object made earlier; keep name, materials, modifiers, children, shading.
 
     Where the drawing plane moved, the object moves along, from wherever it was put meanwhile.
@@ -195,11 +209,19 @@ def _refresh(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
             ob.vertex_groups.new(name=name)
     if flat_shaded:
         mesh.shade_flat()
+    move_along(ob, body)
+
+
+def move_along(ob: bpy.types.Object, body: Body) -> None:
+    """Move an object with its drawing plane, from wherever it was put meanwhile, and remember the stroke."""
     before = np.array(list(ob[LINK].get("matrix", ())), float)
     now = body.sketch.plane.matrix
     if before.size == 16 and not np.allclose(before.reshape(4, 4), now, rtol=0, atol=1e-6 * body.sketch.size):
-        moved = Matrix(before.reshape(4, 4).tolist()).inverted()
-        ob.matrix_world = ob.matrix_world @ moved @ Matrix(now.tolist())
+        if np.allclose(np.array(ob.matrix_world), before.reshape(4, 4), rtol=0, atol=1e-5 * body.sketch.size):
+            ob.matrix_world = Matrix(now.tolist())  # exactly, however often the plane has moved
+        else:
+            moved = Matrix(before.reshape(4, 4).tolist()).inverted()
+            ob.matrix_world = ob.matrix_world @ moved @ Matrix(now.tolist())
     ob[LINK] = _link(body)
 
 
@@ -212,6 +234,10 @@ def _flat_shaded(mesh: bpy.types.Mesh) -> bool:
     return bool(sharp.all())
 
 
+BLACK = 0.02
+"""Ink with no channel above this, in linear colour, is black."""
+
+
 def surface_material(
     material: bpy.types.Material | None, filled: bool, transaction: Transaction
 ) -> bpy.types.Material | None:
@@ -219,13 +245,16 @@ def surface_material(
 
     A grease pencil material shows on a mesh as plain grey. Its twins have its colours: "<name> Surface" that of
     the stroke, "<name> Fill" that of the fill, for bodies of filled strokes. Each is made once and found by name
-    afterwards, so that it can be edited.
+    afterwards, so that it can be edited. Black ink is for drawing with, as Blender's first pencil is: a body
+    drawn with it has no material, and shows its form.
     """
     if material is None or not material.is_grease_pencil:
         return material
     style = material.grease_pencil
     filled = _shows_fill(style, filled)
     color = (*(style.fill_color if filled else style.color)[:3], 1.0)
+    if not filled and max(color[:3]) < BLACK:
+        return None
     name = _shortened(material.name, " Fill" if filled else " Surface")
     twin = bpy.data.materials.get(name)
     if twin is not None and not twin.is_grease_pencil:

@@ -52,6 +52,8 @@ class Stroke:
     """Whether it is drawn with a fill of its own, apart from what its material says."""
     painted: bool = False
     """Whether colours are painted over those of its material."""
+    widths: np.ndarray | None = None
+    """(n,) radius of the pen at each point, in the drawing's own units; None where it is not known."""
 
     @property
     def label(self) -> str:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How far the work is, shown at the mouse pointer while an operator runs.
 
-Blender handles no events meanwhile, so Esc cannot be seen; Ctrl-C in the terminal that Blender was started from
-stops the work where Python gets it, and the operator leaves the scene as it was.
+Blender handles no events meanwhile, so Esc cannot be seen (longer work waits in `operators.waiting`); Ctrl-C in the
+terminal that Blender was started from stops the work where Python gets it, and the operator leaves the scene as it was.
 """
 
 from __future__ import annotations

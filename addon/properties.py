@@ -86,6 +86,25 @@ class SketchOptions:
         soft_max=pi,
     )
 
+    mirror: EnumProperty(
+        name="Mirror",
+        description="Whether the mesh of a symmetric drawing is its own mirror image",
+        items=[
+            ("OFF", "Off", "Mesh the drawing as it is"),
+            (
+                "AUTO",
+                "Automatic",
+                "Find the axis of a drawing that is symmetric within 2% of its size, and mesh both halves alike",
+            ),
+        ],
+        default="OFF",
+    )
+    use_union: BoolProperty(
+        name="Resolve Crossings",
+        description="Take the outer outline of strokes that cross themselves, instead of refusing them",
+        default=False,
+    )
+
     def sketch_options(self) -> dict[str, Any]:
         """Keyword arguments of `gridmesh.mesh_sketch`."""
         by_length = self.resolution == "EDGE_LENGTH"
@@ -95,6 +114,8 @@ class SketchOptions:
             "max_distance": self.max_distance,
             "angle": self.angle if self.angle_mode == "FIXED" else None,
             "corner_angle": self.corner_angle,
+            "mirror": "auto" if self.mirror == "AUTO" else None,
+            "self_crossing": "union" if self.use_union else "error",
         }
 
     def draw_sketch_options(self, layout: bpy.types.UILayout) -> None:
@@ -102,6 +123,7 @@ class SketchOptions:
         column = layout.column()
         column.prop(self, "resolution")
         column.prop(self, "edge_length" if self.resolution == "EDGE_LENGTH" else "triangles")
+        column.prop(self, "mirror")
         header, body = layout.panel(f"{self.bl_idname}_grid", default_closed=True)
         header.label(text="Grid")
         if body is not None:
@@ -130,6 +152,7 @@ class ShapeOptions:
         description="Cross-section of the body",
         items=[
             ("ROUND", "Round", "Round; a circle becomes a sphere"),
+            ("EVEN", "Even", "Round; a long limb becomes a round tube"),
             ("FLAT", "Flat", "Flat with a rounded rim"),
             ("PEAK", "Peak", "Rising evenly to a ridge"),
         ],

@@ -22,6 +22,9 @@ SOURCE_TYPES = {"GREASEPENCIL", "CURVE", "FONT", "CURVES"}
 # What the attribute `curve_type` means. Where it is absent, all are Catmull-Rom.
 _CATMULL_ROM, _POLY, _BEZIER, _NURBS = range(4)
 
+_RADIUS = 0.01
+"""Radius of points where none is stored."""
+
 # What the values of an attribute are called, where not "value".
 _VALUES = {"FLOAT_VECTOR": "vector", "FLOAT_COLOR": "color", "BYTE_COLOR": "color"}
 
@@ -71,9 +74,9 @@ def read_objects(context: bpy.types.Context, objects: list[bpy.types.Object]) ->
     depsgraph = context.evaluated_depsgraph_get()
     for ob in objects:
         if ob.type == "GREASEPENCIL":
-            reading.add(_read_grease_pencil(ob, depsgraph))
+            reading.add(read_grease_pencil(ob, depsgraph))
         elif ob.type == "CURVES":
-            reading.add(_read_hair(ob, depsgraph))
+            reading.add(read_hair(ob, depsgraph))
         else:
             strokes, failures, notes = curves.read(context, ob)
             reading.add(Reading(strokes, failures, notes))
@@ -86,7 +89,8 @@ def _shown(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Any:
     return ob.evaluated_get(depsgraph).data if modified else ob.data
 
 
-def _read_grease_pencil(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Reading:
+def read_grease_pencil(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Reading:
+    """Read the strokes of the visible layers at the current frame."""
     reading = Reading()
     data = _shown(ob, depsgraph)
     if not len(data.layers):
@@ -134,7 +138,8 @@ def layer_to_world(ob: bpy.types.Object, layer: Any) -> np.ndarray:
     return np.array(matrix @ layer.matrix_parent_inverse @ layer.matrix_local)
 
 
-def _read_hair(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Reading:
+def read_hair(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Reading:
+    """Read the curves of a curves object."""
     data = _shown(ob, depsgraph)
     if not len(data.curves):
         return Reading(notes=[f"'{ob.name}' has no curves; draw a closed shape in it"])
@@ -199,6 +204,8 @@ def _read_geometry(
     materials = table.read("material_index", "CURVE", np.int32(0))
     filled = table.read("fill_id", "CURVE", np.int32(0)) != 0  # from Blender 5.2 on
     painted = table.painted(offsets)
+    widths = table.read("radius", "POINT", np.float32(_RADIUS)).astype(float)
+    kinds = table.read("curve_type", "CURVE", np.int8(_CATMULL_ROM))
     sample = _sampler(table, positions, cyclic, offsets)
     slots = [slot.material for slot in ob.material_slots]
     for index in range(n_curves):
@@ -221,7 +228,9 @@ def _read_geometry(
             reading.failures.append(Failure(stroke.label, str(error)))
             continue
         with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name later
-            reading.strokes.append(Stroke(points=points @ world[:3, :3].T + world[:3, 3], **about))
+            points = points @ world[:3, :3].T + world[:3, 3]
+        own = widths[offsets[index] : offsets[index + 1]] if kinds[index] == _POLY else None
+        reading.strokes.append(Stroke(points=points, widths=own, **about))
     return reading
 
 

@@ -8,7 +8,8 @@ from typing import Any
 
 import bpy
 
-from . import meshes, strokes
+from . import cutline, meshes, preset_files, strokes
+from .operators.cut import OBJECT_OT_gridmesh_cut
 from .operators.fill import MESH_OT_gridmesh_fill
 from .operators.strokes import OBJECT_OT_gridmesh_from_strokes
 
@@ -22,6 +23,7 @@ STROKE_MENUS = (
     "VIEW3D_MT_edit_curve_context_menu",
     "VIEW3D_MT_edit_curves",
 )
+CUT_MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh")
 FILL_MENUS = ("VIEW3D_MT_edit_mesh_faces", "VIEW3D_MT_edit_mesh_context_menu")
 
 
@@ -39,6 +41,8 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
             self._draw_fill()
         else:
             self._draw_strokes(context)
+        if OBJECT_OT_gridmesh_cut.poll(context):
+            _draw_cut(self.layout, context)
 
     def _draw_fill(self) -> None:
         idname = MESH_OT_gridmesh_fill.bl_idname
@@ -54,6 +58,9 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
         row.enabled = bool(drawings)
         row.operator(idname, icon="MESH_DATA").source = "OBJECTS"
         row = column.row()
+        row.enabled = bool(drawings)
+        row.menu(VIEW3D_MT_gridmesh_presets.__name__, icon="PRESET")
+        row = column.row()
         row.enabled = bool(drawings or bodies)
         again = row.operator(idname, text="Update Bodies", icon="FILE_REFRESH")
         again.source, again.update_existing = "OBJECTS", True
@@ -61,6 +68,30 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
             column.operator(idname, text="Annotations to Mesh").source = "ANNOTATIONS"
         if not drawings and not bodies:
             self.layout.label(text="Select a drawing or a curve", icon="INFO")
+
+
+class VIEW3D_MT_gridmesh_presets(bpy.types.Menu):  # noqa: N801
+    """Make meshes from strokes with the options of a preset."""
+
+    bl_label = "Presets"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw an entry for each preset that comes with the extension."""
+        idname = OBJECT_OT_gridmesh_from_strokes.bl_idname
+        for label, properties in preset_files.shipped(idname).items():
+            entry = self.layout.operator(idname, text=label)
+            entry.source = "OBJECTS"
+            for name, value in properties.items():
+                setattr(entry, name, value)
+
+
+def _draw_cut(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    idname = OBJECT_OT_gridmesh_cut.bl_idname
+    column = layout.column()
+    column.operator(idname, text="Draw Cut", icon="GREASEPENCIL").source = "DRAWN"
+    row = column.row()
+    row.enabled = bool(cutline.stroke_objects(context))
+    row.operator(idname, text="Cut along Stroke").source = "OBJECTS"
 
 
 def _stroke_entry(menu: Any, context: bpy.types.Context) -> None:
@@ -74,25 +105,36 @@ def _fill_entry(menu: Any, _context: bpy.types.Context) -> None:
     menu.layout.operator(MESH_OT_gridmesh_fill.bl_idname).holes = "SELECTED"
 
 
+def _cut_entry(menu: Any, context: bpy.types.Context) -> None:
+    if not OBJECT_OT_gridmesh_cut.poll(context):
+        return
+    idname = OBJECT_OT_gridmesh_cut.bl_idname
+    menu.layout.separator()
+    menu.layout.operator_context = "INVOKE_REGION_WIN"
+    menu.layout.operator(idname, text="Draw Cut & Cap").source = "DRAWN"
+    if cutline.stroke_objects(context):
+        menu.layout.operator(idname, text="Cut & Cap along Stroke").source = "OBJECTS"
+
+
 def _entries() -> Iterator[tuple[Any, Any]]:
     """Menus of this version, and what is drawn at their end."""
-    for names, entry in ((STROKE_MENUS, _stroke_entry), (FILL_MENUS, _fill_entry)):
+    for names, entry in ((STROKE_MENUS, _stroke_entry), (FILL_MENUS, _fill_entry), (CUT_MENUS, _cut_entry)):
         for name in names:
             menu = getattr(bpy.types, name, None)
             if menu is not None:
                 yield menu, entry
 
 
-def add_menus() -> None:
+def register() -> None:
     """Add the entries to the menus that this version has."""
     for menu, entry in _entries():
         menu.append(entry)
 
 
-def remove_menus() -> None:
+def unregister() -> None:
     """Take the entries out again."""
     for menu, entry in _entries():
         menu.remove(entry)
 
 
-classes = (VIEW3D_PT_gridmesh,)
+classes = (VIEW3D_MT_gridmesh_presets, VIEW3D_PT_gridmesh)

@@ -5,13 +5,15 @@
 # [tool.uv]
 # python-downloads = "never"
 # ///
-"""Run every test: Rust, the Python module, and the extension in three versions of Blender.
+"""Run every test: Rust, the Python module, and the extension in four versions of Blender.
 
     uv run tests/run.py [PART ...]
 
-Parts (all without a name): fmt clippy cargo doc ruff core core313 blender45 blender52 blender50. The module is
-built once, as the wheel that is shipped; every Python environment lives in `.venv/` and is made when it is missing. Blender
-5.2 needs Python 3.13: without one its parts count as skipped, never as passed.
+Parts (all but `window` without a name): fmt clippy cargo doc ruff core core313 blender45 blender52 blender50 zip installed45 installed52
+installed50 real window. The module is built once, as the wheel that is shipped; every Python environment lives in `.venv/` and is
+made when it is missing. `zip` builds the extension; the parts after it install that zip, in the `bpy` modules and in a
+real Blender, in the background and in a window. Blender 5.2 needs Python 3.13, and a real Blender has to be found
+(see real_blender.py): what cannot be tested counts as skipped, never as passed.
 """
 
 from __future__ import annotations
@@ -23,9 +25,11 @@ import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import package
 import system_libraries
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -40,6 +44,20 @@ PYTHON_PARTS = {
     "blender52": ("3.13", "blender52", ["tests/blender"]),
     "blender50": ("3.11", "blender50", ["tests/blender", "-m", "smoke"]),
 }
+# Part: Python version, dependency group. Each in an environment that has never seen the module.
+INSTALLED_PARTS = {
+    "installed45": ("3.11", "blender45"),
+    "installed52": ("3.13", "blender52"),
+    "installed50": ("3.11", "blender50"),
+}
+REAL_PARTS = {
+    "real": ["tests/installed/real.py"],
+    "window": ["tests/window/run.py"],
+}
+BY_NAME = {"window"}
+"""Run only when they are named: simulated events need a machine that answers in time."""
+SKIPPED = 77
+"""Exit code of a script that could not test anything."""
 RUST_PARTS = {
     "fmt": ["cargo", "fmt", "--all", "--check"],
     "clippy": [
@@ -69,38 +87,50 @@ class Result:
     seconds: float = 0.0
     counts: dict[str, int] = field(default_factory=dict)
     note: str = ""
+    code: int = 0
 
 
 def main() -> int:
     """Run the parts that are asked for; 0 if nothing failed."""
-    parts = [*RUST_PARTS, "ruff", *PYTHON_PARTS]
-    wanted = sys.argv[1:] or parts
+    parts = [*RUST_PARTS, "ruff", *PYTHON_PARTS, "zip", *INSTALLED_PARTS, *REAL_PARTS]
+    wanted = sys.argv[1:] or [part for part in parts if part not in BY_NAME]
     if unknown := sorted(set(wanted) - set(parts)):
         sys.exit(f"unknown: {', '.join(unknown)}; allowed: {', '.join(parts)}")
     if UV is None:
         sys.exit("uv is missing; install it with: python3 -m pip install uv")
     os.chdir(ROOT)
     OUT.mkdir(parents=True, exist_ok=True)
-    if any(part.startswith("blender") for part in wanted):
+    if any(part.startswith(("blender", "installed")) for part in wanted):
         system_libraries.ensure()
     pythons = {version: find_python(version) for version in ("3.11", "3.13")}
-    groups = {group: version for version, group, _ in (PYTHON_PARTS[p] for p in wanted if p in PYTHON_PARTS)}
+    groups = {PYTHON_PARTS[p][1]: PYTHON_PARTS[p][:2] for p in wanted if p in PYTHON_PARTS}
+    groups |= {p: INSTALLED_PARTS[p] for p in wanted if p in INSTALLED_PARTS}
     if "ruff" in wanted:
-        groups.setdefault("core", "3.11")
+        groups.setdefault("core", ("3.11", "core"))
     # Downloads take their time: they go on while cargo compiles.
     environments = {
-        group: Environment(group, pythons[version]) for group, version in groups.items() if pythons[version]
+        name: Environment(name, group, pythons[version])
+        for name, (version, group) in groups.items()
+        if pythons[version]
     }
     results = [run_rust(part) for part in RUST_PARTS if part in wanted]
-    wheel = None
-    if PYTHON_PARTS.keys() & set(wanted):
+    wheel = extension = None
+    needing_zip = {"zip", *INSTALLED_PARTS, *REAL_PARTS} & set(wanted)
+    if PYTHON_PARTS.keys() & set(wanted) or needing_zip:
         built, wheel = build_wheel()
+        results.append(built)
+    if needing_zip:
+        built, extension = build_zip(wheel)
         results.append(built)
     for part in wanted:
         if part == "ruff":
             results.append(run_ruff(environments.get("core")))
         elif part in PYTHON_PARTS:
             results.append(run_pytest(part, environments, wheel))
+        elif part in INSTALLED_PARTS:
+            results.append(run_installed(part, environments, extension))
+        elif part in REAL_PARTS:
+            results.append(run_real(part, extension))
     return report(results)
 
 
@@ -164,11 +194,65 @@ def build_wheel() -> tuple[Result, Path | None]:
     """The wheel, built as it is shipped: one for every Python from 3.11 on."""
     folder = OUT / "wheel"
     shutil.rmtree(folder, ignore_errors=True)
-    result, _ = run("wheel", [UV, "build", "--wheel", "--quiet", "--out-dir", str(folder)])
-    wheels = list(folder.glob("gridmesh-*-abi3-*.whl"))
-    if result.status == "passed" and len(wheels) != 1:
-        result.status, result.note = "failed", f"one abi3 wheel was expected, found {len(wheels)}"
-    return result, wheels[0] if result.status == "passed" else None
+    return built("wheel", lambda: package.build_wheel(folder))
+
+
+def build_zip(wheel: Path | None) -> tuple[Result, Path | None]:
+    """The extension's zip, built and validated by Blender's builder."""
+    if wheel is None:
+        return Result("zip", "failed", note="the wheel was not built"), None
+    folder = OUT / "zip"
+    shutil.rmtree(folder, ignore_errors=True)
+    return built("zip", lambda: package.build_zips([wheel], folder, package.builder())[0])
+
+
+def built(part: str, build: Callable[[], Path]) -> tuple[Result, Path | None]:
+    """What was built, or why not."""
+    print(f"\n=== {part}", flush=True)
+    started = time.monotonic()
+    try:
+        path = build()
+    except (package.PackageError, subprocess.CalledProcessError) as error:
+        note = f"{error}\n{getattr(error, 'output', None) or ''}"
+        return Result(part, "failed", time.monotonic() - started, note=note), None
+    return Result(part, "passed", time.monotonic() - started), path
+
+
+def run_installed(part: str, environments: dict[str, Environment], extension: Path | None) -> Result:
+    """The zip in a `bpy` module."""
+    if part not in environments:
+        version = INSTALLED_PARTS[part][0]
+        missing = f"PYTHON {version} IS MISSING, so {part} was not tested"
+        return Result(part, "skipped" if version == "3.13" else "failed", note=missing)
+    if extension is None:
+        return Result(part, "failed", note="the zip was not built")
+    environment = environments[part]
+    if note := environment.wait():
+        return Result(part, "failed", note=note)
+    command = [environment.script("python"), "tests/installed/scenario.py", str(extension)]
+    return count_steps(*run(part, command))
+
+
+def run_real(part: str, extension: Path | None) -> Result:
+    """The zip in a real Blender."""
+    if extension is None:
+        return Result(part, "failed", note="the zip was not built")
+    command = [sys.executable, *REAL_PARTS[part], str(extension)]
+    result, output = run(part, command)
+    if result.code == SKIPPED:
+        result.status, result.note = "skipped", output
+        return result
+    return count_steps(result, output)
+
+
+def count_steps(result: Result, output: str) -> Result:
+    """Add the counts that a scenario prints as its last line."""
+    counts = re.findall(r": (\d+) passed, (\d+) failed, (\d+) skipped$", output, re.MULTILINE)
+    for passed, failed, skipped in counts:
+        count(result, passed=int(passed), failed=int(failed), skipped=int(skipped))
+    if not result.counts.get("passed"):
+        result.status, result.note = "failed", "no step passed; Blender crashed or was killed"
+    return result
 
 
 # ------------------------------------------------------------------------------------------- environments
@@ -177,9 +261,9 @@ def build_wheel() -> tuple[Result, Path | None]:
 class Environment:
     """A virtual environment with one dependency group, installed in the background."""
 
-    def __init__(self, group: str, python: str) -> None:
-        self.path = ROOT / ".venv" / group
-        self.log = OUT / f"{group}.log"
+    def __init__(self, name: str, group: str, python: str) -> None:
+        self.path = ROOT / ".venv" / name
+        self.log = OUT / f"{name}.log"
         create = '"$0" venv --quiet --allow-existing --python "$1" "$2"'
         command = f'{create} && "$0" pip install --quiet --python "$2" --group "$3"'
         with self.log.open("w") as log:
@@ -262,7 +346,8 @@ def run(part: str, command: list[str], environment: dict[str, str] | None = None
             lines.append(line)
             print(line, end="", flush=True)
     status = "failed" if process.returncode else "passed"
-    return Result(part, status, time.monotonic() - started), "".join(lines)
+    seconds = time.monotonic() - started
+    return Result(part, status, seconds, code=process.returncode), "".join(lines)
 
 
 def count(result: Result, **counts: int) -> None:
@@ -276,9 +361,9 @@ def report(results: list[Result]) -> int:
     print(f"\n{'=' * 78}")
     for result in results:
         counts = ", ".join(f"{number} {key}" for key, number in result.counts.items() if number)
-        print(f"{result.part:<10} {result.status.upper():<8} {result.seconds:7.1f} s   {counts}")
+        print(f"{result.part:<12} {result.status.upper():<8} {result.seconds:7.1f} s   {counts}")
         if result.note:
-            print(f"           {result.note.strip()}")
+            print(f"             {result.note.strip()}")
     failed = [result for result in results if result.status == "failed"]
     skipped = [result for result in results if result.status == "skipped"]
     tests = {key: sum(r.counts.get(key, 0) for r in results) for key in ("passed", "failed", "skipped")}

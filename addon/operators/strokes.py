@@ -9,17 +9,22 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from .. import api, meshes, outlines, strokes
+from ..live import engine
 from ..progress import Pointer
 from ..properties import ShapeOptions, SketchOptions
 from .messages import counted, listed
+from .waiting import Waiting
+
+LONG = 50_000
+"""Flat triangles; with more, which take a second or so, the work can be watched and stopped."""
 
 
-class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, ShapeOptions, bpy.types.Operator):  # noqa: N801
     """Make a smooth body with a clean triangle mesh from each closed stroke"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_from_strokes"
     bl_label = "Strokes to Mesh"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+    bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012
 
     source: EnumProperty(
         name="Source",
@@ -70,6 +75,11 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
         ],
         default="SOURCE",
     )
+    follow: BoolProperty(
+        name="Follow the Stroke",
+        description="Let the body follow when its stroke is edited; the switch is in the sidebar",
+        default=False,
+    )
     result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
@@ -94,11 +104,12 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
             sketches, _, _ = api.sketches_of(chosen, close_gaps=self.close_gaps, holes=self.use_holes)
             length = api.suggested_edge_length(sketches, self.triangles)
             self.edge_length = length if length is not None else self.edge_length
+        self.may_wait = context.window is not None and not bpy.app.background
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read, mesh, and only then change the scene."""
-        started = perf_counter()
+        started = perf_counter() - self.waited()
         try:
             api.native()
         except api.NativeError as error:
@@ -118,22 +129,28 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
             notes += meshes.made_from_holes(context, sketches)
             sketches, refused = meshes.separate_blocked(context, sketches)
             failures += refused
+        options = self.sketch_options(), self.body_options()
+        if self.may_wait and api.expected_triangles(sketches, options[0]) > LONG:
+            return self.wait(context, lambda progress: api.build(sketches, *options, progress))
         try:
             with Pointer(context) as pointer:
-                bodies, refused = api.build(sketches, self.sketch_options(), self.body_options(), pointer)
+                bodies, refused = self.take_done() or api.build(sketches, *options, pointer)
         except api.CancelledError:
             self.report({"WARNING"}, "Cancelled; nothing was made")
             return {"CANCELLED"}
         failures += refused
         if not bodies:
             return self._refuse(*map(str, failures))
+        made: list[bpy.types.Object] = []
         notes += meshes.place(
             context,
             bodies,
             update=self.update_existing,
             collection=self.collection,
             crease_angle=self.corner_angle,
+            made=made,
         )
+        self._link(context, bodies, made)
         self.result = self._summary(bodies, perf_counter() - started)
         self.report({"INFO"}, self.result)
         if notes:
@@ -159,11 +176,21 @@ class OBJECT_OT_gridmesh_from_strokes(SketchOptions, ShapeOptions, bpy.types.Ope
             body.prop(self, "use")
             body.prop(self, "close_gaps")
             body.prop(self, "use_holes")
+            body.prop(self, "use_union")
         header, body = layout.panel(f"{self.bl_idname}_objects", default_closed=True)
         header.label(text="Objects")
         if body is not None:
             body.prop(self, "update_existing")
             body.prop(self, "collection")
+            body.prop(self, "follow")
+
+    def _link(self, context: bpy.types.Context, bodies: list[api.Body], made: list[bpy.types.Object]) -> None:
+        """Let the bodies know their drawings, and those that know them already the options they have now."""
+        for body, ob in zip(bodies, made, strict=True):
+            source = context.view_layer.objects.get(body.sketch.stroke.source)
+            if source is not None and (self.follow or engine.is_linked(ob)):
+                follow = self.follow or ob.gridmesh_live.enabled
+                engine.link(ob, body.sketch.stroke, source, self, follow=follow)
 
     def _read(self, context: bpy.types.Context) -> strokes.Reading:
         if self.source == "ANNOTATIONS":

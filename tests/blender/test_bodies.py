@@ -394,6 +394,11 @@ class TestMaterials:
         shader = next(node for node in surface.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
         assert np.allclose(shader.inputs["Base Color"].default_value, ink.grease_pencil.color)
 
+    def test_black_ink_gives_no_black_body(self):
+        ob = grease_pencil([circle()])
+        self.material(ob, "Black", (0, 0, 0, 1))
+        assert not run_one().data.materials
+
     def test_fill_goes_before_stroke(self):
         ob = grease_pencil([circle()])
         ink = self.material(ob)

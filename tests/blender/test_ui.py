@@ -52,6 +52,11 @@ class Layout:
         self.drawn.append(idname)
         return Settings(idname)
 
+    def menu(self, idname, *, icon="NONE"):
+        check_icon(icon)
+        assert hasattr(bpy.types, idname)
+        self.drawn.append(idname)
+
     def prop(self, owner, name):
         assert hasattr(owner, name)
         self.drawn.append(name)
@@ -85,7 +90,13 @@ def test_panel_with_a_drawing_and_with_a_body():
 
 def test_panel_in_edit_mode():
     edit(cylinder())
-    assert panel() == ["mesh.gridmesh_fill", "mesh.gridmesh_fill"]
+    assert panel() == ["mesh.gridmesh_fill"] * 2 + ["object.gridmesh_cut"] * 2
+
+
+def test_menu_of_presets():
+    menu = types.SimpleNamespace(layout=Layout())
+    ui.VIEW3D_MT_gridmesh_presets.draw(menu, bpy.context)
+    assert len(menu.layout.drawn) >= 6
 
 
 @pytest.mark.parametrize("entry", [ui._fill_entry, ui._stroke_entry])

@@ -258,3 +258,12 @@ def test_classes_are_made_by_the_library_only():
     for cls in (gridmesh.Patch, gridmesh.Surface):
         with pytest.raises(TypeError):
             cls()
+
+
+@pytest.mark.parametrize("aspect", [3.0, 4.5, 5.0, 6.0, 7.0, 7.3, 9.0, 12.0])
+def test_bars_have_every_number_of_triangles(aspect):
+    """A bar's rows come in whole numbers: where no angle meets the count, a shifted lattice does."""
+    bar = np.array([[0, 0], [1, 0], [1, aspect], [0, aspect]])
+    for triangles in (200, 300, 364, 450, 500, 800):
+        patch = gridmesh.mesh_sketch(bar, triangles=triangles)
+        assert abs(len(patch.triangles) / triangles - 1) <= 0.1

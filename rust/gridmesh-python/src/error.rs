@@ -25,7 +25,9 @@ create_exception!(
          \"too_coarse\", \"too_large\", \"no_patch\", \"solver\", \"cancelled\"; of fills\n    \
          \"index_out_of_range\", \"repeated_vertex\", \"figure_eight\", \"zero_length_edge\",\n    \
          \"self_touching\", \"faces_on_both_sides\", \"non_manifold\", \"shared_edge\",\n    \
-         \"fill_intersects\", \"not_a_disk\"; or \"internal\" (a bug in gridmesh: please report it)."
+         \"fill_intersects\", \"not_a_disk\"; of cuts\n    \
+         \"invalid_face\", \"stroke_too_short\", \"stroke_misses\", \"behind_eye\",\n    \
+         \"cut_failed\"; or \"internal\" (a bug in gridmesh: please report it)."
 );
 
 /// A [`GridMeshError`] with its `kind`.

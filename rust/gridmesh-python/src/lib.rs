@@ -1,11 +1,14 @@
 //! The Python module `gridmesh._native`: conversions only, no algorithm.
 //!
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `arrays`
-//! and `reports` hand results back, `patch`, `surface` and `fill` are the classes, `batch` is the parallel map.
+//! and `reports` hand results back, `patch`, `surface`, `fill` and `cut` are the classes, `batch` is the parallel map,
+//! `combine` unites drawings.
 #![forbid(unsafe_code)]
 
 mod arrays;
 mod batch;
+mod combine;
+mod cut;
 mod error;
 mod fill;
 mod input;
@@ -57,6 +60,9 @@ use crate::watch::Watch;
 ///     Price of a squared distance of one edge length against a turn of 60 degrees; at least 0.
 /// angle : float, optional
 ///     Angle of the lattice in radians, in [0, pi / 3). None: the best of several.
+/// origin : (2,) array, optional
+///     A point of the lattice, in the units of the outline. With `edge_length` and `angle` it keeps the lattice
+///     where it was while an outline is being changed. None: the best of a few places. Not together with `mirror`.
 /// corner_angle : float
 ///     A vertex is placed on points where the outline turns by more than this (radians).
 /// mirror : "auto" or (point, direction), optional
@@ -68,7 +74,7 @@ use crate::watch::Watch;
 /// self_crossing : {"error", "union"}
 ///     "error": an outline that crosses itself is refused. "union": its outer outline is taken.
 /// proof_nodes : int
-///     Bounds the search that proves optimality where the first solution had conflicts.
+///     Bounds the search that proves optimality where the first solution had conflicts; 0 beside `mirror`.
 /// relax : bool
 ///     False leaves the interior vertices where the lattice has them; triangles may then be inverted,
 ///     and such a patch is refused.
@@ -85,7 +91,7 @@ use crate::watch::Watch;
 ///     "minimum_irregular" (the least that any such body has), "turns", "turns_before" (a grown
 ///     boundary's, before it is straightened), "turns_bound", "cost", "cost_bound" (None where none
 ///     was computed), "optimal", "max_distance_used", "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
-///     (radians), "corners" (drawn ones), "released_corners" (those without a vertex of their own),
+///     (radians), "corners" (drawn ones), "released_corners" (those without a vertex of their own), "bridged_inlets" (with mesh vertices in them: 0, unless `relax` is off),
 ///     "repaired" (repeated points dropped), "mirror_error" (greatest distance of a vertex from the
 ///     image of its partner, in edge lengths; None without `mirror`), "placements" (of the lattice, tried) and "seconds" (per
 ///     stage).
@@ -111,7 +117,7 @@ use crate::watch::Watch;
 #[pyfunction]
 #[pyo3(
     signature = (outline, holes = None, *, progress = None, **options),
-    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, progress=None)"
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, progress=None)"
 )]
 fn mesh_sketch(
     py: Python<'_>,
@@ -358,7 +364,7 @@ fn job(
     Ok(job)
 }
 
-fn drawing(outline: &Bound<'_, PyAny>, holes: Option<&Bound<'_, PyAny>>) -> PyResult<Drawing> {
+pub(crate) fn drawing(outline: &Bound<'_, PyAny>, holes: Option<&Bound<'_, PyAny>>) -> PyResult<Drawing> {
     let allowed = "an (n, 2) array of real numbers";
     let outline = Argument { name: "outline", value: outline, allowed }.points()?;
     let mut rings: Vec<Vec<DVec2>> = Vec::new();
@@ -411,11 +417,15 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(flat, module)?)?;
     module.add_function(wrap_pyfunction!(inflate, module)?)?;
     module.add_function(wrap_pyfunction!(map_sketches, module)?)?;
+    module.add_function(wrap_pyfunction!(combine::combine, module)?)?;
     module.add_class::<fill::Fill>()?;
     module.add_function(wrap_pyfunction!(fill::fill_hole, module)?)?;
     module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;
     module.add_class::<fill::Regrid>()?;
     module.add_function(wrap_pyfunction!(fill::regrid, module)?)?;
+    module.add_class::<cut::Cut>()?;
+    module.add_class::<cut::Piece>()?;
+    module.add_function(wrap_pyfunction!(cut::cut, module)?)?;
     module.add_function(wrap_pyfunction!(patch::_patch, module)?)?;
     module.add_function(wrap_pyfunction!(surface::_surface, module)?)?;
     Ok(())

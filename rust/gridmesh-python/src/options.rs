@@ -47,6 +47,10 @@ pub fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyA
             let it = argument("a number of radians from 0 to below pi / 3, or None");
             options.angle = it.optional(|it| it.float())?;
         }
+        "origin" => {
+            let it = argument("a pair of numbers, or None");
+            options.origin = it.optional(|it| it.pair())?;
+        }
         "corner_angle" => options.corner_angle = argument("a number of radians from 0 to pi").float()?,
         "mirror" => {
             let it = argument("an axis (point, direction) of two pairs of numbers, 'auto', or None");

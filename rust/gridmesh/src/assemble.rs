@@ -49,7 +49,10 @@ pub fn assemble(paths: &[Vec<Axial>]) -> Region {
         }
     }
     walls.sort_unstable();
-    let mut triangles = Vec::new();
+    let n_triangles = walls.chunks_exact(2).map(|wall| (wall[1].1 - wall[0].1).max(0) as usize).sum();
+    let mut triangles = Vec::with_capacity(n_triangles);
+    // Euler, for a disk; holes take less.
+    points.reserve(n_triangles.saturating_sub(n_boundary) / 2 + 1);
     for wall in walls.chunks_exact(2) {
         let (r, from, to) = (wall[0].0, wall[0].1, wall[1].1);
         for k in from..to {

@@ -193,6 +193,34 @@ pub enum Error {
         /// A point of one of them.
         at: [f64; 3],
     },
+    /// A face is not a polygon.
+    InvalidFace {
+        /// The face.
+        face: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A stroke has too few distinct points, as it is seen, to cut along.
+    StrokeTooShort {
+        /// Number of distinct points seen.
+        distinct: usize,
+    },
+    /// A stroke does not divide the mesh.
+    StrokeMisses,
+    /// A point is not in front of the eye.
+    BehindEye {
+        /// What has the point: `mesh` or `stroke`.
+        what: &'static str,
+        /// Its number.
+        point: usize,
+    },
+    /// Rounding leaves no consistent cut.
+    CutFailed {
+        /// What stands in the way.
+        reason: &'static str,
+        /// Where.
+        at: [f64; 3],
+    },
 }
 
 impl Error {
@@ -225,6 +253,11 @@ impl Error {
             Error::SharedEdge { .. } => "shared_edge",
             Error::FillIntersects { .. } => "fill_intersects",
             Error::NotADisk { .. } => "not_a_disk",
+            Error::InvalidFace { .. } => "invalid_face",
+            Error::StrokeTooShort { .. } => "stroke_too_short",
+            Error::StrokeMisses => "stroke_misses",
+            Error::BehindEye { .. } => "behind_eye",
+            Error::CutFailed { .. } => "cut_failed",
         }
     }
 }
@@ -352,6 +385,29 @@ impl fmt::Display for Error {
                 f,
                 "the fill would meet itself or the mesh in {pairs} pairs of triangles, \
                  first near ({x:.6}, {y:.6}, {z:.6}); split the loop there, or allow it"
+            ),
+            Error::InvalidFace { face, reason } => write!(
+                f,
+                "face {face} is not allowed: {reason}; each face needs three or more different vertices in order"
+            ),
+            Error::StrokeTooShort { distinct } => write!(
+                f,
+                "the stroke has {distinct} distinct points as it is seen along the cut; an open one needs 2, a closed one 3: \
+                 draw across the model, or cut along another direction"
+            ),
+            Error::StrokeMisses => write!(
+                f,
+                "the stroke does not divide the mesh: all of it lies on one side, continued ends included; \
+                 draw across the model"
+            ),
+            Error::BehindEye { what, point } => write!(
+                f,
+                "point {point} of the {what} is not in front of the eye; move the eye back, or cut along a direction"
+            ),
+            Error::CutFailed { reason, at: [x, y, z] } => write!(
+                f,
+                "the mesh cannot be cut here: {reason}, near ({x:.6}, {y:.6}, {z:.6}); move the stroke a little, \
+                 or merge vertices that nearly coincide there"
             ),
         }
     }

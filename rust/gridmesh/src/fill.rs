@@ -7,7 +7,7 @@ mod develop;
 mod exact;
 mod fair;
 mod fit;
-mod flat;
+pub(crate) mod flat;
 mod flips;
 mod graded;
 mod grown;

@@ -18,7 +18,7 @@ use crate::lattice::{Lattice, ROW_HEIGHT};
 use crate::options::SketchOptions;
 use crate::outline::{Obstacle, Outline};
 use crate::patch::{Loop, Patch};
-use crate::place::{Placed, min_angle};
+use crate::place::{CORNER_WINDOW, INLET, Placed, STRAY, min_angle, nearest_drawn};
 use crate::pockets::pockets;
 use crate::progress::Progress;
 use crate::reflection::Reflection;
@@ -27,11 +27,6 @@ use crate::symmetry::{Pairing, Symmetry};
 use crate::target::{SPACING, Target};
 use crate::trace::{Part, TraceFailure, TraceOptions, trace_mirrored};
 
-/// The drawing may lie this far outside the mesh, and a vertex this far in an inlet: as placed.
-const STRAY: f64 = 2.0;
-const INLET: f64 = 0.05;
-/// Half the length over which a corner's turning angle is measured, in edges: as placed.
-const CORNER_WINDOW: f64 = 0.5;
 /// A corner of the drawing this near to where a vertex's image belongs gets it, in edges.
 const CORNER_REACH: f64 = 0.5;
 
@@ -103,6 +98,7 @@ pub(crate) fn traced(
         arcs: vec![Vec::new(); contours.len()],
         cost: traced.cost,
         cost_bound: Some(traced.cost_bound),
+        turns_bound: Some(traced.turns_bound),
         optimal: traced.optimal,
         max_distance_used: traced.max_distance_used,
         ..Outline::default()
@@ -116,7 +112,6 @@ pub(crate) fn traced(
             let arc = |u: &f64| arc_at(contours, pairing, side, u / whole) / lattice.edge_length;
             outline.arcs[contour] = path.parameters.iter().map(arc).collect();
             outline.paths[contour] = path.points;
-            outline.targets.push(target);
         }
     }
     Ok(Ok(outline))
@@ -236,18 +231,22 @@ pub(crate) fn symmetrised(
     let partner =
         partners(&region, axis).ok_or(Obstacle { reason: "the boundary is not symmetric".to_owned(), at })?;
     let both = Both { contours, symmetry, region: &region, axis, partner, placed: &placed };
-    let mut best: Option<(f64, Placed)> = None;
+    let mut best: Option<(usize, f64, Placed)> = None;
     for side in [Side::Mean, Side::Left, Side::Right] {
         let Some(found) = both.placed_by(side, options) else { continue };
         // The mean, unless it bends triangles that a single side leaves in shape.
         let angle = min_angle(&found.patch) * if side == Side::Mean { 1.1 } else { 1.0 };
-        if best.as_ref().is_none_or(|(least, _)| angle > *least) {
-            best = Some((angle, found));
+        let bridged = found.bridged_inlets;
+        let is_better = |&(fewest, least, _): &(usize, f64, Placed)| {
+            bridged < fewest || bridged == fewest && angle > least
+        };
+        if best.as_ref().is_none_or(is_better) {
+            best = Some((bridged, angle, found));
         }
     }
     let exact = is_exact(symmetry, lattice.edge_length);
     let mut placed = match best {
-        Some((_, placed)) => placed,
+        Some((.., placed)) => placed,
         None if exact => return Err(Obstacle { reason: "a triangle stays inverted".to_owned(), at }),
         None => placed.clone(),
     };
@@ -311,14 +310,14 @@ impl Both<'_> {
         if farthest > STRAY * h {
             return None;
         }
-        let (inlets, occupied) = pockets(&beside, &vertices, &patch.triangles, &arcs, INLET * h);
+        let found = pockets(&beside, &vertices, &patch.triangles, &arcs, INLET * h);
         let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
         let triangles = patch.triangles.clone();
         Some(Placed {
-            patch: Patch { vertices, triangles, loops, inlets, lattice: patch.lattice },
+            patch: Patch { vertices, triangles, loops, inlets: found.inlets, lattice: patch.lattice },
             released_corners: self.placed.corners.saturating_sub(kept),
             max_deviation: farthest / h,
-            bridged_inlets: occupied.len(),
+            bridged_inlets: found.occupied.len(),
             ..self.placed.clone()
         })
     }
@@ -482,10 +481,4 @@ impl Both<'_> {
 /// A number of turns without whole ones, -1/2 to 1/2.
 fn nearest_lap(turns: f64) -> f64 {
     turns - turns.round()
-}
-
-/// Arc length of the drawn point nearest to arc length `s`, along the curve.
-fn nearest_drawn(contour: &ClosedCurve, s: f64) -> f64 {
-    let (segment, t) = contour.locate(s);
-    contour.arc()[if t < 0.5 { segment } else { segment + 1 }]
 }

@@ -60,13 +60,18 @@ pub struct SketchOptions {
     pub closeness: f64,
     /// Angle of the lattice in radians; `None` lets the drawing's tangents decide.
     pub angle: Option<f64>,
+    /// A point of the lattice in the units of the drawing, for drawings that change step by step:
+    /// with the edge length and the angle it keeps the lattice where it is. `None`: the centroid, and
+    /// other places if that one gives no patch.
+    pub origin: Option<DVec2>,
     /// Corners that turn by more than this (radians, 0 to pi) get a vertex of their own.
     pub corner_angle: f64,
     /// Mirror axis: the mesh is its own mirror image, topology and positions.
     pub mirror: Option<Mirror>,
     /// What to do with an outline that crosses itself.
     pub self_crossing: SelfCrossing,
-    /// Search nodes spent on proving a boundary optimal whose first solution had conflicts.
+    /// Search nodes spent on proving a boundary optimal whose first solution had conflicts; not
+    /// beside `mirror`.
     pub proof_nodes: usize,
     /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and
     /// may hold inverted triangles.
@@ -82,6 +87,7 @@ impl Default for SketchOptions {
             max_distance: 1.5,
             closeness: 0.3,
             angle: None,
+            origin: None,
             corner_angle: DEFAULT_CORNER_ANGLE,
             mirror: None,
             self_crossing: SelfCrossing::Error,
@@ -131,6 +137,17 @@ impl SketchOptions {
         {
             return refuse("angle", angle, "a finite angle in radians, or none");
         }
+        if let Some(origin) = self.origin {
+            let value = || format!("{}, {}", origin.x, origin.y);
+            if !origin.is_finite() {
+                let allowed = "a point with finite coordinates, or none";
+                return Err(Error::InvalidOption { name: "origin", value: value(), allowed });
+            }
+            if self.mirror.is_some() {
+                let allowed = "none, with mirror: the lattice lies on the axis";
+                return Err(Error::InvalidOption { name: "origin", value: value(), allowed });
+            }
+        }
         if !(0.0..=std::f64::consts::PI).contains(&self.corner_angle) {
             return refuse("corner_angle", self.corner_angle, "0 to pi radians");
         }
@@ -139,6 +156,13 @@ impl SketchOptions {
                 name: "mirror",
                 value: "given, with boundary grown".to_owned(),
                 allowed: "none, or boundary optimal: growth has no symmetric form",
+            });
+        }
+        if self.mirror.is_some() && self.proof_nodes > 0 {
+            return Err(Error::InvalidOption {
+                name: "proof_nodes",
+                value: format!("{}, beside mirror", self.proof_nodes),
+                allowed: "0, or no mirror: symmetric boundaries are proved only where none conflicts",
             });
         }
         Ok(())
@@ -171,8 +195,8 @@ pub struct SketchReport {
     /// Greatest distance from the drawn curve to the mesh boundary, in edges; at most 2, or the
     /// drawing is refused.
     pub max_deviation: f64,
-    /// Boundary edges that bridge an inlet of the drawing with mesh vertices in it: the inlet is too
-    /// narrow for the lattice.
+    /// Boundary edges that bridge an inlet of the drawing with mesh vertices in it: zero, or the
+    /// drawing is refused, unless `relax` is off.
     pub bridged_inlets: usize,
     /// Smallest angle of the flat patch, in radians.
     pub min_angle: f64,

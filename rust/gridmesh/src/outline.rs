@@ -14,7 +14,7 @@ use crate::options::SketchOptions;
 use crate::progress::Progress;
 use crate::raster::Raster;
 use crate::target::Target;
-use crate::trace::{TraceFailure, TraceOptions, fewest_turns, trace};
+use crate::trace::{TraceFailure, TraceOptions, trace};
 
 /// Narrow parts are widened to this many edges before growing; wider than two rows of triangles.
 const NECK_WIDTH: f64 = 2.4;
@@ -30,8 +30,8 @@ pub(crate) struct Outline {
     pub(crate) arcs: Vec<Vec<f64>>,
     /// Turns of the grown path before it was straightened.
     pub(crate) turns_before: Option<usize>,
-    /// What the paths follow, if they are traced.
-    pub(crate) targets: Vec<Target>,
+    /// No traced path at this distance turns less often.
+    pub(crate) turns_bound: Option<usize>,
     pub(crate) cost: f64,
     pub(crate) cost_bound: Option<f64>,
     pub(crate) optimal: bool,
@@ -64,12 +64,6 @@ impl Outline {
     /// Sum of absolute turns.
     pub(crate) fn turns(&self) -> usize {
         self.paths.iter().map(|path| turns(path).map(|t| t.unsigned_abs() as usize).sum::<usize>()).sum()
-    }
-
-    /// A lower bound of the turns of any traced path at this distance.
-    pub(crate) fn turns_bound(&self) -> Option<usize> {
-        let fewest = fewest_turns(&self.targets, self.max_distance_used);
-        fewest.filter(|_| !self.targets.is_empty())
     }
 
     /// Number of boundary vertices that turn: irregular after stitching.
@@ -172,7 +166,7 @@ pub(crate) fn traced(
         cost_bound: Some(traced.cost_bound),
         optimal: traced.optimal,
         max_distance_used: traced.max_distance_used,
+        turns_bound: Some(traced.turns_bound),
         paths: traced.paths.into_iter().map(|path| path.points).collect(),
-        targets,
     }))
 }

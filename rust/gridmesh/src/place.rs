@@ -6,6 +6,7 @@ use crate::assemble::assemble;
 use crate::curve::ClosedCurve;
 use crate::deviation::{Stray, beside, deviation};
 use crate::error::Result;
+use crate::expel::expel;
 use crate::lattice::Lattice;
 use crate::mapping::{Corner, corners, snap};
 use crate::options::SketchOptions;
@@ -16,13 +17,13 @@ use crate::progress::Progress;
 use crate::relax::{Contour, RelaxOptions, Relaxation, Rim, first_inverted, settle_corners};
 
 /// Half the length over which a corner's turning angle is measured, in edges.
-const CORNER_WINDOW: f64 = 0.5;
+pub(crate) const CORNER_WINDOW: f64 = 0.5;
 
 /// A boundary vertex moves this far along the drawing to sit on a corner, in edges.
 const REACH: f64 = 1.5;
 
 /// The drawing may lie this far outside the mesh, in edges.
-const STRAY: f64 = 2.0;
+pub(crate) const STRAY: f64 = 2.0;
 
 /// Where it lies this far outside, a boundary vertex is held there, if the triangles allow.
 const CLOSE: f64 = 0.7;
@@ -31,7 +32,7 @@ const CLOSE: f64 = 0.7;
 const LEAST_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
 /// A vertex may lie this far outside the drawing, in an inlet that the boundary bridges.
-const INLET: f64 = 0.05;
+pub(crate) const INLET: f64 = 0.05;
 
 /// Rounds of relaxing, each holding vertices where the drawing strayed in the one before.
 const ROUNDS: usize = 4;
@@ -46,6 +47,13 @@ pub(crate) struct Placed {
     pub(crate) max_deviation: f64,
     /// Boundary edges that bridge an inlet with a mesh vertex in it.
     pub(crate) bridged_inlets: usize,
+}
+
+impl Placed {
+    /// True if a part of the drawing is lost in the mesh; without relaxation that is no fault.
+    pub(crate) fn is_bridged(&self, options: &SketchOptions) -> bool {
+        options.relax && self.bridged_inlets > 0
+    }
 }
 
 /// Puts the boundary on the contours, snaps corners, relaxes the interior and proves that no
@@ -72,7 +80,9 @@ pub(crate) fn place(
         })
         .collect();
     let lines: Vec<Contour<'_>> = drawn.iter().map(|(points, arc)| Contour { points, arc }).collect();
-    let (mut rims, mut angles, n_corners) = rims(contours, outline, options, h);
+    let found: Vec<Vec<Corner>> =
+        contours.iter().map(|contour| corners_of(contour, options.corner_angle, h)).collect();
+    let (mut rims, mut angles) = rims(contours, outline, &found, h);
     if options.relax {
         settle_corners(&region.triangles, &lines, &mut rims, &mut angles);
     }
@@ -95,7 +105,7 @@ pub(crate) fn place(
             relaxation.store(&mut rims);
         }
         let mut vertices: Vec<DVec2> = relaxation.positions.iter().map(|&p| lattice.from_units(p)).collect();
-        let (loops, arcs) = loops(contours, &rims, &angles, h, &mut vertices);
+        let (loops, arcs) = loops(contours, &rims, &found, h, &mut vertices);
         let inverted = first_inverted(&vertices, &region.triangles, lattice.origin);
         if let Some(triangle) = inverted.filter(|_| options.relax) {
             let at = vertices[region.triangles[triangle][0] as usize];
@@ -107,21 +117,41 @@ pub(crate) fn place(
         if farthest > STRAY * h {
             strays.retain(|stray| stray.distance > STRAY * h);
             obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
-            held = to_hold(&strays, &rims, &mut angles, &lengths, h);
+            held = to_hold(&strays, &rims, &lengths, h);
             if held.is_empty() || !options.relax {
                 break;
             }
             continue;
         }
-        let (inlets, occupied) = pockets(&beside, &vertices, &region.triangles, &arcs, INLET * h);
-        let kept = rims.iter().zip(&angles).flat_map(|(rim, angle)| rim.pinned.iter().zip(angle));
-        let kept = kept.filter(|(pinned, angle)| **pinned && **angle != 0.0).count();
+        let mut pockets_now = pockets(&beside, &vertices, &region.triangles, &arcs, INLET * h);
+        let occupied = std::mem::take(&mut pockets_now.occupied);
+        let mut bridged_inlets = occupied.len();
+        if !occupied.is_empty() && options.relax {
+            let mut expelled = vertices.clone();
+            if expel(&pockets_now, &mut expelled, &region.triangles, INLET * h, h)
+                && first_inverted(&expelled, &region.triangles, lattice.origin).is_none()
+            {
+                let left = pockets(&beside, &expelled, &region.triangles, &arcs, INLET * h);
+                if left.occupied.len() < bridged_inlets {
+                    bridged_inlets = left.occupied.len();
+                    vertices = expelled;
+                }
+            }
+        }
+        let n_corners = found.iter().map(Vec::len).sum();
+        let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
         let placed = Placed {
-            patch: Patch { vertices, triangles: region.triangles.clone(), loops, inlets, lattice: *lattice },
+            patch: Patch {
+                vertices,
+                triangles: region.triangles.clone(),
+                loops,
+                inlets: pockets_now.inlets,
+                lattice: *lattice,
+            },
             corners: n_corners,
             released_corners: n_corners - kept,
             max_deviation: farthest / h,
-            bridged_inlets: occupied.len(),
+            bridged_inlets,
         };
         let first = valid.is_none();
         if valid.as_ref().is_none_or(|best| better(&placed, best)) {
@@ -134,7 +164,7 @@ pub(crate) fn place(
         strays.extend(occupied);
         strays.sort_by_key(|stray| (stray.contour, stray.edge));
         strays.dedup_by_key(|stray| (stray.contour, stray.edge));
-        held = to_hold(&strays, &rims, &mut angles, &lengths, h);
+        held = to_hold(&strays, &rims, &lengths, h);
         if held.is_empty() {
             break;
         }
@@ -151,26 +181,24 @@ fn better(placed: &Placed, best: &Placed) -> bool {
             && least >= before.min(LEAST_ANGLE))
 }
 
-/// Boundary vertices with their arc lengths in edges, some of them pinned to corners; the corners'
-/// angles; the number of corners.
+/// Boundary vertices with their arc lengths in edges, some of them pinned to corners; the angle of
+/// the corner at each.
 fn rims(
     contours: &[ClosedCurve],
     outline: &Outline,
-    options: &SketchOptions,
+    corners: &[Vec<Corner>],
     h: f64,
-) -> (Vec<Rim>, Vec<Vec<f64>>, usize) {
-    let (mut rims, mut angles, mut n_corners, mut start) = (Vec::new(), Vec::new(), 0, 0);
-    for (contour, arcs) in contours.iter().zip(&outline.arcs) {
-        let found = corners_of(contour, options.corner_angle, h);
-        n_corners += found.len();
+) -> (Vec<Rim>, Vec<Vec<f64>>) {
+    let (mut rims, mut angles, mut start) = (Vec::new(), Vec::new(), 0);
+    for ((contour, arcs), corners) in contours.iter().zip(&outline.arcs).zip(corners) {
         let mut s = arcs.clone();
-        let angle = snap(&mut s, &found, contour.length() / h, REACH);
+        let angle = snap(&mut s, corners, contour.length() / h, REACH);
         let n = s.len();
         rims.push(Rim { start, s, pinned: angle.iter().map(|&a| a != 0.0).collect(), held: vec![false; n] });
         angles.push(angle);
         start += n;
     }
-    (rims, angles, n_corners)
+    (rims, angles)
 }
 
 /// Puts the boundary vertices exactly on their contours; the patch's loops, and the arc lengths in
@@ -178,20 +206,20 @@ fn rims(
 fn loops(
     contours: &[ClosedCurve],
     rims: &[Rim],
-    angles: &[Vec<f64>],
+    corners: &[Vec<Corner>],
     h: f64,
     vertices: &mut [DVec2],
 ) -> (Vec<Loop>, Vec<Vec<f64>>) {
     let mut loops = Vec::new();
     let mut arcs = Vec::new();
-    for ((contour, rim), angle) in contours.iter().zip(rims).zip(angles) {
+    for ((contour, rim), corners) in contours.iter().zip(rims).zip(corners) {
         let mut placed = Loop { start: rim.start as u32, length: contour.length(), ..Loop::default() };
         for (i, &s) in rim.s.iter().enumerate() {
             let s = if rim.pinned[i] { nearest_drawn(contour, s * h) } else { contour.wrap(s * h) };
             vertices[rim.start + i] = contour.point_at(s);
             placed.arc.push(contour.input_arc(s));
             placed.source.push(contour.source(s));
-            placed.corner.push(if rim.pinned[i] { angle[i] } else { 0.0 });
+            placed.corner.push(if rim.pinned[i] { turning_at(contour, corners, s, h) } else { 0.0 });
         }
         loops.push(placed);
         arcs.push(rim.s.iter().map(|s| s * h).collect());
@@ -199,15 +227,19 @@ fn loops(
     (loops, arcs)
 }
 
+/// The angle of the corner at arc length `s`, however its vertex came there; zero if there is none.
+fn turning_at(contour: &ClosedCurve, corners: &[Corner], s: f64, h: f64) -> f64 {
+    const SAME: f64 = 1e-6;
+    let gap = |corner: &Corner| {
+        let turns = (corner.arc * h - s) / contour.length();
+        (turns - turns.round()).abs() * contour.length()
+    };
+    corners.iter().find(|corner| gap(corner) <= SAME * h).map_or(0.0, |corner| corner.angle)
+}
+
 /// The nearer end of each strayed edge and the arc position of the farthest point, in edges, where it
 /// is to be held; ends that hold a corner of the drawing only if no other is free.
-fn to_hold(
-    strays: &[Stray],
-    rims: &[Rim],
-    angles: &mut [Vec<f64>],
-    lengths: &[f64],
-    h: f64,
-) -> Vec<(usize, f64)> {
+fn to_hold(strays: &[Stray], rims: &[Rim], lengths: &[f64], h: f64) -> Vec<(usize, f64)> {
     let mut chosen: Vec<(usize, f64)> = Vec::new();
     for stray in strays {
         let rim = &rims[stray.contour];
@@ -224,7 +256,6 @@ fn to_hold(
         });
         let is_free = |end: usize| !rim.held[end] && chosen.iter().all(|&(v, _)| v != rim.start + end);
         let Some(&(end, lap)) = ends.iter().find(|(end, _)| is_free(*end)) else { continue };
-        angles[stray.contour][end] = 0.0;
         chosen.push((rim.start + end, to - lap));
     }
     chosen
@@ -238,7 +269,7 @@ fn corners_of(contour: &ClosedCurve, angle: f64, h: f64) -> Vec<Corner> {
 }
 
 /// Arc length of the drawn point nearest to arc length `s`, along the curve.
-fn nearest_drawn(contour: &ClosedCurve, s: f64) -> f64 {
+pub(crate) fn nearest_drawn(contour: &ClosedCurve, s: f64) -> f64 {
     let (segment, t) = contour.locate(s);
     contour.arc()[if t < 0.5 { segment } else { segment + 1 }]
 }
@@ -265,10 +296,9 @@ fn sharpest(patch: &Patch, counts: impl Fn(&[u32; 3]) -> bool) -> f64 {
     let mut most = -f64::INFINITY;
     for t in patch.triangles.iter().filter(|t| counts(t)) {
         let p = t.map(|v| patch.vertices[v as usize]);
-        for i in 0..3 {
-            let (a, b) = (p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
-            most = most.max(a.dot(b) / a.perp_dot(b));
-        }
+        let [a, b, c] = [p[2] - p[1], p[0] - p[2], p[1] - p[0]];
+        let dot = (-a.dot(b)).max(-b.dot(c)).max(-c.dot(a));
+        most = most.max(dot / a.perp_dot(b));
     }
     1f64.atan2(most)
 }

@@ -9,24 +9,33 @@ use crate::segments::nearest_on_segment;
 /// Rings of vertices behind a boundary edge that are looked at.
 const RINGS: usize = 3;
 
-/// The inlets that boundary edges bridge by more than `limit` (see [`Patch::inlets`]), and for each
-/// with a mesh vertex in it the farthest point of the drawing beside the edge.
-///
-/// [`Patch::inlets`]: crate::patch::Patch::inlets
+/// What boundary edges bridge.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pockets {
+    /// The inlets (see [`Patch::inlets`](crate::patch::Patch::inlets)).
+    pub(crate) inlets: Vec<Vec<DVec2>>,
+    /// For each inlet with a mesh vertex in it the farthest point of the drawing beside the edge.
+    /// `distance` is the greatest distance of such a vertex from the drawing.
+    pub(crate) occupied: Vec<Stray>,
+    /// Those vertices, each with its inlet.
+    pub(crate) inside: Vec<(usize, usize)>,
+}
+
+/// The inlets that boundary edges bridge by more than `limit`, and the mesh vertices in them.
 ///
 /// A vertex counts if it lies between the edge and the stretch of drawing beside it, by more than
-/// `limit` off the drawing. `distance` of a stray is the greatest such distance. `vertices` are
-/// numbered loop by loop, then the interior; `arcs` are the loops' arc lengths, unwrapped. Linear.
+/// `limit` off the drawing. `vertices` are numbered loop by loop, then the interior; `arcs` are the
+/// loops' arc lengths, unwrapped. Linear.
 pub(crate) fn pockets(
     beside: &[Vec<Beside>],
     vertices: &[DVec2],
     triangles: &[[u32; 3]],
     arcs: &[Vec<f64>],
     limit: f64,
-) -> (Vec<Vec<DVec2>>, Vec<Stray>) {
+) -> Pockets {
     let mut fans: Option<Fans<'_>> = None;
     let n_boundary: usize = arcs.iter().map(Vec::len).sum();
-    let (mut inlets, mut found) = (Vec::new(), Vec::new());
+    let mut found = Pockets::default();
     let mut start = 0;
     for (contour, (beside, arcs)) in beside.iter().zip(arcs).enumerate() {
         let n = arcs.len();
@@ -46,26 +55,33 @@ pub(crate) fn pockets(
             if doubled_area(&pocket) >= 0.0 {
                 continue;
             }
-            let low = pocket.iter().fold(a, |low, p| low.min(*p));
-            let high = pocket.iter().fold(a, |high, p| high.max(*p));
-            let in_box = |p: DVec2| p.cmpge(low).all() && p.cmple(high).all();
-            let depth = fans
-                .get_or_insert_with(|| Fans::new(vertices.len(), triangles))
-                .around(ends, RINGS)
-                .iter()
-                .map(|&v| v as usize)
-                .filter(|&v| v >= n_boundary && in_box(vertices[v]) && encloses(&pocket, vertices[v]))
-                .map(|v| distance_to(&pocket, vertices[v]))
-                .fold(0.0, f64::max);
+            let mut depth = 0.0f64;
+            for &v in fans.get_or_insert_with(|| Fans::new(vertices.len(), triangles)).around(ends, RINGS) {
+                let v = v as usize;
+                if v >= n_boundary
+                    && let Some(off) = depth_in(&pocket, vertices[v]).filter(|&off| off > limit)
+                {
+                    found.inside.push((v, found.inlets.len()));
+                    depth = depth.max(off);
+                }
+            }
             if depth > limit {
                 let Beside { point, arc, .. } = *deepest;
-                found.push(Stray { contour, edge, arc, point, distance: depth });
+                found.occupied.push(Stray { contour, edge, arc, point, distance: depth });
             }
-            inlets.push(pocket);
+            found.inlets.push(pocket);
         }
         start += n;
     }
-    (inlets, found)
+    found
+}
+
+/// How far a point in a pocket is from the drawing; none if it is not in it.
+pub(crate) fn depth_in(pocket: &[DVec2], p: DVec2) -> Option<f64> {
+    let low = pocket.iter().fold(pocket[0], |low, q| low.min(*q));
+    let high = pocket.iter().fold(pocket[0], |high, q| high.max(*q));
+    let in_box = p.cmpge(low).all() && p.cmple(high).all();
+    (in_box && encloses(pocket, p)).then(|| distance_to(pocket, p))
 }
 
 fn doubled_area(polygon: &[DVec2]) -> f64 {
@@ -79,7 +95,7 @@ pub(crate) fn distance_to(line: &[DVec2], p: DVec2) -> f64 {
 }
 
 /// The triangles at each vertex.
-struct Fans<'a> {
+pub(crate) struct Fans<'a> {
     triangles: &'a [[u32; 3]],
     starts: Vec<u32>,
     items: Vec<u32>,
@@ -90,7 +106,7 @@ struct Fans<'a> {
 }
 
 impl<'a> Fans<'a> {
-    fn new(n_vertices: usize, triangles: &'a [[u32; 3]]) -> Self {
+    pub(crate) fn new(n_vertices: usize, triangles: &'a [[u32; 3]]) -> Self {
         let mut starts = vec![0u32; n_vertices + 1];
         for &v in triangles.iter().flatten() {
             starts[v as usize + 1] += 1;
@@ -107,6 +123,17 @@ impl<'a> Fans<'a> {
             }
         }
         Self { triangles, starts, items, seen: vec![0; n_vertices], searches: 0, found: Vec::new() }
+    }
+
+    /// The triangles at a vertex, each beginning with it.
+    pub(crate) fn at(&self, v: usize) -> impl Iterator<Item = [u32; 3]> {
+        let items = &self.items[self.starts[v] as usize..self.starts[v + 1] as usize];
+        items.iter().map(move |&t| {
+            let mut triangle = self.triangles[t as usize];
+            let first = triangle.iter().position(|&w| w as usize == v).unwrap_or(0);
+            triangle.rotate_left(first);
+            triangle
+        })
     }
 
     /// The vertices within `rings` edges of any of `seeds`.
@@ -154,17 +181,18 @@ mod tests {
         vertices.push(DVec2::new(5.0, 5.0));
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
         let contours = [contour];
-        let (inlets, found) =
-            pockets(&beside(&contours, &vertices, &arcs), &vertices, &triangles, &arcs, 0.1);
+        let search = |vertices: &[DVec2]| {
+            pockets(&beside(&contours, vertices, &arcs), vertices, &triangles, &arcs, 0.1)
+        };
+        let Pockets { inlets, occupied: found, inside } = search(&vertices);
         assert_eq!(inlets.len(), 1);
         assert!(inlets[0].contains(&drawn[4]));
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].edge, found[0].point), (3, drawn[4]));
         assert!((found[0].distance - 0.392).abs() < 1e-3, "{}", found[0].distance);
+        assert_eq!(inside, [(6, 0)]);
         vertices[6] = DVec2::new(5.0, 2.0);
-        assert!(
-            pockets(&beside(&contours, &vertices, &arcs), &vertices, &triangles, &arcs, 0.1).1.is_empty()
-        );
+        assert!(search(&vertices).occupied.is_empty());
         Ok(())
     }
 }

@@ -152,7 +152,7 @@ impl<'a> Relaxation<'a> {
         let tolerance = self.options.tolerance;
         if self.ladder(&mut report, progress.part(0.0, 0.4))? {
             report.sweeps += self.motion.improve(tolerance, progress.part(0.4, 0.8))?;
-            self.finish(&mut report, progress.part(0.8, 1.0))?;
+            self.finish(&[], &mut report, progress.part(0.8, 1.0))?;
         }
         Ok(self.conclude(report))
     }
@@ -175,9 +175,9 @@ impl<'a> Relaxation<'a> {
         self.motion.place_boundary(3);
         let mut report = RelaxReport::default();
         if self.ladder(&mut report, progress.part(0.0, 0.4))? {
-            let around = vertices.iter().map(|&(v, _)| v as u32);
-            report.sweeps += self.motion.mend(around, self.options.tolerance, progress.part(0.4, 0.8))?;
-            self.finish(&mut report, progress.part(0.8, 1.0))?;
+            let around: Vec<u32> = vertices.iter().map(|&(v, _)| v as u32).collect();
+            report.sweeps += self.motion.mend(&around, self.options.tolerance, progress.part(0.4, 0.8))?;
+            self.finish(&around, &mut report, progress.part(0.8, 1.0))?;
         }
         Ok(self.conclude(report))
     }
@@ -187,9 +187,10 @@ impl<'a> Relaxation<'a> {
         self.motion.slide.store(rims);
     }
 
-    fn finish(&mut self, report: &mut RelaxReport, progress: Progress<'_>) -> Result<()> {
+    /// `around` is empty for the whole patch.
+    fn finish(&mut self, around: &[u32], report: &mut RelaxReport, progress: Progress<'_>) -> Result<()> {
         let tolerance = self.options.tolerance;
-        report.sweeps += self.motion.sharpen(tolerance, progress.part(0.0, 0.5))?;
+        report.sweeps += self.motion.sharpen(around, tolerance, progress.part(0.0, 0.5))?;
         report.released.extend(self.motion.release_starved(tolerance, progress.part(0.5, 1.0))?);
         report.released.sort_unstable();
         Ok(())

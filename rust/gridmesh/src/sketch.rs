@@ -1,5 +1,8 @@
 //! From a drawn outline to a flat patch: the whole of the paper's section IV.
 
+mod lattices;
+mod least;
+
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -14,19 +17,12 @@ use crate::mirror;
 use crate::options::{
     BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SelfCrossing, SketchOptions, SketchReport,
 };
-use crate::orient::predicted_angles;
 use crate::outline::{Obstacle, Outline, grown, traced};
 use crate::patch::Patch;
 use crate::place::{Placed, min_angle, min_angle_off_corners, place};
 use crate::progress::Progress;
 use crate::symmetry::Symmetry;
-use crate::target::Target;
 use crate::union::{nearest_source, outer_outline};
-
-/// Lattice placements tried before the drawing is called too coarse for its edge length: shifts of
-/// the origin in edges.
-const SHIFTS: [[f64; 2]; 6] =
-    [[0.0, 0.0], [0.5, 0.29], [0.5, -0.29], [0.25, 0.43], [0.25, -0.14], [0.75, 0.14]];
 
 /// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies
 /// this close to the drawing, in edges, is good enough not to try another lattice angle.
@@ -96,6 +92,7 @@ pub fn mesh_sketch(
     if expected.is_nan() || expected > MAX_TRIANGLES {
         return Err(Error::TooLarge { triangles: expected, limit: MAX_TRIANGLES });
     }
+    check_origin(options, &contours[0], edge_length)?;
     let find = |mirror| Symmetry::find(&contours, mirror, edge_length);
     let symmetry = options.mirror.map(find).transpose()?;
     mirror::check_angle(symmetry.as_ref(), options.angle)?;
@@ -144,6 +141,13 @@ enum Effort {
     Quick,
 }
 
+/// Why a lattice angle gives no boundary of the size asked for.
+struct Miss {
+    obstacle: Obstacle,
+    /// There is a boundary, but with too many or too few triangles: a shift of the lattice may help.
+    is_of_count: bool,
+}
+
 struct Job<'a> {
     contours: Vec<ClosedCurve>,
     symmetry: Option<Symmetry>,
@@ -174,40 +178,51 @@ impl Job<'_> {
     ) -> Result<Result<Sketch, Obstacle>> {
         let started = Instant::now();
         let lattices = self.placements_to_try(asked, effort);
-        let found: Vec<Result<Result<(Lattice, Outline), Obstacle>>> = lattices
+        let found: Vec<Result<Result<(Lattice, Outline), Miss>>> = lattices
             .par_iter()
-            .map(|&(angle, shift)| self.outline(asked, angle, shift, progress.part(0.0, 0.3)))
+            .map(|&(angle, shift)| self.outline(asked, effort, angle, shift, progress.part(0.0, 0.3)))
             .collect();
         let mut obstacle = None;
         let mut outlines = Vec::new();
+        let mut is_passable = self.symmetry.is_some();
         for found in found {
             match found? {
-                Ok(found) => outlines.push(found),
-                Err(found) => obstacle = obstacle.or(Some(found)),
+                Ok(found) => {
+                    is_passable = true;
+                    outlines.push(found);
+                }
+                Err(miss) => {
+                    is_passable |= miss.is_of_count;
+                    obstacle = obstacle.or(Some(miss.obstacle));
+                }
             }
         }
         outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
         self.lap("boundary", started);
         // Where no angle gives a boundary a shift does not either.
-        let shifted = effort == Effort::Full && self.symmetry.is_none() && !outlines.is_empty();
-        let shifts = if shifted { SHIFTS.len() } else { 1 };
-        let mut shifts = SHIFTS[..shifts].iter().enumerate().skip(1);
+        let shifts = match effort {
+            Effort::Full if is_passable => self.shifts(lattices[0].0),
+            _ => Vec::new(),
+        };
+        let mut shifts = shifts.into_iter().enumerate();
         let mut outlines = outlines.into_iter();
         let mut best: Option<(f64, Outline, Placed, Option<f64>)> = None;
         loop {
             let (lattice, outline) = match outlines.next() {
                 Some(next) => next,
-                None if best.is_some() => break,
+                None if best.as_ref().is_some_and(|(_, _, placed, _)| !placed.is_bridged(self.options)) => {
+                    break;
+                }
                 None => {
-                    let Some((k, shift)) = shifts.next() else { break };
+                    let Some((k, (angle, shift))) = shifts.next() else { break };
                     let started = Instant::now();
-                    let part = progress.part(0.3 + 0.1 * k as f64, 0.4 + 0.1 * k as f64);
-                    let found = self.outline(asked, lattices[0].0, DVec2::from_array(*shift), part)?;
+                    let part = progress.part(0.4 + 0.1 * k as f64, 0.5 + 0.1 * k as f64);
+                    let found = self.outline(asked, effort, angle, shift, part)?;
                     self.lap("boundary", started);
                     match found {
                         Ok(found) => found,
-                        Err(found) => {
-                            obstacle = obstacle.or(Some(found));
+                        Err(miss) => {
+                            obstacle = obstacle.or(Some(miss.obstacle));
                             continue;
                         }
                     }
@@ -231,6 +246,10 @@ impl Job<'_> {
             }
         }
         if let Some((_, outline, placed, mirror_error)) = best {
+            if placed.is_bridged(self.options) {
+                let at = placed.patch.inlets.first().map_or(DVec2::ZERO, |inlet| inlet[0]);
+                return Ok(Err(Obstacle { reason: "an inlet is narrower than the grid".to_owned(), at }));
+            }
             return Ok(Ok(self.report(&outline, placed, mirror_error)));
         }
         let none = || Obstacle { reason: "no lattice was tried".to_owned(), at: DVec2::ZERO };
@@ -253,45 +272,19 @@ impl Job<'_> {
         })
     }
 
-    /// The lattices to try: angles, and shifts of the origin in edges.
-    fn placements_to_try(&self, asked: Asked, effort: Effort) -> Vec<(f64, DVec2)> {
-        if let Some(symmetry) = &self.symmetry {
-            const QUICK: usize = 2;
-            let mut lattices = mirror::placements(symmetry, self.options.angle);
-            lattices.truncate(if effort == Effort::Full { lattices.len() } else { QUICK });
-            return lattices;
-        }
-        self.angles(asked, effort).into_iter().map(|angle| (angle, DVec2::ZERO)).collect()
-    }
-
-    /// The lattice angles to try: the one asked for, or those with the fewest turns predicted.
-    fn angles(&self, asked: Asked, effort: Effort) -> Vec<f64> {
-        const CANDIDATES: usize = 4;
-        if let Some(angle) = self.options.angle {
-            return vec![angle.rem_euclid(std::f64::consts::FRAC_PI_3)];
-        }
-        let count = match (self.options.boundary, effort) {
-            (BoundaryMethod::Optimal, Effort::Full) => CANDIDATES,
-            _ => 1,
-        };
-        let edge_length = match asked {
-            Asked::EdgeLength(h) => h,
-            Asked::Triangles(n) => self.first_guess(n),
-        };
-        let angles = predicted_angles(&self.contours, edge_length, count);
-        if angles.is_empty() { vec![0.0] } else { angles }
-    }
-
     /// The outline for one placement; with a number of triangles asked for, the edge length is
-    /// corrected until the number is reached within 5 % (10 % are accepted in the end).
+    /// corrected until the number is reached within 5 % (10 % are accepted in the end). Only then
+    /// is a proof worth its time.
     fn outline(
         &self,
         asked: Asked,
+        effort: Effort,
         angle: f64,
         shift: DVec2,
         progress: Progress<'_>,
-    ) -> Result<Result<(Lattice, Outline), Obstacle>> {
+    ) -> Result<Result<(Lattice, Outline), Miss>> {
         const CORRECTIONS: usize = 6;
+        let unproved = SketchOptions { proof_nodes: 0, ..self.options.clone() };
         let mut edge_length = match asked {
             Asked::EdgeLength(h) => h,
             Asked::Triangles(n) => self.first_guess(n),
@@ -304,7 +297,7 @@ impl Job<'_> {
         for _ in 0..CORRECTIONS {
             progress.report(0.0)?;
             let lattice = self.lattice(edge_length, angle, shift);
-            let outline = match self.path(&lattice, progress)? {
+            let outline = match self.path(&lattice, &unproved, progress)? {
                 Ok(outline) => outline,
                 Err(found) => {
                     obstacle = found;
@@ -330,97 +323,41 @@ impl Job<'_> {
             // A handful of triangles comes in few sizes: 6, 10, 13, 14, 16...
             Asked::Triangles(n) => f64::max(0.1, 6.0 / n as f64),
         };
-        Ok(match best {
-            Some((off, lattice, outline)) if off <= allowed => Ok((lattice, outline)),
-            _ => Err(obstacle),
-        })
-    }
-
-    fn path(&self, lattice: &Lattice, progress: Progress<'_>) -> Result<Result<Outline, Obstacle>> {
-        if let Some(symmetry) = &self.symmetry {
-            return mirror::traced(&self.contours, symmetry, lattice, self.options, progress);
-        }
-        match self.options.boundary {
-            BoundaryMethod::Grown => grown(&self.contours[0], lattice, self.options, progress),
-            BoundaryMethod::Optimal => traced(&self.contours, lattice, self.options, progress),
-        }
-    }
-
-    /// The edge length at which a patch has about `n` triangles. The lattice path cuts off what it
-    /// cannot follow, and growth stops inside the curve: on average a patch is so many triangles for
-    /// each edge length of curve short of its area.
-    fn first_guess(&self, n: usize) -> f64 {
-        let area = self.area / (0.5 * crate::lattice::ROW_HEIGHT);
-        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.09 } else { 0.28 };
-        let short = short * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
-        2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
-    }
-
-    fn lattice(&self, edge_length: f64, angle: f64, shift: DVec2) -> Lattice {
-        let origin = self.centre + edge_length * DVec2::from_angle(angle).rotate(shift);
-        Lattice { origin, angle, edge_length }
-    }
-
-    /// The error for a drawing that has no patch of the size asked for: the least number of
-    /// triangles that works, searched in steps of a tenth, one placement each.
-    fn least_that_works(&mut self, asked: f64, obstacle: Obstacle, progress: Progress<'_>) -> Result<Error> {
-        const LARGEST: f64 = 1e6;
-        let at = |step: i32| (asked.max(6.0) * 1.1f64.powi(step)).ceil() as usize;
-        let (mut fails, mut works, mut stride) = (0, None, 1);
-        while works.is_none() && (at(fails + stride) as f64) < LARGEST {
-            let step = fails + stride;
-            if self.works(at(step), progress)? {
-                works = Some(step);
-            } else {
-                fails = step;
-            }
-            // Small steps first, for drawings that nearly fit; larger ones after them.
-            stride = 1 + fails / 3;
-        }
-        let Some(mut works) = works else {
-            return Ok(Error::NoPatch { reason: obstacle.reason, at: obstacle.at.to_array() });
+        let is_near = |outline: &Outline| match asked {
+            Asked::EdgeLength(_) => true,
+            Asked::Triangles(n) => (outline.triangles() as f64 / n as f64 - 1.0).abs() <= allowed,
         };
-        while works - fails > 1 {
-            let step = (works + fails) / 2;
-            if self.works(at(step), progress)? {
-                works = step;
-            } else {
-                fails = step;
+        let Some((off, lattice, mut outline)) = best else {
+            return Ok(Err(Miss { obstacle, is_of_count: false }));
+        };
+        if off > allowed {
+            return Ok(Err(Miss { obstacle, is_of_count: true }));
+        }
+        let is_asked = self.options.proof_nodes > 0 && self.options.boundary == BoundaryMethod::Optimal;
+        if is_asked && effort == Effort::Full && !outline.optimal {
+            // It may come out a little larger or smaller.
+            if let Ok(proved) = self.path(&lattice, self.options, progress)?
+                && is_near(&proved)
+            {
+                outline = proved;
             }
         }
-        Ok(Error::TooCoarse { triangles: asked.round().max(1.0) as usize, least: at(works) })
+        Ok(Ok((lattice, outline)))
     }
 
-    /// Whether the first placement at `n` triangles gives a valid patch.
-    fn works(&mut self, n: usize, progress: Progress<'_>) -> Result<bool> {
-        progress.report(0.9)?;
-        Ok(!self.is_hopeless(n) && self.attempt(Asked::Triangles(n), Effort::Quick, progress)?.is_ok())
-    }
-
-    /// True if `n` triangles cannot follow the drawing: a chord-free lattice patch with `b` boundary
-    /// vertices has at least `2 b - 6`, and a path beside the faired contours is not much shorter
-    /// than they are.
-    fn is_hopeless(&self, n: usize) -> bool {
-        const SHORTER: f64 = 0.7;
-        let lattice = self.lattice(self.first_guess(n), 0.0, DVec2::ZERO);
-        // The number of samples alone shows the worst cases; no need to take them.
-        let edges: f64 = self.contours.iter().map(|c| c.length() / lattice.edge_length).sum();
-        let needed = |edges: f64| 2.0 * SHORTER * edges - 6.0 * self.contours.len() as f64;
-        if needed(edges) <= n as f64 {
-            return false;
+    fn path(
+        &self,
+        lattice: &Lattice,
+        options: &SketchOptions,
+        progress: Progress<'_>,
+    ) -> Result<Result<Outline, Obstacle>> {
+        if let Some(symmetry) = &self.symmetry {
+            return mirror::traced(&self.contours, symmetry, lattice, options, progress);
         }
-        if edges > 20.0 * n as f64 {
-            return true;
+        match options.boundary {
+            BoundaryMethod::Grown => grown(&self.contours[0], lattice, options, progress),
+            BoundaryMethod::Optimal => traced(&self.contours, lattice, options, progress),
         }
-        let faired: f64 = self
-            .contours
-            .iter()
-            .map(|contour| {
-                let points = Target::new(contour, &lattice).points;
-                (0..points.len()).map(|i| points[i].distance(points[(i + 1) % points.len()])).sum::<f64>()
-            })
-            .sum();
-        needed(faired) > n as f64
     }
 
     /// The patch with its numbers.
@@ -433,7 +370,7 @@ impl Job<'_> {
             minimum_irregular: 6 + 3 * (self.contours.len() - 1),
             turns: outline.turns(),
             turns_before: outline.turns_before,
-            turns_bound: outline.turns_bound(),
+            turns_bound: outline.turns_bound,
             cost: outline.cost,
             cost_bound: outline.cost_bound,
             optimal: outline.optimal,
@@ -454,11 +391,26 @@ impl Job<'_> {
     }
 }
 
+/// Lattice coordinates are whole numbers: a lattice may be laid from a point this many edges away.
+const FARTHEST_ORIGIN: f64 = 1e6;
+
+fn check_origin(options: &SketchOptions, outline: &ClosedCurve, edge_length: f64) -> Result<()> {
+    let far = |origin: &DVec2| origin.distance(outline.points()[0]) > FARTHEST_ORIGIN * edge_length;
+    let Some(origin) = options.origin.filter(far) else {
+        return Ok(());
+    };
+    let value = format!("{}, {}", origin.x, origin.y);
+    let allowed = "a point within a million edge lengths of the outline, or none";
+    Err(Error::InvalidOption { name: "origin", value, allowed })
+}
+
 /// How far a placement is from being good enough: zero if it is.
 fn faults(placed: &Placed) -> f64 {
     let (angle, distance) = ENOUGH;
     let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
-    4.0 * starved + (placed.max_deviation - distance).max(0.0)
+    // A patch that bridges an inlet serves only to say where.
+    let bridged = 100.0 * placed.bridged_inlets as f64;
+    bridged + 4.0 * starved + (placed.max_deviation - distance).max(0.0)
 }
 
 /// The centroid of the enclosed area.

@@ -18,6 +18,7 @@ mod proof;
 mod queue;
 mod search;
 mod sides;
+mod straightest;
 
 #[cfg(test)]
 mod oracle;
@@ -93,6 +94,9 @@ pub struct Traced {
     pub cost_bound: f64,
     /// Number of turns by 60 degrees; turns by 120 count twice. The paper's `err_dc`.
     pub turns: usize,
+    /// No boundary at this distance turns less often: the fewest turns regardless of distances and
+    /// conflicts.
+    pub turns_bound: usize,
     /// The paths are proved to be the cheapest.
     pub optimal: bool,
     /// The distance that was allowed: `max_distance`, or 2 if there was no boundary within it.
@@ -252,18 +256,14 @@ impl From<Error> for Refusal {
 /// No closed lattice paths near the targets turn less often than this: the fewest turns regardless of
 /// distances and conflicts. `None` if there are no paths.
 ///
-/// `max_distance` is the one that was used. O(n log n) in the total length in edges.
+/// `max_distance` is the one that was used. O(n) in the total length in edges.
 pub fn fewest_turns(targets: &[Target], max_distance: f64) -> Option<usize> {
-    let mut search = Search::new();
-    let mut turns = 0;
-    for target in targets {
-        let graph = Graph::of_turns(&Band::new(target, max_distance));
-        let potential = search.potential(&graph);
-        let prices = Prices::none(graph.n_nodes());
-        let (_, cost) = search.closed(&graph, &potential, &prices, u32::MAX)?;
-        turns += (cost / TURN) as usize;
-    }
-    Some(turns)
+    let fewest =
+        |target| straightest::fewest_turns(&Graph::new(&Band::new(target, max_distance), 0.0), u32::MAX);
+    targets
+        .iter()
+        .map(|target| Some(fewest(target)).filter(|&turns| turns < u32::MAX).map(|turns| turns as usize))
+        .sum()
 }
 
 fn attempt(
@@ -303,6 +303,11 @@ fn attempt(
         walks = better;
     }
     progress.report(1.0)?;
+    let turns_bound = contours
+        .iter()
+        .zip(&roots)
+        .map(|(contour, root)| straightest::fewest_turns(&contour.graph, root.turns()) as usize)
+        .sum();
     let turns = turns(&walks);
     let cost = turns as f64 + options.closeness * squared_distances(&contours, &walks);
     let bound = f64::from(proof.bound) / f64::from(TURN);
@@ -310,6 +315,7 @@ fn attempt(
         cost,
         cost_bound: if proof.optimal { cost } else { bound.min(cost) },
         turns,
+        turns_bound,
         optimal: proof.optimal,
         max_distance_used: max_distance,
         rounds: dive.rounds,
@@ -372,11 +378,7 @@ fn total(walks: &[Walk]) -> u32 {
 }
 
 fn turns(walks: &[Walk]) -> usize {
-    let turns = |walk: &Walk| -> usize {
-        let turn = |i| walk.turn(i).unsigned_abs() as usize;
-        (0..walk.len()).map(turn).sum()
-    };
-    walks.iter().map(turns).sum()
+    walks.iter().map(|walk| walk.turns() as usize).sum()
 }
 
 fn squared_distances(contours: &[Contour], walks: &[Walk]) -> f64 {

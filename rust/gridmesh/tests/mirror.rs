@@ -184,4 +184,7 @@ fn drawings_without_symmetry_and_growth_are_refused() {
     let crooked = points(&[[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 2.0]]);
     assert_eq!(kind(&crooked, BoundaryMethod::Optimal), "not_symmetric");
     assert_eq!(kind(&drawings()[0].outline, BoundaryMethod::Grown), "invalid_option");
+    let options = SketchOptions { proof_nodes: 5, mirror: Some(Mirror::Auto), ..SketchOptions::default() };
+    let refused = mesh_sketch(&drawings()[0].outline, &[], &options, Progress::NONE).unwrap_err();
+    assert!(refused.to_string().contains("proof_nodes"), "{refused}");
 }

@@ -1,19 +1,25 @@
 """Semi-regular triangle meshes from drawn closed curves, and grid patches for holes.
 
 ``mesh_sketch`` meshes the inside of a drawing, ``inflate`` makes a smooth watertight body of it, ``stitch``
-a flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. ``fill_hole`` and
-``fill_holes`` close holes of a mesh with patches that fit their boundaries vertex for vertex, ``regrid``
-replaces a region by one. Positions are float64, indices int32, angles radians, options keyword-only. The
-same input gives the same bytes. The one exception for what cannot be done is ``GridMeshError``.
+a flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. ``combine`` unites drawings or
+cuts one from another. ``fill_hole`` and ``fill_holes`` close holes of a mesh with patches that fit their
+boundaries vertex for vertex, ``regrid`` replaces a region by one. ``cut`` divides a mesh along a stroke
+and caps it.
+Positions are float64, indices int32, angles radians, options keyword-only. The same input gives the same
+bytes. The one exception for what cannot be done is ``GridMeshError``.
 """
 
 from gridmesh._native import (
+    Cut,
     Fill,
     GridMeshError,
     Patch,
+    Piece,
     Regrid,
     Surface,
     __version__,
+    combine,
+    cut,
     fill_hole,
     fill_holes,
     flat,
@@ -25,12 +31,16 @@ from gridmesh._native import (
 )
 
 __all__ = [
+    "Cut",
     "Fill",
     "GridMeshError",
     "Patch",
+    "Piece",
     "Regrid",
     "Surface",
     "__version__",
+    "combine",
+    "cut",
     "fill_hole",
     "fill_holes",
     "flat",

@@ -5,14 +5,18 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "Cut",
     "Fill",
     "GridMeshError",
     "Patch",
+    "Piece",
     "Regrid",
     "Surface",
     "__version__",
     "_patch",
     "_surface",
+    "combine",
+    "cut",
     "fill_hole",
     "fill_holes",
     "flat",
@@ -115,6 +119,7 @@ def mesh_sketch(
     max_distance: float = 1.5,
     closeness: float = 0.3,
     angle: float | None = None,
+    origin: _Points | None = None,
     corner_angle: float = 0.6981317007977318,
     mirror: _Axis | Literal["auto"] | None = None,
     self_crossing: Literal["error", "union"] = "error",
@@ -122,6 +127,13 @@ def mesh_sketch(
     relax: bool = True,
     progress: _Progress | None = None,
 ) -> Patch: ...
+def combine(
+    outline: _Points,
+    other: _Points,
+    holes: Sequence[_Points] = (),
+    *,
+    how: Literal["union", "difference"] = "union",
+) -> list[tuple[npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]]: ...
 def stitch(patch: Patch) -> Surface: ...
 def flat(patch: Patch) -> Surface: ...
 def inflate(
@@ -179,6 +191,51 @@ def regrid(
     strict: bool = False,
     progress: _Progress | None = None,
 ) -> Regrid: ...
+
+@final
+class Piece:
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def corners(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def offsets(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def source_face(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def source_vertices(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def source_weights(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def cap_loops(self) -> list[npt.NDArray[np.int32]]: ...
+    @property
+    def side(self) -> Literal["left", "right"]: ...
+    def __copy__(self) -> Piece: ...
+    def __deepcopy__(self, _memo: object, /) -> Piece: ...
+
+@final
+class Cut:
+    @property
+    def pieces(self) -> list[Piece]: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+    def __copy__(self) -> Cut: ...
+    def __deepcopy__(self, _memo: object, /) -> Cut: ...
+
+def cut(
+    vertices: npt.ArrayLike,
+    faces: npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike],
+    stroke: npt.ArrayLike,
+    *,
+    direction: npt.ArrayLike | None = None,
+    eye: npt.ArrayLike | None = None,
+    keep: Literal["left", "right", "both"] = "both",
+    cap: bool = True,
+    edge_length: float | None = None,
+    gap: float = 0.0,
+    smooth: Literal["flat", "tangent", "curvature"] = "flat",
+    progress: _Progress | None = None,
+) -> Cut: ...
 def map_sketches(
     outlines: Iterable[_Points | tuple[_Points, Sequence[_Points]]],
     *,

@@ -104,35 +104,35 @@ impl Motion<'_> {
     }
 
     /// Lets the surroundings of some boundary vertices settle.
-    pub fn mend(
-        &mut self,
-        vertices: impl IntoIterator<Item = u32>,
-        tolerance: f64,
-        progress: Progress<'_>,
-    ) -> Result<usize> {
-        let active = &mut Active::near(&self.band, vertices, 2);
+    pub fn mend(&mut self, vertices: &[u32], tolerance: f64, progress: Progress<'_>) -> Result<usize> {
+        let active = &mut Active::near(&self.band, vertices.iter().copied(), 2);
         self.settle(&Power::<2>, active, 12, tolerance, progress)
     }
 
-    /// Gives the worst triangles and their neighbours the say. What is worst is measured away from
-    /// pinned vertices, at which the drawing rules.
-    pub fn sharpen(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<usize> {
+    /// Gives the worst triangles and their neighbours the say: of all, or of those around some
+    /// vertices. What is worst is measured away from pinned vertices, at which the drawing rules.
+    pub fn sharpen(&mut self, around: &[u32], tolerance: f64, progress: Progress<'_>) -> Result<usize> {
         const MARGIN: f64 = 6.0;
+        const RINGS: usize = 4;
         let (most, cornered) = (cotangent(45.0), cotangent(30.0));
-        let sharpness: Vec<(f64, bool)> = self
+        let near = Active::near(&self.band, around.iter().copied(), RINGS);
+        let counts = |t: &&[u32; 3]| around.is_empty() || t.iter().any(|&v| near.has(v));
+        let sharpness: Vec<(&[u32; 3], f64, bool)> = self
             .band
             .triangles
             .iter()
+            .filter(counts)
             .map(|t| {
                 let at_corner = t.iter().any(|&v| self.slide.pinned.get(v as usize) == Some(&true));
-                (sharpness(t.map(|v| self.band.positions[v as usize])), at_corner)
+                (t, sharpness(t.map(|v| self.band.positions[v as usize])), at_corner)
             })
             .collect();
-        let sharpest = sharpness.iter().filter(|s| !s.1).map(|s| s.0).fold(most, f64::max);
+        let sharpest = sharpness.iter().filter(|s| !s.2).map(|s| s.1).fold(most, f64::max);
         let limit = most.max(cotangent((1.0 / sharpest).atan().to_degrees() + MARGIN));
-        let worst: Vec<u32> = std::iter::zip(&self.band.triangles, &sharpness)
-            .filter(|(_, (sharpness, at_corner))| *sharpness > if *at_corner { cornered } else { limit })
-            .flat_map(|(t, _)| *t)
+        let worst: Vec<u32> = sharpness
+            .into_iter()
+            .filter(|&(_, sharpness, at_corner)| sharpness > if at_corner { cornered } else { limit })
+            .flat_map(|(t, ..)| *t)
             .collect();
         let mut active = Active::near(&self.band, worst, 1);
         self.settle(&Power::<4>, &mut active, 6, tolerance, progress)
@@ -190,12 +190,9 @@ fn cotangent(degrees: f64) -> f64 {
     1.0 / degrees.to_radians().tan()
 }
 
-/// Cotangent of the least angle of a triangle.
+/// Cotangent of the least angle of a triangle: the greatest of the three.
 fn sharpness(p: [DVec2; 3]) -> f64 {
-    // The least angle lies opposite the shortest edge.
-    let edges = [p[2] - p[1], p[0] - p[2], p[1] - p[0]];
-    let lengths = edges.map(|e| e.length_squared());
-    let i = (0..3).min_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
-    let (a, b) = (edges[(i + 1) % 3], edges[(i + 2) % 3]);
-    -a.dot(b) / a.perp_dot(b).abs()
+    let [a, b, c] = [p[2] - p[1], p[0] - p[2], p[1] - p[0]];
+    let dot = (-a.dot(b)).max(-b.dot(c)).max(-c.dot(a));
+    dot / a.perp_dot(b).abs()
 }

@@ -35,6 +35,10 @@ impl Active {
         }
     }
 
+    pub fn has(&self, vertex: u32) -> bool {
+        self.0.get(vertex as usize) == Some(&true)
+    }
+
     /// The vertices of a list and `rings` rings of neighbours around them.
     pub fn near(band: &Band, vertices: impl IntoIterator<Item = u32>, rings: usize) -> Active {
         let mut active = Active::none(band.n_free);

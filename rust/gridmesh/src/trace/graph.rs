@@ -10,7 +10,7 @@ pub(super) const TURN: u32 = 1024;
 /// Transitions that cost this much or more are forbidden.
 pub(super) const BLOCKED: u32 = 1 << 26;
 /// How far past the cut and the runs across it a path may go before it comes back, in samples.
-const OVERHANG: u32 = 40;
+const OVERHANG: u32 = 24;
 
 /// A node on one sheet of the band, which is unrolled at the cut: `node + sheet * n_nodes`.
 pub(super) type Place = u32;
@@ -88,13 +88,6 @@ impl Graph {
             }
         }
         graph.starts.push(graph.links.len() as u32);
-        graph
-    }
-
-    /// Likewise, but turns alone cost something.
-    pub fn of_turns(band: &Band) -> Self {
-        let mut graph = Self::new(band, 0.0);
-        graph.cost.fill(0);
         graph
     }
 

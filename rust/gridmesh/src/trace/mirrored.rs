@@ -15,8 +15,8 @@ use super::prices::Prices;
 use super::search::{Potential, Search, Step, Walk, turned};
 use super::sides::wrong_sides;
 use super::{
-    Path, Refusal, TraceFailure, TraceOptions, Traced, failure, over_distances, squared_distances, total,
-    turns,
+    Path, Refusal, TraceFailure, TraceOptions, Traced, failure, fewest_turns, over_distances,
+    squared_distances, total, turns,
 };
 
 /// A part of a mirror-symmetric drawing, in lattice units; the lattice is laid on the axis.
@@ -116,6 +116,7 @@ fn attempt(
     if let Some(failure) = failure(&found, &job.contours, &job.walks) {
         return Err(Refusal::new(failure, &found, &job.walks));
     }
+    let targets: Vec<Target> = parts.iter().flat_map(|part| part.targets(axis)).collect();
     let turns = turns(&job.walks);
     let cost = turns as f64 + options.closeness * squared_distances(&job.contours, &job.walks);
     let optimal = total(&job.walks) == root;
@@ -124,6 +125,8 @@ fn attempt(
         cost,
         cost_bound: if optimal { cost } else { bound.min(cost) },
         turns,
+        // Symmetric paths are paths beside the targets like others.
+        turns_bound: fewest_turns(&targets, max_distance).unwrap_or(0),
         optimal,
         max_distance_used: max_distance,
         rounds: found.rounds,

@@ -9,6 +9,7 @@ use super::graph::{Graph, TURN};
 use super::half::{Half, Memory};
 use super::prices::Prices;
 use super::search::Search;
+use super::straightest::fewest_turns;
 use crate::axial::Axial;
 use crate::band::Band;
 use crate::dir::Dir;
@@ -175,6 +176,32 @@ fn the_search_finds_what_brute_force_finds() {
             );
         }
     }
+}
+
+#[test]
+fn the_fewest_turns_are_those_of_the_cheapest_path_that_pays_for_turns_alone() {
+    let mut search = Search::new();
+    let mut found = 0;
+    for (name, corners) in shapes() {
+        for (angle, max_distance) in [(0.0, 1.5), (0.4, 1.5), (0.9, 1.0), (0.2, 2.0)] {
+            let mut graph = Graph::new(&Band::new(&target(&corners, angle), max_distance), 0.3);
+            let fewest = fewest_turns(&graph, u32::MAX);
+            graph.cost.fill(0);
+            let potential = search.potential(&graph);
+            let prices = Prices::none(graph.n_nodes());
+            let cheapest = search.closed(&graph, &potential, &prices, u32::MAX);
+            let Some((_, cost)) = cheapest else {
+                assert_eq!(fewest, u32::MAX, "{name} at {angle}, distance {max_distance}");
+                continue;
+            };
+            found += 1;
+            assert_eq!(fewest * TURN, cost, "{name} at {angle}, distance {max_distance}");
+            // A limit changes nothing.
+            assert_eq!(fewest_turns(&graph, fewest + 3), fewest);
+            assert_eq!(fewest_turns(&graph, fewest), fewest);
+        }
+    }
+    assert!(found > 20);
 }
 
 #[test]

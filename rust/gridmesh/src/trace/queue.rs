@@ -1,7 +1,7 @@
 //! A monotone bucket queue.
 
 /// Number of buckets: keys this far apart may be queued without a detour.
-const WINDOW: u32 = 8192;
+const WINDOW: u32 = 4096;
 const NONE: u32 = u32::MAX;
 
 /// Items with integer keys; keys may never be smaller than the last one taken.

@@ -389,6 +389,11 @@ impl Walk {
         if turn > 3 { turn as i32 - 6 } else { turn as i32 }
     }
 
+    /// The sum of absolute turns.
+    pub fn turns(&self) -> u32 {
+        (0..self.len()).map(|i| self.turn(i).unsigned_abs()).sum()
+    }
+
     /// Search cost without prices.
     pub fn base_cost(&self, graph: &Graph) -> u32 {
         (0..self.len()).map(|i| graph.cost[self.node(i) as usize] + self.turn(i).unsigned_abs() * TURN).sum()

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curves from JSON and CSV files. No bpy."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..outlines import Stroke
+
+
+class InputError(ValueError):
+    """A file holds no curves. The message says why."""
+
+
+def curves(path: Path, data: bytes) -> list[Stroke]:
+    """Closed curves of a file, in the plane z = 0.
+
+    JSON: {"points": [[x, y], ...], "holes": [[[x, y], ...], ...]}, or a list of curves.
+    CSV: x, y in each row; an empty row between curves.
+    """
+    try:
+        text = data.decode("utf-8-sig")
+        found = _json(json.loads(text)) if path.suffix.lower() == ".json" else _csv(text)
+        arrays = [np.asarray(points, float) for points in found]
+    except (ValueError, TypeError, RecursionError) as error:
+        raise InputError(f"it is no list of curves: {error}") from error
+    if not arrays:
+        raise InputError("it has no curves")
+    for points in arrays:
+        if points.ndim != 2 or points.shape[1] != 2:
+            raise InputError(f"a curve has shape {points.shape}; it must be a list of points [x, y]")
+    return [
+        Stroke(np.column_stack([points, np.zeros(len(points))]), True, path.stem, "", at, len(arrays))
+        for at, points in enumerate(arrays)
+    ]
+
+
+def _json(value: Any) -> list[Any]:
+    if isinstance(value, dict):
+        if "points" not in value:
+            raise InputError("it has no 'points'")
+        return [value["points"], *value.get("holes", [])]
+    return list(value)
+
+
+def _csv(text: str) -> list[list[list[float]]]:
+    found: list[list[list[float]]] = [[]]
+    for line in text.splitlines():
+        if line.strip(" \t,;"):
+            found[-1].append([float(cell) for cell in line.split(",")])
+        elif found[-1]:
+            found.append([])
+    return [points for points in found if points]

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bodies that follow their drawing.
+
+`solve` (numpy only) makes the body of a sketch, on a lattice that stays or on the best one; `reading` finds the
+stroke of a body without changing anything; `engine` decides when; `properties` is what a body remembers; `ui` has
+the operators and the panel.
+"""

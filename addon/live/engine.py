@@ -1,0 +1,399 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""When bodies follow: after every change of their drawing, quickly; and in full when the change has ended.
+
+While a stroke is dragged the lattice stays, so that the mesh does not jump. When nothing has changed for a moment and
+no tool is running, the best lattice is searched, so that the result depends on the stroke alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import bpy
+import numpy as np
+
+from .. import meshes, strokes
+from ..api import Body
+from ..native import NativeError
+from ..outlines import Plane, Sketch, Stroke
+from .reading import LostError, sketch_of
+from .solve import ALGORITHM, Lattice, LeftError, SolveError, digest, solve
+
+PAUSE = 0.35
+"""Seconds without a change after which a change has ended."""
+
+in_background = False
+"""Whether bodies follow without a window, too."""
+
+
+@dataclass
+class _State:
+    """What is known of a body in this session."""
+
+    seen: str
+    """Fingerprint of what it was made of last, in full or quickly."""
+    options: str
+    lattice: Lattice | None = None
+    place: Any = None
+    """Where the drawing's object was."""
+    since: float = 0.0
+    """When it changed last; 0 when it was made in full."""
+    failed: str = ""
+    """Fingerprint of what has no body."""
+
+
+_states: dict[int, _State] = {}
+_rendering = False
+_busy = False
+
+timing: list[float] = []
+"""Seconds of the last updates, newest last."""
+
+
+def awake() -> bool:
+    """Whether bodies may follow now."""
+    return not _rendering and not _busy and (in_background or not bpy.app.background)
+
+
+def is_linked(ob: bpy.types.Object) -> bool:
+    """Whether an object is a body with a link. To read a group of properties that is not there would make it."""
+    system = getattr(ob, "bl_system_properties_get", None)  # from Blender 5.0 on
+    stored = ob if system is None else system()
+    return stored is not None and "gridmesh_live" in stored and ob.gridmesh_live.linked
+
+
+def bodies(source: bpy.types.Object | None = None) -> list[bpy.types.Object]:
+    """Bodies that are linked (to `source`)."""
+    linked = [ob for ob in bpy.data.objects if ob.type == "MESH" and is_linked(ob)]
+    return [ob for ob in linked if source is None or ob.gridmesh_live.source == source]
+
+
+def link(ob: bpy.types.Object, stroke: Stroke, source: bpy.types.Object, maker: Any, *, follow: bool) -> None:
+    """Link a body that was just made from a stroke of `source`; `maker` has the options that it was made with."""
+    live = ob.gridmesh_live
+    live.linked, live.source, live.algorithm = True, source, ALGORITHM
+    live.layer, live.stroke, live.count = stroke.layer, stroke.index, stroke.count
+    live.copy_options(maker)
+    live.digest = ""
+    live.enabled = follow
+
+
+def freeze(ob: bpy.types.Object) -> None:
+    """Make a plain mesh of a body: it knows nothing of its stroke any more."""
+    ob.property_unset("gridmesh_live")
+    if meshes.LINK in ob:
+        del ob[meshes.LINK]
+    _states.pop(ob.session_uid, None)
+
+
+def touch(ob: bpy.types.Object) -> None:
+    """Let a body follow now if it is awake."""
+    if awake():
+        _follow(ob, bpy.context.evaluated_depsgraph_get(), full=False)
+
+
+def settle() -> int:
+    """Make every body in full that is not; return how many were made."""
+    if not awake():
+        return 0
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    return sum(_follow(ob, depsgraph, full=True) for ob in bodies())
+
+
+def remake(ob: bpy.types.Object) -> bool:
+    """Make a body in full because somebody asked, whether it follows or not, and whether there is a window or not."""
+    global _busy
+    _states.pop(ob.session_uid, None)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    _busy = True
+    try:
+        return _updated(ob, depsgraph, True)
+    finally:
+        _busy = False
+
+
+def fingerprint(live: Any, sketch: Sketch) -> str:
+    """Fingerprint of all that a body depends on."""
+    return digest(sketch, *_options(live))
+
+
+def _options(live: Any) -> tuple[dict[str, Any], dict[str, Any] | None, float]:
+    return live.sketch_options(), live.body_options(), live.pen
+
+
+def _hindrance(ob: bpy.types.Object) -> str:
+    """Why a body cannot follow, whatever its stroke; empty if it can."""
+    if not ob.is_editable or not ob.data.is_editable:
+        return "it is linked from another file"
+    if ob.mode != "OBJECT":
+        return "it is being edited; leave its mode"
+    if ob.data.shape_keys is not None:
+        return "it has shape keys, which fit no new mesh"
+    if ob.gridmesh_live.algorithm != ALGORITHM:
+        return "it was made by another version of GridMesh; press Adopt to make it anew with this one"
+    return ""
+
+
+def _follow(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, full: bool) -> bool:
+    """Bring a body up to date with its stroke; return whether its mesh was made anew."""
+    global _busy
+    if not ob.gridmesh_live.enabled:
+        return False
+    started = perf_counter()
+    _busy = True
+    try:
+        done = _updated(ob, depsgraph, full)
+    finally:
+        _busy = False
+    if done:
+        timing.append(perf_counter() - started)
+        del timing[:-200]
+    return done
+
+
+def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -> bool:
+    live, uid = ob.gridmesh_live, ob.session_uid
+    reason = _hindrance(ob)
+    if reason:
+        _tell(live, reason)
+        return False
+    try:
+        sketch = sketch_of(ob, depsgraph)
+    except LostError as error:
+        if live.source is not None and not live.source.users_scene:
+            live.source = None  # a deleted drawing is not kept alive by its bodies
+        _tell(live, str(error))
+        return False
+    mark, options = fingerprint(live, sketch), repr(_options(live))
+    state = _states.get(uid)
+    if live.digest == mark or (not full and state is not None and state.seen == mark):
+        if state is None or state.seen != mark:
+            _states[uid] = _State(mark, options, place=_place(live.source))
+        elif live.digest == mark:
+            state.since = 0.0
+        if (live.stroke, live.count) != (sketch.stroke.index, sketch.stroke.count):
+            live.stroke, live.count = sketch.stroke.index, sketch.stroke.count
+        _tell(live, "")
+        return False
+    if full and state is not None and state.failed == mark:
+        state.since = 0.0
+        return False
+    lattice = None
+    if not full and state is not None and state.options == options:
+        lattice = _dragged(ob, state)
+    state = _states[uid] = _State(mark, options, lattice, _place(live.source), perf_counter())
+    try:
+        body, state.lattice = _solved(live, sketch, lattice)
+    except (SolveError, NativeError) as error:
+        _tell(live, str(error))
+        if lattice is None:
+            state.failed, state.since = mark, 0.0
+        else:
+            _wait()  # the best lattice may do, but to look for it would hold up the drag
+        return False
+    write(ob, body, live.corner_angle, marks=lattice is None)
+    slots = [state.lattice.edge_length, state.lattice.angle, *state.lattice.origin]
+    live.lattice = [float(value) for value in slots]
+    live.stroke, live.count = sketch.stroke.index, sketch.stroke.count
+    live.digest = mark if lattice is None else ""
+    state.since = 0.0 if lattice is None else perf_counter()
+    _tell(live, "")
+    if lattice is not None:
+        _wait()
+    return True
+
+
+def _solved(live: Any, sketch: Sketch, lattice: Lattice | None) -> tuple[Body, Lattice]:
+    """Solve on the lattice that stays; if the stroke has left its plane, on the best one."""
+    sketch_options, body_options, pen = _options(live)
+    if lattice is not None:
+        try:
+            return solve(sketch, sketch_options, body_options, lattice=lattice, pen=pen)
+        except LeftError:
+            pass  # it was turned or bent: there is nothing to keep
+    return solve(sketch, sketch_options, body_options, pen=pen)
+
+
+def _dragged(ob: bpy.types.Object, state: _State) -> Lattice | None:
+    """Return the lattice of the body as it is, moved along with the drawing's object."""
+    lattice = state.lattice
+    live = ob.gridmesh_live
+    if lattice is None:
+        if not live.lattice[0] or meshes.LINK not in ob:
+            return None
+        matrix = np.array(list(ob[meshes.LINK]["matrix"]), float).reshape(4, 4)
+        plane = Plane(matrix[:3, 3], matrix[:3, :3].T)
+        lattice = Lattice(plane, live.lattice[0], live.lattice[1], np.array(live.lattice[2:]))
+    now = _place(live.source)
+    if state.place is None or np.array_equal(now, state.place):
+        return lattice
+    try:
+        motion = now @ np.linalg.inv(state.place)
+    except np.linalg.LinAlgError:
+        return None
+    turn = motion[:3, :3]
+    if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-5) or np.linalg.det(turn) < 0:
+        return None
+    plane = Plane(turn @ lattice.plane.origin + motion[:3, 3], lattice.plane.axes @ turn.T)
+    return Lattice(plane, lattice.edge_length, lattice.angle, lattice.origin)
+
+
+def _place(source: bpy.types.Object) -> np.ndarray:
+    return np.array(source.matrix_world)
+
+
+def write(ob: bpy.types.Object, body: Body, crease_angle: float, *, marks: bool) -> None:
+    """Give an object another mesh of the same name; all that belongs to vertices stays where the triangles do.
+
+    marks : whether creases are marked anew where the triangles stay; while dragging they wait.
+    """
+    mesh = ob.data
+    triangles = np.ascontiguousarray(body.triangles, np.int32)
+    if len(mesh.vertices) != len(body.vertices) or len(mesh.loops) != triangles.size:
+        meshes.refresh(ob, body, crease_angle)
+        return
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    if not np.array_equal(corners, triangles.ravel()):
+        meshes.refresh(ob, body, crease_angle)
+        return
+    mesh.vertices.foreach_set("co", np.ascontiguousarray(body.vertices, np.float32).ravel())
+    layer = mesh.uv_layers.get(meshes.UV_MAP)
+    if layer is not None:
+        layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
+    if marks:
+        meshes.mark_creases(mesh, body, crease_angle)
+    mesh.update()
+    meshes.move_along(ob, body)
+
+
+def _tell(live: Any, problem: str) -> None:
+    if live.problem != problem:
+        live.problem = problem
+
+
+# ------------------------------------------------------------------------------------------------------ handlers
+
+
+_DRAWINGS = tuple(
+    getattr(bpy.types, name)
+    for name in ("Curve", "Curves", "GreasePencilv3", "GreasePencil")
+    if hasattr(bpy.types, name)
+)
+
+
+@bpy.app.handlers.persistent
+def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
+    """Let bodies follow whose drawing, or whose own properties, were changed."""
+    if not awake():
+        return
+    sources, drawings, own = [], [], []
+    for update in depsgraph.updates:
+        if isinstance(update.id, _DRAWINGS):
+            drawings.append(update.id.original)
+        elif isinstance(update.id, bpy.types.Object):
+            ob = update.id.original
+            if ob.type in strokes.SOURCE_TYPES:
+                sources.append(ob)
+            elif ob.type == "MESH" and is_linked(ob):
+                own.append(ob)
+    if sources or drawings:
+        for ob in bodies():
+            source = ob.gridmesh_live.source
+            if ob not in own and source is not None and (source in sources or source.data in drawings):
+                own.append(ob)
+    for ob in own:
+        _follow(ob, depsgraph, full=False)
+
+
+@bpy.app.handlers.persistent
+def _on_undo(*_: Any) -> None:
+    """After a step back or forth strokes and bodies may be of different times."""
+    _states.clear()
+    settle()
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_: Any) -> None:
+    """A file that was opened is left as it is until something is changed."""
+    _states.clear()
+
+
+@bpy.app.handlers.persistent
+def _on_save(*_: Any) -> None:
+    """What is saved is made in full."""
+    if any(state.since for state in _states.values()):
+        settle()
+
+
+@bpy.app.handlers.persistent
+def _on_render(*_: Any) -> None:
+    global _rendering
+    _rendering = True
+
+
+@bpy.app.handlers.persistent
+def _after_render(*_: Any) -> None:
+    global _rendering
+    _rendering = False
+
+
+def _handlers() -> list[tuple[list[Any], Any]]:
+    on = bpy.app.handlers
+    return [
+        (on.depsgraph_update_post, _on_change),
+        (on.undo_post, _on_undo),
+        (on.redo_post, _on_undo),
+        (on.load_post, _on_load),
+        (on.save_pre, _on_save),
+        (on.render_init, _on_render),
+        (on.render_complete, _after_render),
+        (on.render_cancel, _after_render),
+    ]
+
+
+def _wait() -> None:
+    if not bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.register(_tick, first_interval=0.1)
+
+
+def _tick() -> float | None:
+    """Timer: make in full what has not changed for a moment, once no tool is running."""
+    last = max((state.since for state in _states.values()), default=0.0)
+    if not last:
+        return None
+    if perf_counter() - last < PAUSE or _tool_runs():
+        return 0.1
+    settle()
+    for uid in _states.keys() - {ob.session_uid for ob in bpy.data.objects}:
+        del _states[uid]
+    return 0.1 if any(state.since for state in _states.values()) and awake() else None
+
+
+def _tool_runs() -> bool:
+    """Whether a tool is running that may go on changing the stroke: a drag is not over while it is."""
+    aside = {"SCREEN_OT_animation_play", "SCREEN_OT_animation_step", "OBJECT_OT_gridmesh_draw"}
+    return any(
+        tool.bl_idname not in aside
+        for window in bpy.context.window_manager.windows
+        for tool in window.modal_operators
+    )
+
+
+def register() -> None:
+    """Start to listen."""
+    for handlers, function in _handlers():
+        if function not in handlers:
+            handlers.append(function)
+
+
+def unregister() -> None:
+    """Stop; bodies stay as they are."""
+    for handlers, function in _handlers():
+        if function in handlers:
+            handlers.remove(function)
+    if bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.unregister(_tick)
+    _states.clear()

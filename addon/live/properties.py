@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a body remembers of how it was made, so that it can be made again."""
+
+from typing import Any
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from ..properties import ShapeOptions, SketchOptions
+from ..strokes import SOURCE_TYPES
+
+
+def _changed(live: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    from . import engine
+
+    if live.enabled and not live.quiet:
+        engine.touch(live.id_data)
+
+
+def _with_update(deferred: Any) -> Any:
+    """Return the same property, which tells the body when it is changed."""
+    return deferred.function(**{**deferred.keywords, "update": _changed})
+
+
+class GridMeshLive(SketchOptions, ShapeOptions, bpy.types.PropertyGroup):
+    """Link from a body to its stroke. A pointer to the drawing outlives renaming, appending and duplicating."""
+
+    bl_idname = "gridmesh_live"
+    bl_label = "Live Body"
+
+    linked: BoolProperty(options={"HIDDEN"})
+    enabled: BoolProperty(
+        name="Follow",
+        description="Let the body follow its stroke",
+        default=False,
+        update=_changed,
+    )
+    source: PointerProperty(
+        type=bpy.types.Object, name="Drawing", poll=lambda _self, ob: ob.type in SOURCE_TYPES
+    )
+    layer: StringProperty(options={"HIDDEN"})
+    stroke: IntProperty(options={"HIDDEN"})
+    count: IntProperty(options={"HIDDEN"})
+    close_gaps: FloatProperty(name="Close Gaps", subtype="FACTOR", default=0.2, min=0.0, max=1.0)
+    use_holes: BoolProperty(name="Holes", default=True)
+    pen: FloatProperty(
+        name="Pen Width",
+        description="How much the width of the drawn line drives the depth of the body there",
+        subtype="FACTOR",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        update=_changed,
+    )
+    quiet: BoolProperty(options={"HIDDEN"})
+    """Whether several properties are being set, and the body should wait."""
+    algorithm: IntProperty(options={"HIDDEN"})
+    digest: StringProperty(options={"HIDDEN"})
+    """Fingerprint of the stroke and the options that the body was made of in full; empty while it is being dragged."""
+    lattice: FloatVectorProperty(size=4, precision=6, options={"HIDDEN"})
+    """Edge length, angle and origin in the plane."""
+    problem: StringProperty(options={"HIDDEN"})
+    """Why the body does not follow now."""
+
+    def copy_options(self, operator: Any) -> None:
+        """Take over the options of an operator that made the body."""
+        self.quiet = True
+        names = self.bl_rna.properties.keys()
+        for cls in (SketchOptions, ShapeOptions):
+            for name in cls.__annotations__:
+                if name in names and hasattr(operator, name):
+                    setattr(self, name, getattr(operator, name))
+        for name in ("close_gaps", "use_holes"):
+            if hasattr(operator, name):
+                setattr(self, name, getattr(operator, name))
+        self.quiet = False
+
+
+for _options in (SketchOptions, ShapeOptions):
+    for _name, _deferred in _options.__annotations__.items():
+        GridMeshLive.__annotations__[_name] = _with_update(_deferred)
+
+classes = (GridMeshLive,)
+
+
+def register() -> None:
+    """Give objects the link."""
+    bpy.types.Object.gridmesh_live = PointerProperty(type=GridMeshLive)
+
+
+def unregister() -> None:
+    """Take it away; what is stored in files stays."""
+    if hasattr(bpy.types.Object, "gridmesh_live"):
+        del bpy.types.Object.gridmesh_live

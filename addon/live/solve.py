@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The body of a sketch: on the best lattice, or on one that stays where it is while the stroke is being dragged.
+
+numpy only, no bpy.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from ..api import Body, native
+from ..outlines import Plane, Sketch, project
+
+ALGORITHM = 1
+"""Raised when the same stroke and options give another body. A body made by another one is left alone until asked."""
+
+TILTED = 0.9999
+"""Planes whose normals have a smaller cosine are two."""
+
+
+class SolveError(Exception):
+    """A stroke has no body. The message says why."""
+
+
+class LeftError(SolveError):
+    """A stroke has left the plane of the lattice that it was to keep."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lattice:
+    """A triangle lattice in a drawing plane."""
+
+    plane: Plane
+    edge_length: float
+    angle: float
+    origin: np.ndarray
+    """(2,) in the plane."""
+
+
+class Patience:
+    """Progress that gives up on a stroke without a mesh instead of searching for the fineness that would do.
+
+    The search comes after nine tenths of the work and can take half a minute: too long while somebody draws. Strokes
+    that have a mesh are never given up: from there on they are done in no time.
+    """
+
+    def __init__(self, seconds: float = 0.5) -> None:
+        self.seconds = seconds
+        self._began: float | None = None
+        self._late: float | None = None
+
+    def __call__(self, fraction: float) -> bool:
+        """Say whether to go on; allow as long again as the work has taken."""
+        now = perf_counter()
+        if self._began is None:
+            self._began = now
+        if fraction < 0.9 - 1e-9:
+            return True
+        if self._late is None:
+            self._late = now
+        return now - self._late <= max(self.seconds, self._late - self._began)
+
+
+TOO_THIN = "the stroke is too thin for a mesh this coarse; use more triangles or shorter edges"
+
+
+def reason_of(error: Any) -> str:
+    """What to say of an error of the module."""
+    return TOO_THIN if error.kind == "cancelled" else str(error)
+
+
+def solve(
+    sketch: Sketch,
+    sketch_options: dict[str, Any],
+    body_options: dict[str, Any] | None,
+    *,
+    lattice: Lattice | None = None,
+    pen: float = 0.0,
+) -> tuple[Body, Lattice]:
+    """Mesh a sketch, and inflate it unless `body_options` is None.
+
+    lattice : keep it, and its plane; the body is in the frame of that plane. None: the best one, so that the
+        body depends on the sketch and the options alone.
+    pen : how much the width of the pen drives the depth, 0 to 1.
+
+    Raises
+    ------
+    SolveError
+        If there is none.
+    NativeError
+        Without the module.
+    """
+    gridmesh = native("mesh_sketch", "inflate", "flat")
+    options = dict(sketch_options)
+    if lattice is not None and options.get("mirror") is None:
+        sketch = moved(sketch, lattice.plane)
+        options.pop("triangles", None)
+        options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
+    holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
+    try:
+        patch = gridmesh.mesh_sketch(
+            sketch.outline, holes, progress=Patience(0.5 if lattice is None else 0.01), **options
+        )
+        if body_options is None:
+            surface = gridmesh.flat(patch)
+        else:
+            surface = gridmesh.inflate(patch, **_with_pen(body_options, sketch, pen))
+    except gridmesh.GridMeshError as error:
+        raise SolveError(reason_of(error)) from error
+    body = Body(
+        sketch=sketch,
+        vertices=surface.vertices,
+        triangles=surface.triangles,
+        uv=surface.uv,
+        silhouette=list(surface.silhouette),
+        report={**patch.report, **surface.report},
+    )
+    return body, Lattice(sketch.plane, patch.edge_length, patch.angle, np.array(patch.origin))
+
+
+def moved(sketch: Sketch, plane: Plane) -> Sketch:
+    """Return the sketch in the frame of another plane.
+
+    Raises
+    ------
+    LeftError
+        If that is tilted against the sketch's own, or faces the other way.
+    """
+    if sketch.plane.axes[2] @ plane.axes[2] < TILTED:
+        raise LeftError("the stroke has left its plane")
+    points = project(sketch, plane)
+    if np.abs(points[:, 2]).max() > 1e-3 * sketch.size:
+        raise LeftError("the stroke has left its plane")
+    return Sketch(
+        stroke=sketch.stroke,
+        plane=plane,
+        outline=np.ascontiguousarray(points[:, :2]),
+        size=sketch.size,
+        off_plane=sketch.off_plane,
+        closed_gap=sketch.closed_gap,
+        holes=sketch.holes,
+    )
+
+
+def depths(sketch: Sketch, pen: float) -> np.ndarray | None:
+    """Depth (n,) at each point of the outline from the pen's width there; the mean is 1. None without widths."""
+    widths = sketch.stroke.widths
+    if widths is None or pen <= 0 or len(widths) != len(sketch.stroke.points):
+        return None
+    mean = float(np.mean(widths))
+    if not np.isfinite(mean) or mean <= 0:
+        return None
+    # Closing may have cut ends off: each point has the width of the drawn point nearest to it.
+    drawn = sketch.plane.local(sketch.stroke.points)[:, :2]
+    at = np.empty(len(sketch.outline), int)
+    for block in range(0, len(at), 256):
+        apart = sketch.outline[block : block + 256, None] - drawn[None]
+        at[block : block + 256] = np.einsum("ijk,ijk->ij", apart, apart).argmin(axis=1)
+    return np.maximum(1 + pen * (widths[at] / mean - 1), 0.05)
+
+
+def _with_pen(options: dict[str, Any], sketch: Sketch, pen: float) -> dict[str, Any]:
+    factors = depths(sketch, pen)
+    if factors is None:
+        return options
+    options = dict(options)
+    depth = options.pop("depth", 1.0)
+    for side in ("front", "back"):
+        options[side] = factors * options.get(side, depth)
+    return options
+
+
+def digest(sketch: Sketch, *options: Any) -> str:
+    """Fingerprint of a stroke in the world, its holes, and options."""
+    hashed = hashlib.blake2b(digest_size=16)
+    for one in (sketch, *sketch.holes):
+        hashed.update(np.ascontiguousarray(one.stroke.points, float).tobytes() + bytes([one.stroke.cyclic]))
+        if one.stroke.widths is not None:
+            hashed.update(np.ascontiguousarray(one.stroke.widths, float).tobytes())
+    hashed.update(repr(options).encode())
+    return hashed.hexdigest()

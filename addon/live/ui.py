@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operators and panel of bodies that follow their drawing."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..strokes import selected
+from . import engine
+from .solve import ALGORITHM
+
+
+def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
+    return [ob for ob in selected(context) if ob.type == "MESH" and engine.is_linked(ob)]
+
+
+class _OnBodies:
+    """What needs bodies with a link in the selection."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Ask for a body."""
+        if _chosen(context):
+            return True
+        cls.poll_message_set("Select a body that is linked to its drawing")
+        return False
+
+
+class OBJECT_OT_gridmesh_freeze(_OnBodies, bpy.types.Operator):  # noqa: N801
+    """Make plain meshes of the selected bodies; they no longer know their drawing"""  # noqa: D400 (the tooltip)
+
+    bl_idname = "object.gridmesh_freeze"
+    bl_label = "Freeze"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Cut the links."""
+        for ob in _chosen(context):
+            engine.freeze(ob)
+        return {"FINISHED"}
+
+
+class OBJECT_OT_gridmesh_adopt(_OnBodies, bpy.types.Operator):  # noqa: N801
+    """Make the selected bodies anew with this version of GridMesh, and let them follow their drawing"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_adopt"
+    bl_label = "Adopt"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Take the bodies over and make them in full, also in background: it was asked for."""
+        problems = []
+        for ob in _chosen(context):
+            live = ob.gridmesh_live
+            live.algorithm, live.digest = ALGORITHM, ""
+            engine.remake(ob)
+            live.enabled = True
+            if live.problem:
+                problems.append(f"'{ob.name}': {live.problem}")
+        if problems:
+            self.report({"WARNING"}, "\n".join(problems[:3]))
+        return {"FINISHED"}
+
+
+class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
+    """The body's own options; a change is followed at once."""
+
+    bl_label = "Live Body"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "GridMesh"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Show it for bodies with a link."""
+        active = context.view_layer.objects.active
+        return active is not None and active.type == "MESH" and engine.is_linked(active)
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draw the switch."""
+        self.layout.prop(context.view_layer.objects.active.gridmesh_live, "enabled", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw what the body is made of."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        live = context.view_layer.objects.active.gridmesh_live
+        if live.problem and live.enabled:
+            column = layout.column(align=True)
+            column.alert = True
+            for at in range(0, len(live.problem), 40):
+                column.label(text=live.problem[at : at + 40], icon="ERROR" if at == 0 else "BLANK1")
+        if live.algorithm != ALGORITHM:
+            layout.operator(OBJECT_OT_gridmesh_adopt.bl_idname)
+        layout.prop(live, "source")
+        live.draw_shape_options(layout)
+        layout.prop(live, "pen")
+        live.draw_sketch_options(layout)
+        layout.operator(OBJECT_OT_gridmesh_freeze.bl_idname, icon="FREEZE")
+
+
+classes = (OBJECT_OT_gridmesh_freeze, OBJECT_OT_gridmesh_adopt, VIEW3D_PT_gridmesh_live)

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import bpy
+
+op = bpy.context.active_operator
+op.shape = "SHEET"
+op.resolution = "TRIANGLES"
+op.triangles = 500
+op.mirror = "OFF"

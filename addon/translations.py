@@ -1,0 +1,363 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the interface says in other languages.
+
+A language is a dictionary from the English text. Blender takes what it finds here, and English for the rest; a test
+holds every language to be complete.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+GERMAN = {
+    # Operators and the sidebar
+    "Annotations to Mesh": "Anmerkungen zu Mesh",
+    "Fill All Holes": "Alle Löcher füllen",
+    "Fill the selected hole with a regular triangle patch that fits its edges": (
+        "Das ausgewählte Loch mit einem regelmäßigen Flicken aus Dreiecken füllen, der an seine Kanten passt"
+    ),
+    "Grid Patch Fill": "Loch mit Gitter füllen",
+    "Make a smooth body with a clean triangle mesh from each closed stroke": (
+        "Aus jedem geschlossenen Strich einen glatten Körper mit sauberem Dreiecksnetz machen"
+    ),
+    "Esc: Stop": "Esc: Abbrechen",
+    "Presets": "Vorgaben",
+    "Select a drawing or a curve": "Zeichnung oder Kurve auswählen",
+    "Stopping": "Wird abgebrochen",
+    "Strokes to Mesh": "Striche zu Mesh",
+    "Update Bodies": "Körper aktualisieren",
+    # Presets
+    "Body Flat Badge": "Körper: flache Plakette",
+    "Body Limbs and Tubes": "Körper: Glieder und Röhren",
+    "Body Round": "Körper: rund",
+    "Sprite Deformation Heavy": "Sprite: starke Verformung",
+    "Sprite Deformation Little": "Sprite: leichte Verformung",
+    "Sprite Mirrored Face": "Sprite: gespiegeltes Gesicht",
+    "Sprite Standard": "Sprite: Standard",
+    # Where the strokes are, and which
+    "Active": "Aktiv",
+    "Active collection": "Die aktive Sammlung",
+    "All": "Alle",
+    "All strokes; those that cannot be closed are named": (
+        "Alle Striche; solche, die sich nicht schließen lassen, werden genannt"
+    ),
+    "Annotations": "Anmerkungen",
+    "Annotations of the scene, drawn in space": "Anmerkungen der Szene, die im Raum gezeichnet sind",
+    "Close Gaps": "Lücken schließen",
+    "Closed": "Geschlossene",
+    "Collection": "Sammlung",
+    "Collection that new objects go to": "Sammlung, in die neue Objekte kommen",
+    "Collection that the strokes are in": "Die Sammlung, in der die Striche sind",
+    "Grease pencil, curve and text objects that are selected or being edited": (
+        "Grease-Pencil-, Kurven- und Textobjekte, die ausgewählt sind oder bearbeitet werden"
+    ),
+    "Holes": "Löcher",
+    "Largest gap that is closed, and longest overshoot cut off, relative to the stroke": (
+        "Größte Lücke, die geschlossen, und längster Überstand, der abgeschnitten wird, im Verhältnis zum Strich"
+    ),
+    "Make strokes inside others of the same layer holes in them, and strokes inside holes bodies": (
+        "Striche in anderen derselben Ebene zu deren Löchern machen, und Striche in Löchern zu Körpern"
+    ),
+    "New": "Neu",
+    "New collection beside the strokes": "Eine neue Sammlung neben den Strichen",
+    "Objects": "Objekte",
+    "Of the Source": "Der Quelle",
+    "Replace the mesh of the object made from the stroke before, and keep all else of it": (
+        "Nur das Mesh des Objekts ersetzen, das früher aus dem Strich gemacht wurde"
+    ),
+    "Resolve Crossings": "Kreuzungen auflösen",
+    "Selected": "Ausgewählte",
+    "Source": "Quelle",
+    "Strokes": "Striche",
+    "Strokes that are closed or nearly so; leave out open ones": (
+        "Striche, die geschlossen sind oder beinahe; offene weglassen"
+    ),
+    "Strokes that are selected, or have a selected point": (
+        "Striche, die ausgewählt sind oder einen ausgewählten Punkt haben"
+    ),
+    "Strokes that become meshes": "Striche, aus denen Meshes werden",
+    "Take the outer outline of strokes that cross themselves, instead of refusing them": (
+        "Bei Strichen, die sich selbst kreuzen, den äußeren Umriss nehmen, statt sie abzulehnen"
+    ),
+    "Update Existing": "Vorhandene aktualisieren",
+    "Use": "Verwenden",
+    "Where the strokes are": "Wo die Striche sind",
+    # The grid
+    "Angle": "Winkel",
+    "Angle of the triangle grid in the drawing plane, from 0 to 60 degrees": (
+        "Winkel des Dreiecksgitters in der Zeichenebene, von 0 bis 60 Grad"
+    ),
+    "Automatic": "Automatisch",
+    "Boundary": "Rand",
+    "Corner Angle": "Eckenwinkel",
+    "Direction of the triangle grid": "Richtung des Dreiecksgitters",
+    "Edge Length": "Kantenlänge",
+    "Find the axis of a drawing that is symmetric within 2% of its size, and mesh both halves alike": (
+        "Die Achse einer Zeichnung finden, die bis auf 2% ihrer Größe symmetrisch ist, und beide Hälften gleich vernetzen"
+    ),
+    "Find the rim with the fewest turns near the stroke, for the fewest irregular vertices": (
+        "Den Rand mit den wenigsten Wendungen nahe am Strich suchen, für die wenigsten unregelmäßigen Punkte"
+    ),
+    "Fixed": "Fest",
+    "Give the angle": "Den Winkel angeben",
+    "Give the length of the edges": "Die Länge der Kanten angeben",
+    "Give the number of triangles of each side": "Die Zahl der Dreiecke jeder Seite angeben",
+    "Grid": "Gitter",
+    "Grid Angle": "Gitterwinkel",
+    "Grow the grid from the middle and straighten its rim": (
+        "Das Gitter von der Mitte aus wachsen lassen und seinen Rand begradigen"
+    ),
+    "Grown": "Gewachsen",
+    "How far the grid's rim may stray before it is moved onto the stroke, in edge lengths": (
+        "Wie weit der Rand des Gitters abweichen darf, bevor er auf den Strich gerückt wird, in Kantenlängen"
+    ),
+    "How the fineness of the mesh is given": "Wie die Feinheit des Netzes angegeben wird",
+    "How the rim of the triangle grid is chosen": "Wie der Rand des Dreiecksgitters gewählt wird",
+    "Keep corners where the stroke turns by more than this angle": (
+        "Ecken erhalten, an denen der Strich um mehr als diesen Winkel abbiegt"
+    ),
+    "Length of the edges of the mesh, seeded from the strokes": (
+        "Länge der Kanten des Netzes, vorgeschlagen nach den Strichen"
+    ),
+    "Max Distance": "Größter Abstand",
+    "Mesh the drawing as it is": "Die Zeichnung vernetzen, wie sie ist",
+    "Mirror": "Spiegeln",
+    "Number of triangles of one side, reached within 10%; a body has two sides": (
+        "Zahl der Dreiecke einer Seite, auf 10% genau; ein Körper hat zwei Seiten"
+    ),
+    "Off": "Aus",
+    "Optimal": "Optimal",
+    "Resolution": "Auflösung",
+    "Take the best of several angles": "Den besten von mehreren Winkeln nehmen",
+    "Triangles": "Dreiecke",
+    "Whether the mesh of a symmetric drawing is its own mirror image": (
+        "Ob das Netz einer symmetrischen Zeichnung sein eigenes Spiegelbild ist"
+    ),
+    # The shape
+    "A flat mesh in the drawing plane": "Ein flaches Mesh in der Zeichenebene",
+    "A smooth closed body, inflated to both sides of the drawing plane": (
+        "Ein glatter geschlossener Körper, nach beiden Seiten der Zeichenebene aufgeblasen"
+    ),
+    "Back": "Rückseite",
+    "Body": "Körper",
+    "Cross-section of the body": "Querschnitt des Körpers",
+    "Depth": "Tiefe",
+    "Depth of the side that faces down or to the back": "Tiefe der Seite, die nach unten oder hinten zeigt",
+    "Depth of the side that faces up or to the front": "Tiefe der Seite, die nach oben oder vorn zeigt",
+    "Even": "Gleichmäßig",
+    "Flat": "Flach",
+    "Flat Sheet": "Flaches Blatt",
+    "Flat with a rounded rim": "Flach mit gerundetem Rand",
+    "Front": "Vorderseite",
+    "Give the depth of the front and the back separately": (
+        "Die Tiefe von Vorder- und Rückseite getrennt angeben"
+    ),
+    "Peak": "Spitz",
+    "Profile": "Profil",
+    "Rising evenly to a ridge": "Gleichmäßig ansteigend zu einem Grat",
+    "Round": "Rund",
+    "Round; a circle becomes a sphere": "Rund; aus einem Kreis wird eine Kugel",
+    "Round; a long limb becomes a round tube": "Rund; aus einem langen Glied wird eine runde Röhre",
+    "Separate Sides": "Getrennte Seiten",
+    "Shape": "Form",
+    "Thickness of the body; at 1 a circle becomes a sphere": (
+        "Dicke des Körpers; bei 1 wird aus einem Kreis eine Kugel"
+    ),
+    "What is made of a stroke": "Was aus einem Strich wird",
+    # Bodies that follow their drawing
+    "Adopt": "Übernehmen",
+    "Drawing": "Zeichnung",
+    "Follow": "Folgen",
+    "Follow the Stroke": "Dem Strich folgen",
+    "Freeze": "Einfrieren",
+    "How much the width of the drawn line drives the depth of the body there": (
+        "Wie sehr die Breite der gezeichneten Linie dort die Tiefe des Körpers bestimmt"
+    ),
+    "Let the body follow its stroke": "Den Körper seinem Strich folgen lassen",
+    "Let the body follow when its stroke is edited; the switch is in the sidebar": (
+        "Den Körper folgen lassen, wenn sein Strich bearbeitet wird; der Schalter ist in der Seitenleiste"
+    ),
+    "Live Body": "Lebender Körper",
+    "Make plain meshes of the selected bodies; they no longer know their drawing": (
+        "Aus den ausgewählten Körpern gewöhnliche Meshes machen, die ihre Zeichnung nicht mehr kennen"
+    ),
+    "Make the selected bodies anew with this version of GridMesh, and let them follow their drawing": (
+        "Die ausgewählten Körper mit dieser Version von GridMesh neu machen und ihrer Zeichnung folgen lassen"
+    ),
+    "Pen Width": "Strichbreite",
+    # The quality of a mesh
+    "Count irregular vertices of the selected meshes and find the sharpest angle": (
+        "Unregelmäßige Punkte der ausgewählten Meshes zählen und den spitzesten Winkel suchen"
+    ),
+    "Mesh Quality": "Netzqualität",
+    "Show irregular vertices of the selected meshes by their number of edges, and the numbers": (
+        "Unregelmäßige Punkte der ausgewählten Meshes nach der Zahl ihrer Kanten zeigen, und die Zahlen"
+    ),
+    # Drawing bodies
+    "Across the X axis, through the 3D cursor": "Quer zur X-Achse, durch den 3D-Cursor",
+    "Across the Y axis, through the 3D cursor": "Quer zur Y-Achse, durch den 3D-Cursor",
+    "Across the Z axis, through the 3D cursor": "Quer zur Z-Achse, durch den 3D-Cursor",
+    "Cursor": "Cursor",
+    "Draw the outline of a body; across a body's outline to extend or trim it, with Shift to make a hole": (
+        "Den Umriss eines Körpers zeichnen; über einen Umriss hinweg, um ihn zu erweitern oder zu beschneiden, mit "
+        "Umschalt für ein Loch"
+    ),
+    "Draw an outline, get a body.\nBegin inside a body and cross its outline to extend it, outside to trim it; "
+    "Shift makes a hole": (
+        "Einen Umriss zeichnen, und es wird ein Körper daraus.\nIn einem Körper beginnen und über seinen Umriss "
+        "hinaus zeichnen, um ihn zu erweitern, von außen, um ihn zu beschneiden; Umschalt macht ein Loch"
+    ),
+    "Facing the view, through the 3D cursor": "Der Ansicht zugewandt, durch den 3D-Cursor",
+    "GridMesh Draw": "GridMesh zeichnen",
+    "How much the pressure of the pen drives the depth of the body": (
+        "Wie sehr der Druck des Stifts die Tiefe des Körpers bestimmt"
+    ),
+    "Make a hole in the body under the stroke, or trim it": (
+        "Ein Loch in den Körper unter dem Strich machen, oder ihn beschneiden"
+    ),
+    "Plane": "Ebene",
+    "Plane of the 3D cursor's X and Y": "Ebene von X und Y des 3D-Cursors",
+    "Subtract": "Abziehen",
+    "Surface": "Fläche",
+    "Tangent to the surface where the stroke begins; facing the view beside surfaces": (
+        "Tangential zur Fläche, wo der Strich beginnt; neben Flächen der Ansicht zugewandt"
+    ),
+    "View": "Ansicht",
+    "Where the stroke lies": "Wo der Strich liegt",
+    "X Axis": "X-Achse",
+    "Y Axis": "Y-Achse",
+    "Z Axis": "Z-Achse",
+    # Cutting
+    "Along a line drawn in the viewport": "Entlang einer Linie, die im Fenster gezeichnet wird",
+    "Along a stroke of a selected grease pencil or curve object": (
+        "Entlang eines Strichs eines ausgewählten Grease-Pencil- oder Kurvenobjekts"
+    ),
+    "Along the normal of the plane that the stroke was drawn in": (
+        "Entlang der Normalen der Ebene, in der der Strich gezeichnet wurde"
+    ),
+    "Along the world's X axis; left and right are as in the right view": (
+        "Entlang der X-Achse der Welt; links und rechts wie in der Ansicht von rechts"
+    ),
+    "Along the world's Y axis; left and right are as in the front view": (
+        "Entlang der Y-Achse der Welt; links und rechts wie in der Ansicht von vorn"
+    ),
+    "Along the world's Z axis; left and right are as in the top view": (
+        "Entlang der Z-Achse der Welt; links und rechts wie in der Ansicht von oben"
+    ),
+    "As the view sees it; without a view, along the normal of the stroke's plane": (
+        "Wie die Ansicht es sieht; ohne Ansicht entlang der Normalen der Ebene des Strichs"
+    ),
+    "Both": "Beide",
+    "Both pieces stay in the object, not joined": "Beide Stücke bleiben im Objekt, ohne Verbindung",
+    "Both sides": "Beide Seiten",
+    "Bulging with the slope and the curvature of the model": (
+        "Gewölbt mit der Neigung und der Krümmung des Modells"
+    ),
+    "Bulging with the slope of the model": "Gewölbt mit der Neigung des Modells",
+    "Cap": "Deckel",
+    "Cap Material": "Material der Deckel",
+    "Close the pieces where they were cut": "Die Stücke schließen, wo sie geschnitten wurden",
+    "Cut & Cap": "Schneiden und schließen",
+    "Cut & Cap along Stroke": "Am Strich schneiden und schließen",
+    "Cut along Stroke": "Am Strich schneiden",
+    "Cut the active mesh along a stroke and close it with regular triangle patches": (
+        "Das aktive Mesh an einem Strich schneiden und mit regelmäßigen Flicken aus Dreiecken schließen"
+    ),
+    "Direction": "Richtung",
+    "Direction that the stroke is swept along, through the model": (
+        "Richtung, in der der Strich durch das Modell gezogen wird"
+    ),
+    "Draw Cut": "Schnitt zeichnen",
+    "Draw Cut & Cap": "Schnitt zeichnen und schließen",
+    "Drawn": "Gezeichnet",
+    "Gap": "Spalt",
+    "Give the caps a material slot of their own": "Den Deckeln einen eigenen Materialslot geben",
+    "In world space": "Im Raum der Welt",
+    "Keep": "Behalten",
+    "Largest gap between the ends of a stroke that is closed, relative to the stroke": (
+        "Größte Lücke zwischen den Enden eines Strichs, die geschlossen wird, im Verhältnis zum Strich"
+    ),
+    "Left": "Links",
+    "Length of the edges along the cut, which makes even caps; 0 cuts exactly along the stroke and leaves the "
+    "edges as the mesh divides them": (
+        "Länge der Kanten am Schnitt, für gleichmäßige Deckel; 0 schneidet genau am Strich und lässt die Kanten, wie "
+        "das Netz sie teilt"
+    ),
+    "Location": "Ort",
+    "Material": "Material",
+    "Name of the material for caps; empty for an empty slot": (
+        "Name des Materials für Deckel; leer für einen leeren Slot"
+    ),
+    "Number of the stroke to cut along; 0 for the selected one, or else the last one": (
+        "Nummer des Strichs, an dem geschnitten wird; 0 für den ausgewählten, sonst den letzten"
+    ),
+    "On the surface that the stroke swept": "Auf der Fläche, die der Strich überstrichen hat",
+    "One Object": "Ein Objekt",
+    "Pieces": "Stücke",
+    "Right": "Rechts",
+    "Selected Stroke": "Ausgewählter Strich",
+    "Shape of the caps": "Form der Deckel",
+    "Stroke": "Strich",
+    "Stroke Plane": "Ebene des Strichs",
+    "The larger piece stays in the object, the other gets one of its own": (
+        "Das größere Stück bleibt im Objekt, das andere bekommt ein eigenes"
+    ),
+    "Two Objects": "Zwei Objekte",
+    "What becomes of the two sides": "Was aus den beiden Seiten wird",
+    "What is on the left of the stroke as it was drawn, or inside a closed one": (
+        "Was links vom Strich liegt, so wie er gezeichnet wurde, oder in einem geschlossenen"
+    ),
+    "What is on the right of the stroke as it was drawn, or outside a closed one": (
+        "Was rechts vom Strich liegt, so wie er gezeichnet wurde, oder außerhalb eines geschlossenen"
+    ),
+    "Where the cut runs": "Wo der Schnitt verläuft",
+    "Which side of the stroke is kept": "Welche Seite des Strichs behalten wird",
+    "Width of what is taken away along the cut": "Breite dessen, was am Schnitt weggenommen wird",
+    # Filling holes
+    "All holes that are not hidden, up to a number of edges": (
+        "Alle Löcher, die nicht ausgeblendet sind, bis zu einer Anzahl von Kanten"
+    ),
+    "Close Chains": "Ketten schließen",
+    "Close selected chains of edges by a straight edge": (
+        "Ausgewählte Ketten von Kanten durch eine gerade Kante schließen"
+    ),
+    "Curvature": "Krümmung",
+    "Holes with more edges are left open; 0 fills holes of any size, the outer border too": (
+        "Löcher mit mehr Kanten bleiben offen; 0 füllt Löcher jeder Größe, auch den äußeren Rand"
+    ),
+    "How a patch continues the surface around it": "Wie ein Flicken die Fläche um ihn herum fortsetzt",
+    "Join pairs of triangles to quads where that gives good ones": (
+        "Je zwei Dreiecke zu einem Viereck verbinden, wo das gute gibt"
+    ),
+    "Max Edges": "Höchstens Kanten",
+    "Quads": "Vierecke",
+    "Selected loops of open edges, and the whole holes that single selected edges or vertices lie on": (
+        "Ausgewählte Schleifen offener Kanten, und ganze Löcher, an denen einzelne ausgewählte Kanten oder Punkte liegen"
+    ),
+    "Smoothness": "Glätte",
+    "Stretched into the hole like a soap film": "In das Loch gespannt wie eine Seifenhaut",
+    "Tangent": "Tangential",
+    "Which holes are filled": "Welche Löcher gefüllt werden",
+    "With the slope and the curvature of the surface": "Mit Neigung und Krümmung der Fläche",
+    "With the slope of the surface": "Mit der Neigung der Fläche",
+}
+
+LANGUAGES: dict[str, dict[str, str]] = {"de_DE": GERMAN}
+
+
+def table() -> dict[str, dict[tuple[str, str], str]]:
+    """Translations as Blender wants them: operators' names have a context of their own."""
+    return {
+        locale: {(context, text): said for text, said in texts.items() for context in ("*", "Operator")}
+        for locale, texts in LANGUAGES.items()
+    }
+
+
+def register() -> None:
+    """Give Blender the translations."""
+    bpy.app.translations.register(__package__, table())
+
+
+def unregister() -> None:
+    """Take them back; Blender does not mind if it has none."""
+    bpy.app.translations.unregister(__package__)

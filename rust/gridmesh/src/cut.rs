@@ -1,0 +1,240 @@
+//! Divides a mesh along a swept stroke and closes both pieces with grid patches.
+//!
+//! [`cut`] does it all. The stroke and the surface that it sweeps are a [`sheet::Sheet`]; `locate` finds the
+//! faces it meets, `cross` where it meets their edges, `split` divides them, `rim` makes the edges along
+//! the cut even, `loops` and `regions` find what is to be capped, `cap` and `bridge` cap it, `pieces` puts the pieces
+//! together.
+
+mod bridge;
+mod cap;
+mod cross;
+mod input;
+mod locate;
+mod loops;
+mod offset;
+mod options;
+mod pieces;
+mod regions;
+mod report;
+mod rim;
+mod sheet;
+mod split;
+mod strip;
+
+use std::time::Instant;
+
+use glam::DVec3;
+use rustc_hash::FxHashSet;
+
+pub use self::input::Polygons;
+use self::input::check;
+pub use self::options::{CutOptions, Keep, Sweep};
+pub use self::pieces::{Piece, Side};
+pub use self::report::CutReport;
+use self::report::Tally;
+use self::sheet::Sheet;
+use self::split::{Parted, Tolerance};
+use crate::error::{Error, Result};
+use crate::progress::Progress;
+
+/// A divided mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cut {
+    /// The pieces asked for, the left one first.
+    pub pieces: Vec<Piece>,
+    /// Numbers about it.
+    pub report: CutReport,
+}
+
+/// Divides a mesh along the surface that a stroke sweeps, and closes the pieces.
+///
+/// `stroke` is open, and then continued straight on at both ends, or closed: its last point repeats its first one.
+/// It is swept along a direction or through an eye point ([`Sweep`]). Left and right are those of somebody who
+/// looks along the direction, or from the eye; a closed stroke's left is its inside.
+///
+/// Which side a vertex lies on is decided by exact predicates, and where the stroke passes exactly through a
+/// vertex or along an edge, as if it were moved by less than any number: each face is divided consistently
+/// with its neighbours. Crossings with an edge are computed once and shared by its faces. Where the cut passes a vertex
+/// nearer than a thousandth of the edge it crosses, it is drawn through the vertex. Old vertices keep their bits; faces that
+/// the cut does not meet come back as they were. Where the input was a closed manifold, so are the pieces
+/// (with `cap`); vertices in which a piece would touch itself are doubled.
+///
+/// With an `edge_length` the edges along the cut get about this length, and the faces along it are rebuilt.
+///
+/// Caps lie on the swept surface (with [`Smooth::Flat`](crate::fill::Smooth)), both pieces get the same vertices and
+/// triangles, the right one's wound the other way. Cut lines that are not closed, because the mesh is not, get no
+/// cap. Linear in the size of the mesh, all but one pass local to the cut; the same input gives the same output
+/// for any number of threads.
+///
+/// # Errors
+/// [`Error::NotFinite`], [`Error::IndexOutOfRange`], [`Error::InvalidFace`], [`Error::InvalidOption`];
+/// [`Error::StrokeTooShort`] and [`Error::SelfIntersecting`] for strokes that sweep no surface,
+/// [`Error::BehindEye`], [`Error::StrokeMisses`] if nothing is divided, [`Error::CutFailed`] where rounding leaves no
+/// consistent division, [`Error::Cancelled`]. Nothing is returned half cut.
+///
+/// Source: Nealen et al. 2009, section V and figure 2. The paper takes the cut itself from FiberMesh.
+pub fn cut(
+    vertices: &[DVec3],
+    faces: Polygons<'_>,
+    stroke: &[DVec3],
+    options: &CutOptions,
+    progress: Progress<'_>,
+) -> Result<Cut> {
+    progress.report(0.0)?;
+    options.check()?;
+    check(vertices, faces, stroke)?;
+    if options.gap == 0.0 {
+        let sheet = Sheet::new(vertices, stroke, options.sweep)?;
+        return divide(vertices, faces, sheet, options, progress);
+    }
+    // A kerf is two cuts: one to either side of the stroke.
+    let mut both: Option<Cut> = None;
+    let sides = [(Keep::Left, 0.5 * options.gap), (Keep::Right, -0.5 * options.gap)];
+    for (k, (keep, shift)) in sides.into_iter().filter(|(k, _)| options.keep.has(*k)).enumerate() {
+        let half = CutOptions { keep, ..options.clone() };
+        let sheet =
+            Sheet::new(vertices, &offset::shifted(vertices, stroke, options.sweep, shift)?, options.sweep)?;
+        let here = progress.part(0.5 * k as f64, 0.5 * (k + 1) as f64);
+        let one = divide(vertices, faces, sheet, &half, here)?;
+        both = Some(match both {
+            None => one,
+            Some(mut first) => {
+                first.pieces.extend(one.pieces);
+                first.report.add(&one.report);
+                first
+            }
+        });
+    }
+    both.ok_or(Error::Cancelled)
+}
+
+/// Coarser to finer: where a tolerance leaves no consistent division, the next one may.
+const TOLERANCES: [Tolerance; 3] = [
+    Tolerance { vertex: 1e-3, node: 1e-6, length: 0.0 },
+    Tolerance { vertex: 1e-6, node: 1e-8, length: 0.0 },
+    Tolerance { vertex: 1e-9, node: 1e-11, length: 0.0 },
+];
+
+/// With an edge length, the cut is drawn through vertices that are nearer than this part of it.
+const THROUGH: f64 = 0.3;
+
+/// Vertices that are let go one after the other, until the faces around them can be divided.
+const RELEASES: usize = 200;
+
+fn divide(
+    vertices: &[DVec3],
+    faces: Polygons<'_>,
+    sheet: Sheet,
+    options: &CutOptions,
+    progress: Progress<'_>,
+) -> Result<Cut> {
+    let coarse = options.edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
+    match divide_with(vertices, faces, sheet.clone(), options, coarse, progress.part(0.0, 0.9)) {
+        // Drawn through vertices near by, lines may touch that were apart.
+        Err(Error::CutFailed { .. }) if coarse.is_some() => {
+            let mut cut = divide_with(vertices, faces, sheet, options, None, progress.part(0.9, 1.0))?;
+            cut.report.repeated += 1;
+            Ok(cut)
+        }
+        Ok(cut) => progress.report(1.0).map(|()| cut),
+        Err(error) => Err(error),
+    }
+}
+
+/// Divides and caps; first with this tolerance, if there is one.
+fn divide_with(
+    vertices: &[DVec3],
+    faces: Polygons<'_>,
+    sheet: Sheet,
+    options: &CutOptions,
+    coarse: Option<Tolerance>,
+    progress: Progress<'_>,
+) -> Result<Cut> {
+    let mut tally = Tally::new();
+    let since = Instant::now();
+    let (sheet, mut parted) = part(vertices, faces, sheet, coarse, &mut tally, progress.part(0.0, 0.4))?;
+    progress.report(0.4)?;
+    if let Some(length) = options.edge_length {
+        rim::even_out(vertices, faces, &mut parted, length, &mut tally);
+        tally.stage("rim");
+    }
+    let loops = loops::trace(faces, &parted, &sheet);
+    tally.report.open_lines = loops.open;
+    tally.report.loops = loops.closed.len();
+    let caps = if options.cap {
+        let caps = cap::close(
+            vertices,
+            faces,
+            &parted,
+            &sheet,
+            &loops,
+            options,
+            &mut tally,
+            progress.part(0.4, 0.9),
+        )?;
+        tally.stage("caps");
+        caps
+    } else {
+        cap::Caps::default()
+    };
+    progress.report(0.9)?;
+    let pieces = pieces::assemble(vertices, faces, &parted, &loops, &caps, options.keep, &mut tally);
+    tally.stage("pieces");
+    tally.report.seconds.push(("total", since.elapsed().as_secs_f64()));
+    progress.report(1.0)?;
+    Ok(Cut { pieces, report: tally.report })
+}
+
+/// Divides the faces; if rounding stands in the way, with finer tolerances and with the stroke moved by
+/// the least bit that matters, which is counted.
+fn part(
+    vertices: &[DVec3],
+    faces: Polygons<'_>,
+    sheet: Sheet,
+    coarse: Option<Tolerance>,
+    tally: &mut Tally,
+    progress: Progress<'_>,
+) -> Result<(Sheet, Parted)> {
+    let mut failed = Error::StrokeMisses;
+    for nudge in 0..3 {
+        let sheet = sheet.nudged(nudge)?;
+        let locator = locate::Locator::new(vertices, &sheet)?;
+        let met = locator.find(vertices, faces)?;
+        let edges = cross::cross(vertices, faces, &sheet, &locator, &met);
+        tally.stage("search");
+        progress.report(0.5)?;
+        for tolerance in coarse.into_iter().chain(TOLERANCES) {
+            let mut released = FxHashSet::default();
+            for _ in 0..RELEASES {
+                let crossed = edges.named(vertices, tolerance, &released);
+                match split::split(vertices, faces, &sheet, &met, crossed, tolerance) {
+                    Ok(parted) => {
+                        let touching = if tolerance.length > 0.0 { parted.touching() } else { vec![] };
+                        let before = released.len();
+                        released.extend(touching);
+                        if released.len() > before {
+                            continue;
+                        }
+                        tally.stage("faces");
+                        tally.report.cut_faces = parted.cut_faces;
+                        tally.report.repeated += released.len();
+                        return Ok((sheet, parted));
+                    }
+                    Err((Error::StrokeMisses, _)) if tolerance.length == 0.0 => {
+                        return Err(Error::StrokeMisses);
+                    }
+                    Err((error, at)) => {
+                        failed = error;
+                        let before = released.len();
+                        released.extend(at.into_iter().flatten());
+                        if tolerance.length == 0.0 || released.len() == before {
+                            break;
+                        }
+                    }
+                }
+            }
+            tally.report.repeated += 1;
+        }
+    }
+    Err(failed)
+}

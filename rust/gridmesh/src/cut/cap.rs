@@ -1,0 +1,399 @@
+//! Caps: regions of the swept surface, unrolled, filled vertex for vertex, and rolled up again.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::bridge::Bridges;
+use super::cross::Node;
+use super::input::{Polygons, triangles};
+use super::loops::Loops;
+use super::options::{CutOptions, Keep};
+use super::regions::{self, Region, Spot};
+use super::report::Tally;
+use super::sheet::Sheet;
+use super::split::Parted;
+use crate::error::{Error, Result};
+use crate::fill::flat::{FlatFill, FlatOptions, fill_flat};
+use crate::fill::{FillOptions, Smooth, fill_hole};
+use crate::progress::Progress;
+
+/// What closes the pieces.
+#[derive(Default)]
+pub(super) struct Caps {
+    /// New vertices, numbered after those of the divided mesh.
+    pub vertices: Vec<Node>,
+    /// As the right piece needs them.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Polygons with more vertices are tried at fewer lattice angles.
+const LARGE: usize = 300;
+
+/// Polygons filled between two reports of progress.
+const BATCH: usize = 16;
+
+struct Capper<'a> {
+    vertices: &'a [DVec3],
+    faces: Polygons<'a>,
+    parted: &'a Parted,
+    sheet: &'a Sheet,
+    options: &'a CutOptions,
+    /// Edges between vertices of the cut that are there already, and triangles.
+    edges: FxHashSet<(u32, u32)>,
+    facets: FxHashSet<[u32; 3]>,
+    /// Number of the first new vertex.
+    first: u32,
+    caps: Caps,
+}
+
+#[expect(clippy::too_many_arguments, reason = "a stage of the whole")]
+pub(super) fn close(
+    vertices: &[DVec3],
+    faces: Polygons<'_>,
+    parted: &Parted,
+    sheet: &Sheet,
+    loops: &Loops,
+    options: &CutOptions,
+    tally: &mut Tally,
+    progress: Progress<'_>,
+) -> Result<Caps> {
+    let found = regions::find(vertices, parted, sheet, loops);
+    let first = (parted.n_old + parted.nodes.len()) as u32;
+    let mut capper = Capper {
+        vertices,
+        faces,
+        parted,
+        sheet,
+        options,
+        edges: FxHashSet::default(),
+        facets: FxHashSet::default(),
+        first,
+        caps: Caps::default(),
+    };
+    capper.reserve();
+    let report = &mut tally.report;
+    report.uncapped = found.uncapped;
+    report.caps = found.regions.len();
+    let mut polygons = vec![];
+    for region in found.regions {
+        if let Region::Sheet { outline, holes } = &region
+            && holes.is_empty()
+        {
+            if options.smooth != Smooth::Flat {
+                if capper.bulge(outline, progress.part(0.0, 0.0))? {
+                    continue;
+                }
+                report.repeated += 1;
+            }
+            polygons.push(outline.clone());
+            continue;
+        }
+        report.rings += 1;
+        let alone: Vec<Vec<Spot>> = match &region {
+            Region::Sheet { outline, holes } => std::iter::once(outline).chain(holes).cloned().collect(),
+            Region::Tube { .. } => vec![],
+        };
+        let mut bridges = Bridges {
+            taken: &capper.edges,
+            first: capper.first + capper.caps.vertices.len() as u32,
+            spots: vec![],
+        };
+        let opened = bridges.open(region, sheet.width());
+        let spots = bridges.spots;
+        match opened {
+            Some(opened) => {
+                let new = spots.iter().map(|&at| capper.node(at)).collect::<Vec<_>>();
+                capper.caps.vertices.extend(new);
+                polygons.extend(opened);
+            }
+            None if alone.is_empty() => {
+                return Err(Error::CutFailed {
+                    reason: "the rim of a tunnel is too rough to be capped",
+                    at: sheet.lift(0.0, 0.0).into(),
+                });
+            }
+            None => {
+                // Loops that are not apart: each is closed by itself.
+                report.repeated += 1;
+                polygons.extend(alone);
+            }
+        }
+    }
+    // Reports come from the calling thread alone, between batches.
+    for (k, batch) in polygons.chunks(BATCH).enumerate() {
+        progress.report((k * BATCH) as f64 / polygons.len() as f64)?;
+        // With a single one, there is somebody to ask whether to go on.
+        let plans: Vec<_> = match batch {
+            [polygon] => vec![capper.plan(polygon, progress.part(0.0, 0.0))],
+            _ => batch.par_iter().map(|polygon| capper.plan(polygon, Progress::NONE)).collect(),
+        };
+        for (polygon, plan) in batch.iter().zip(plans) {
+            let mut plan = plan?;
+            if capper.repeats(polygon, &plan) {
+                plan = capper.plan(polygon, Progress::NONE)?;
+            }
+            report.folded += usize::from(plan.folded);
+            capper.roll_up(polygon, &plan, found.inverted);
+        }
+    }
+    capper.name_sources(&polygons);
+    capper.prove()?;
+    capper.measure(tally);
+    Ok(capper.caps)
+}
+
+impl Capper<'_> {
+    /// Notes which edges and triangles between vertices of the cut exist.
+    fn reserve(&mut self) {
+        let on_cut = self.parted.on_cut();
+        let mut note = |corners: &[u32]| {
+            let n = corners.len();
+            let on = corners.iter().filter(|&&v| on_cut[v as usize]).count();
+            if on < 2 {
+                return;
+            }
+            for k in 0..n {
+                let (a, b) = (corners[k], corners[(k + 1) % n]);
+                if on_cut[a as usize] && on_cut[b as usize] {
+                    self.edges.insert((a.min(b), a.max(b)));
+                }
+            }
+            if let [a, b, c] = *corners
+                && on == 3
+            {
+                let mut facet = [a, b, c];
+                facet.sort_unstable();
+                self.facets.insert(facet);
+            }
+        };
+        for part in &self.parted.parts {
+            note(&part.corners);
+        }
+        for f in (0..self.faces.len()).filter(|&f| !self.parted.divided[f]) {
+            note(self.faces.face(f));
+        }
+    }
+
+    /// A vertex of the sheet; its source follows.
+    fn node(&self, at: DVec2) -> Node {
+        Node { position: self.sheet.lift(at.x, at.y), source: [u32::MAX; 3], weights: [1.0, 0.0, 0.0] }
+    }
+
+    /// Fills a polygon of the unrolled sheet.
+    fn plan(&self, polygon: &[Spot], progress: Progress<'_>) -> Result<FlatFill> {
+        let n = polygon.len();
+        let roll = Roll::new(self.sheet, polygon);
+        let flat = polygon.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
+        let key = |a: u32, b: u32| (a.min(b), a.max(b));
+        let taken = |i: usize, j: usize| self.edges.contains(&key(polygon[i].node, polygon[j].node));
+        let mut single = true;
+        if let [a, b, c] = polygon {
+            let mut facet = [a.node, b.node, c.node];
+            facet.sort_unstable();
+            single = !self.facets.contains(&facet);
+        }
+        let mut options = FlatOptions { single, ..FlatOptions::default() };
+        if n > LARGE {
+            (options.angles, options.placed) = (3, 1);
+        }
+        fill_flat(&flat, &vec![4; n], &taken, &options, progress)
+    }
+
+    /// True if a patch has an edge across its polygon that exists by now.
+    fn repeats(&self, polygon: &[Spot], patch: &FlatFill) -> bool {
+        let n = polygon.len();
+        patch.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]).any(|[a, b]| {
+            let (i, j) = (a.min(b) as usize, a.max(b) as usize);
+            let (Some(p), Some(q)) = (polygon.get(i), polygon.get(j)) else { return false };
+            j - i > 1 && j - i < n - 1 && self.edges.contains(&(p.node.min(q.node), p.node.max(q.node)))
+        })
+    }
+
+    /// Makes vertices and triangles of a patch.
+    fn roll_up(&mut self, polygon: &[Spot], patch: &FlatFill, inverted: bool) {
+        let n = polygon.len();
+        let roll = Roll::new(self.sheet, polygon);
+        let key = |a: u32, b: u32| (a.min(b), a.max(b));
+        let base = self.first + self.caps.vertices.len() as u32;
+        let name = |v: u32| polygon.get(v as usize).map_or(base + v.wrapping_sub(n as u32), |s| s.node);
+        let flat = polygon.iter().map(|s| roll.flatten(s.at).to_array());
+        let tree =
+            RTree::bulk_load(flat.enumerate().map(|(k, p)| GeomWithData::new(p, k)).collect::<Vec<_>>());
+        for &p in &patch.interior {
+            let at = roll.unflatten(p);
+            let mut node = self.node(at);
+            if let Some(near) = tree.nearest_neighbor(&p.to_array()) {
+                let from = self.source(polygon[near.data].node);
+                (node.source, node.weights) = (from.source, from.weights);
+            }
+            self.caps.vertices.push(node);
+        }
+        for t in &patch.triangles {
+            let mut t = t.map(name);
+            for k in 0..3 {
+                self.edges.insert(key(t[k], t[(k + 1) % 3]));
+            }
+            if inverted {
+                t.swap(1, 2);
+            }
+            self.caps.triangles.push(t);
+        }
+    }
+
+    /// The vertex of this number as a combination of old ones.
+    fn source(&self, v: u32) -> Node {
+        match v.checked_sub(self.first) {
+            Some(k) => self.caps.vertices[k as usize],
+            None => self.parted.source(self.vertices, v),
+        }
+    }
+
+    /// Gives vertices of bridges, and those next to them, the sources of the nearest vertices of the cut.
+    fn name_sources(&mut self, polygons: &[Vec<Spot>]) {
+        let known = polygons.iter().flatten().filter(|s| s.node < self.first);
+        let place = |s: &Spot| {
+            let p = self.parted.position(self.vertices, s.node);
+            GeomWithData::new(p.to_array(), s.node)
+        };
+        let tree = RTree::bulk_load(known.map(place).collect::<Vec<_>>());
+        for node in &mut self.caps.vertices {
+            if node.source[0] == u32::MAX
+                && let Some(near) = tree.nearest_neighbor(&node.position.to_array())
+            {
+                let from = self.parted.source(self.vertices, near.data);
+                (node.source, node.weights) = (from.source, from.weights);
+            }
+        }
+    }
+
+    /// Fills a loop so that it continues the piece around it. False if that repeats an edge of the other piece.
+    fn bulge(&mut self, outline: &[Spot], progress: Progress<'_>) -> Result<bool> {
+        let left = self.options.keep != Keep::Right;
+        let n = outline.len();
+        let mut positions = self.vertices.to_vec();
+        positions.extend(self.parted.nodes.iter().map(|node| node.position));
+        let mut around = vec![];
+        for f in (0..self.faces.len()).filter(|&f| !self.parted.divided[f] && self.parted.left[f] == left) {
+            triangles(self.vertices, self.faces.face(f), |t| around.push(t));
+        }
+        around.extend(self.parted.parts.iter().filter(|p| p.left == left).map(|p| p.corners));
+        let nodes = outline.iter().map(|s| s.node).collect::<Vec<_>>();
+        let options = FillOptions { smooth: self.options.smooth, ..FillOptions::default() };
+        let fill = fill_hole(&positions, &around, &nodes, &options, progress)?;
+        let place: FxHashMap<u32, usize> = nodes.iter().enumerate().map(|(k, &v)| (v, k)).collect();
+        let repeats = |t: &[u32; 3]| {
+            (0..3).any(|k| {
+                let (a, b) = (t[k], t[(k + 1) % 3]);
+                let (Some(&i), Some(&j)) = (place.get(&a), place.get(&b)) else { return false };
+                (i + 1) % n != j && (j + 1) % n != i && self.edges.contains(&(a.min(b), a.max(b)))
+            })
+        };
+        if fill.triangles.iter().any(repeats) {
+            return Ok(false);
+        }
+        let base = self.first + self.caps.vertices.len() as u32;
+        let old = positions.len() as u32;
+        let known = nodes.iter().map(|&v| GeomWithData::new(positions[v as usize].to_array(), v));
+        let tree = RTree::bulk_load(known.collect::<Vec<_>>());
+        for &position in &fill.vertices {
+            let near = tree.nearest_neighbor(&position.to_array()).map_or(nodes[0], |near| near.data);
+            self.caps.vertices.push(Node { position, ..self.parted.source(self.vertices, near) });
+        }
+        for t in &fill.triangles {
+            let mut t = t.map(|v| if v < old { v } else { base + v - old });
+            // Wound for the piece that it was made for.
+            if left {
+                t.swap(1, 2);
+            }
+            for k in 0..3 {
+                let (a, b) = (t[k], t[(k + 1) % 3]);
+                self.edges.insert((a.min(b), a.max(b)));
+            }
+            self.caps.triangles.push(t);
+        }
+        Ok(true)
+    }
+
+    /// Refuses caps that do not close what they should: each edge has two cap triangles, or one and is of the
+    /// cut.
+    fn prove(&self) -> Result<()> {
+        let mut found = FxHashSet::default();
+        let edges = || self.caps.triangles.iter().flat_map(|t| (0..3).map(|k| (t[k], t[(k + 1) % 3])));
+        let single = edges().all(|e| found.insert(e));
+        let is_cut = |a: u32, b: u32| self.parted.cut.contains_key(&(a.min(b), a.max(b)));
+        let open = edges().find(|&(a, b)| found.contains(&(b, a)) == is_cut(a, b));
+        match open {
+            None if single => Ok(()),
+            other => {
+                let v = other.map_or(0, |e| e.0);
+                let at = if v < self.first { self.parted.position(self.vertices, v) } else { DVec3::ZERO };
+                Err(Error::CutFailed { reason: "cut lines touch each other", at: at.into() })
+            }
+        }
+    }
+
+    fn measure(&self, tally: &mut Tally) {
+        let report = &mut tally.report;
+        let position = |v: u32| match v.checked_sub(self.first) {
+            Some(k) => self.caps.vertices[k as usize].position,
+            None => self.parted.position(self.vertices, v),
+        };
+        let mut valence = vec![0u32; self.caps.vertices.len()];
+        let mut ratios = 0.0;
+        for t in &self.caps.triangles {
+            let (angle, ratio) = shape(t.map(position));
+            report.cap_min_angle = report.cap_min_angle.min(angle);
+            ratios += ratio;
+            for v in t.iter().filter_map(|v| v.checked_sub(self.first)) {
+                valence[v as usize] += 1;
+            }
+        }
+        report.cap_triangles = self.caps.triangles.len();
+        report.cap_vertices = valence.len();
+        report.cap_irregular = valence.iter().filter(|&&v| v != 6).count();
+        if !self.caps.triangles.is_empty() {
+            report.cap_radius_ratio = ratios / self.caps.triangles.len() as f64;
+        }
+    }
+}
+
+/// Smallest angle of a triangle, and twice its inscribed by its circumscribed radius.
+pub(super) fn shape([a, b, c]: [DVec3; 3]) -> (f64, f64) {
+    let angle = |p: DVec3, q: DVec3| p.cross(q).length().atan2(p.dot(q));
+    let least = angle(b - a, c - a).min(angle(c - b, a - b)).min(angle(a - c, b - c));
+    let [x, y, z] = [b.distance(c), c.distance(a), a.distance(b)];
+    let double = (b - a).cross(c - a).length();
+    let product = x * y * z * (x + y + z);
+    (least, if product > 0.0 { 4.0 * double * double / product } else { 0.0 })
+}
+
+/// The unrolled sheet around a region: places and heights as points of the plane, without distortion.
+struct Roll {
+    /// For a sheet through an eye: the place in the middle.
+    middle: Option<f64>,
+}
+
+impl Roll {
+    fn new(sheet: &Sheet, polygon: &[Spot]) -> Self {
+        let low = polygon.iter().map(|s| s.at.x).fold(f64::INFINITY, f64::min);
+        let high = polygon.iter().map(|s| s.at.x).fold(f64::NEG_INFINITY, f64::max);
+        Roll { middle: sheet.view.central.then_some(0.5 * (low + high)) }
+    }
+
+    fn flatten(&self, at: DVec2) -> DVec2 {
+        match self.middle {
+            None => at,
+            Some(middle) => at.y * DVec2::new((at.x - middle).sin(), (at.x - middle).cos()),
+        }
+    }
+
+    fn unflatten(&self, p: DVec2) -> DVec2 {
+        match self.middle {
+            None => p,
+            Some(middle) => DVec2::new(middle + p.x.atan2(p.y), p.length()),
+        }
+    }
+}

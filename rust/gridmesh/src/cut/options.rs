@@ -1,0 +1,79 @@
+//! What can be chosen about a cut.
+
+use glam::DVec3;
+
+use crate::error::{Error, Result};
+use crate::fill::Smooth;
+
+/// Which pieces to return.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Keep {
+    /// The one on the left of the stroke; of a closed stroke, what is inside.
+    Left,
+    /// The one on the right of the stroke; of a closed stroke, what is outside.
+    Right,
+    /// Both.
+    #[default]
+    Both,
+}
+
+impl Keep {
+    /// True if `side`, which is not `Both`, is among them.
+    pub fn has(self, side: Keep) -> bool {
+        self == Keep::Both || self == side
+    }
+}
+
+/// How the stroke becomes a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sweep {
+    /// Along this direction, which points away from the viewer; any length but zero.
+    Along(DVec3),
+    /// Through this point, the viewer's eye, to which the whole mesh must lie in front.
+    Through(DVec3),
+}
+
+/// Options of [`cut`](super::cut).
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutOptions {
+    /// How the stroke becomes a surface.
+    pub sweep: Sweep,
+    /// Which pieces to return.
+    pub keep: Keep,
+    /// Close the pieces.
+    pub cap: bool,
+    /// Length of the edges along the cut; `None`: as the mesh's edges divide it.
+    pub edge_length: Option<f64>,
+    /// Width of what is taken away between the pieces: half of it on either side of the stroke. With an
+    /// eye, at the mean distance of the stroke.
+    pub gap: f64,
+    /// How caps continue the surface.
+    pub smooth: Smooth,
+}
+
+impl CutOptions {
+    /// Both pieces, capped on the swept surface.
+    pub fn new(sweep: Sweep) -> Self {
+        CutOptions { sweep, keep: Keep::Both, cap: true, edge_length: None, gap: 0.0, smooth: Smooth::Flat }
+    }
+
+    pub(super) fn check(&self) -> Result<()> {
+        let invalid = |name, value: String, allowed| Err(Error::InvalidOption { name, value, allowed });
+        match self.sweep {
+            Sweep::Along(d) if !(d.is_finite() && d.length_squared() > 1e-200) => {
+                return invalid("direction", format!("{d}"), "three finite numbers, not all zero");
+            }
+            Sweep::Through(eye) if !eye.is_finite() => {
+                return invalid("eye", format!("{eye}"), "three finite numbers");
+            }
+            _ => {}
+        }
+        if let Some(length) = self.edge_length.filter(|l| !(l.is_finite() && *l > 0.0)) {
+            return invalid("edge_length", length.to_string(), "a finite number above 0, or None");
+        }
+        if !(self.gap.is_finite() && self.gap >= 0.0) {
+            return invalid("gap", self.gap.to_string(), "a finite number, 0 or more");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,381 @@
+//! The faces along the cut as a mesh that can be edited: split, collapse, flip.
+//!
+//! Edges of the cut stay edges of the cut. Every triangle remembers the old triangle that it lies on; no edit is
+//! made that leaves the old triangles around by more than the tolerance, or turns a triangle away from its own.
+
+use glam::DVec3;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::cap::shape;
+use super::cross::Node;
+use super::split::{Part, Parted};
+
+pub(super) struct Strip<'a> {
+    pub vertices: &'a [DVec3],
+    pub parted: &'a mut Parted,
+    /// Triangles; those that are gone are `None`.
+    pub parts: Vec<Option<Part>>,
+    /// Triangles at each vertex.
+    around: FxHashMap<u32, Vec<u32>>,
+    /// Vertices on the border of the strip: they stay, and so do the edges between them.
+    border: FxHashSet<u32>,
+    /// Faces whose triangles were changed.
+    pub altered: FxHashSet<u32>,
+    /// Triangles changed since somebody took the list.
+    pub fresh: Vec<u32>,
+    /// How far a triangle may be off the old ones.
+    pub tolerance: f64,
+    /// The cut's edges, by vertex.
+    line: FxHashMap<u32, Vec<u32>>,
+}
+
+/// How much of a right way up is left to a triangle.
+const UPRIGHT: f64 = 0.5;
+
+impl<'a> Strip<'a> {
+    pub fn new(vertices: &'a [DVec3], parted: &'a mut Parted, parts: Vec<Part>, tolerance: f64) -> Self {
+        let mut around: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+        let mut sides: FxHashMap<(u32, u32), i32> = FxHashMap::default();
+        for (i, part) in parts.iter().enumerate() {
+            for k in 0..3 {
+                let (a, b) = (part.corners[k], part.corners[(k + 1) % 3]);
+                around.entry(a).or_default().push(i as u32);
+                *sides.entry((a.min(b), a.max(b))).or_default() += 1;
+            }
+        }
+        let open = sides.iter().filter(|(_, count)| **count != 2);
+        let border = open.flat_map(|(&(a, b), _)| [a, b]).collect();
+        let mut line: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+        let mut cut = parted.cut.keys().copied().collect::<Vec<_>>();
+        cut.sort_unstable();
+        for (a, b) in cut {
+            line.entry(a).or_default().push(b);
+            line.entry(b).or_default().push(a);
+        }
+        let parts = parts.into_iter().map(Some).collect();
+        Strip {
+            vertices,
+            parted,
+            parts,
+            around,
+            border,
+            altered: FxHashSet::default(),
+            fresh: vec![],
+            tolerance,
+            line,
+        }
+    }
+
+    pub fn position(&self, v: u32) -> DVec3 {
+        self.parted.position(self.vertices, v)
+    }
+
+    /// Neighbours along the cut.
+    pub fn on_line(&self, v: u32) -> &[u32] {
+        self.line.get(&v).map_or(&[], Vec::as_slice)
+    }
+
+    pub fn is_border(&self, v: u32) -> bool {
+        self.border.contains(&v)
+    }
+
+    fn is_cut(&self, a: u32, b: u32) -> bool {
+        self.parted.cut.contains_key(&(a.min(b), a.max(b)))
+    }
+
+    pub fn triangles_at(&self, v: u32) -> &[u32] {
+        self.around.get(&v).map_or(&[], Vec::as_slice)
+    }
+
+    pub fn part(&self, t: u32) -> Option<&Part> {
+        self.parts[t as usize].as_ref()
+    }
+
+    pub fn min_angle(&self, corners: [u32; 3]) -> f64 {
+        shape(corners.map(|v| self.position(v))).0
+    }
+
+    /// The old surface's normal at a vertex: the mean over the triangles there.
+    pub fn normal(&self, v: u32) -> DVec3 {
+        let own = self.triangles_at(v).iter().filter_map(|&t| self.part(t)).map(|part| {
+            let [a, b, c] = self.home(part.home);
+            (b - a).cross(c - a).normalize_or_zero()
+        });
+        own.sum::<DVec3>().normalize_or_zero()
+    }
+
+    fn neighbours(&self, v: u32) -> Vec<u32> {
+        let mut found = vec![];
+        for part in self.triangles_at(v).iter().filter_map(|&t| self.part(t)) {
+            found.extend(part.corners.into_iter().filter(|&w| w != v));
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    fn with_edge(&self, a: u32, b: u32) -> Vec<u32> {
+        let has = |t: &&u32| self.part(**t).is_some_and(|p| p.corners.contains(&b));
+        self.triangles_at(a).iter().filter(has).copied().collect()
+    }
+
+    fn home(&self, home: [u32; 3]) -> [DVec3; 3] {
+        home.map(|v| self.vertices[v as usize])
+    }
+
+    /// True if a triangle has an area and faces as its old one does.
+    fn is_upright(&self, corners: [u32; 3], home: [u32; 3]) -> bool {
+        let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
+        let p = corners.map(|v| self.position(v));
+        let (own, old) = (normal(p), normal(self.home(home)));
+        let longest =
+            p[0].distance_squared(p[1]).max(p[1].distance_squared(p[2])).max(p[2].distance_squared(p[0]));
+        own.length() > 1e-6 * longest && own.dot(old) > UPRIGHT * own.length() * old.length()
+    }
+
+    /// The old triangles around some vertices, each once.
+    fn homes(&self, around: &[u32]) -> Vec<(u32, [u32; 3])> {
+        let parts = around.iter().flat_map(|&v| self.triangles_at(v)).filter_map(|&t| self.part(t));
+        let mut homes = parts.map(|p| (p.face, p.home)).collect::<Vec<_>>();
+        homes.sort_unstable();
+        homes.dedup();
+        homes
+    }
+
+    /// Distance of a point from the nearest of these old triangles, and which it is.
+    fn nearest(&self, p: DVec3, homes: &[(u32, [u32; 3])]) -> (f64, usize) {
+        let off = homes.iter().map(|h| closest(p, self.home(h.1)).0).enumerate();
+        off.map(|(k, d)| (d, k)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, 0))
+    }
+
+    /// True if the triangle stays near the old ones.
+    fn is_near(&self, corners: [u32; 3], homes: &[(u32, [u32; 3])]) -> bool {
+        let [a, b, c] = corners.map(|v| self.position(v));
+        let samples = [(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+        samples.iter().all(|&p| self.nearest(p, homes).0 <= self.tolerance)
+    }
+
+    fn replace(&mut self, t: u32, part: Option<Part>) {
+        if let Some(old) = self.parts[t as usize].take() {
+            self.altered.insert(old.face);
+            for v in old.corners {
+                if let Some(list) = self.around.get_mut(&v) {
+                    list.retain(|&x| x != t);
+                }
+            }
+        }
+        if let Some(part) = part {
+            for v in part.corners {
+                self.around.entry(v).or_default().push(t);
+            }
+            self.parts[t as usize] = Some(part);
+            self.fresh.push(t);
+        }
+    }
+
+    fn add(&mut self, part: Part) {
+        self.parts.push(None);
+        self.replace(self.parts.len() as u32 - 1, Some(part));
+    }
+
+    /// Puts a vertex on the edge from `a` to `b`, at the share `t`. `None` where the strip ends.
+    pub fn split(&mut self, a: u32, b: u32, t: f64) -> Option<u32> {
+        let both = self.with_edge(a, b);
+        let first = *self.part(*both.first()?)?;
+        let cut = self.parted.cut.get(&(a.min(b), a.max(b))).copied();
+        if both.len() != 2 {
+            return None;
+        }
+        let position = self.position(a).lerp(self.position(b), t);
+        let homes = self.homes(&[a, b]);
+        let (_, home) =
+            homes.get(self.nearest(position, &homes).1).copied().unwrap_or((first.face, first.home));
+        let (_, weights) = closest(position, self.home(home));
+        let m = (self.parted.n_old + self.parted.nodes.len()) as u32;
+        self.parted.nodes.push(Node { position, source: home, weights });
+        for t in both {
+            let Some(part) = self.part(t).copied() else { continue };
+            let with = |from: u32| part.corners.map(|v| if v == from { m } else { v });
+            let halves = [with(b), with(a)];
+            self.replace(t, Some(Part { corners: halves[0], ..part }));
+            self.add(Part { corners: halves[1], ..part });
+        }
+        if let Some([x, y]) = cut {
+            let (low, high) = (a.min(b), a.max(b));
+            let place = if a < b { x + t * (y - x) } else { y + t * (x - y) };
+            self.parted.cut.remove(&(low, high));
+            self.parted.cut.insert((low, m), [x, place]);
+            self.parted.cut.insert((high, m), [y, place]);
+            for (v, old) in [(a, b), (b, a)] {
+                if let Some(list) = self.line.get_mut(&v) {
+                    list.iter_mut().filter(|x| **x == old).for_each(|x| *x = m);
+                }
+            }
+            self.line.insert(m, vec![a, b]);
+        }
+        Some(m)
+    }
+
+    /// Moves `u` into its neighbour `v`, if the triangles around allow it; they must then have angles of `least`.
+    pub fn collapse(&mut self, u: u32, v: u32, least: f64) -> bool {
+        let line = self.on_line(u).to_vec();
+        if self.is_border(u) || (!line.is_empty() && (line.len() != 2 || !self.is_cut(u, v))) {
+            return false;
+        }
+        let shared = self.with_edge(u, v);
+        if shared.len() != 2 {
+            return false;
+        }
+        let (near_u, near_v) = (self.neighbours(u), self.neighbours(v));
+        let common = near_u.iter().filter(|w| near_v.contains(w)).count();
+        let joins = |w: &u32| *w != v && !near_v.contains(w) && self.is_border(*w) && self.is_border(v);
+        if common != 2 || near_u.iter().any(joins) {
+            return false;
+        }
+        let other = line.iter().copied().find(|&w| w != v);
+        if other.is_some_and(|w| near_v.contains(&w)) {
+            return false;
+        }
+        let all = self.triangles_at(u).to_vec();
+        let homes = self.homes(&near_u);
+        let mut new = vec![];
+        for &t in all.iter().filter(|t| !shared.contains(t)) {
+            let Some(part) = self.part(t) else { return false };
+            let corners = part.corners.map(|w| if w == u { v } else { w });
+            let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
+            let (_, k) = self.nearest(centre, &homes);
+            let part = Part { corners, face: homes[k].0, home: homes[k].1, ..*part };
+            if self.min_angle(corners) < least
+                || !self.is_upright(corners, part.home)
+                || !self.is_near(corners, &homes)
+            {
+                return false;
+            }
+            new.push((t, part));
+        }
+        let p = self.position(u);
+        let off = new.iter().map(|(_, n)| closest(p, n.corners.map(|w| self.position(w))).0);
+        if off.fold(f64::INFINITY, f64::min) > self.tolerance {
+            return false;
+        }
+        for t in shared {
+            self.replace(t, None);
+        }
+        for (t, part) in new {
+            self.replace(t, Some(part));
+        }
+        self.around.remove(&u);
+        if let Some(w) = other {
+            let place = |strip: &Self, from: u32, to: u32| {
+                let [x, y] = strip.parted.cut.get(&(from.min(to), from.max(to))).copied().unwrap_or_default();
+                if from < to { [x, y] } else { [y, x] }
+            };
+            let ([at_w, to_u], [from_u, to_v]) = (place(self, w, u), place(self, u, v));
+            let at_v = to_u + (to_v - from_u);
+            self.parted.cut.remove(&(u.min(v), u.max(v)));
+            self.parted.cut.remove(&(u.min(w), u.max(w)));
+            self.parted.cut.insert((v.min(w), v.max(w)), if v < w { [at_v, at_w] } else { [at_w, at_v] });
+            for (x, to) in [(v, w), (w, v)] {
+                if let Some(list) = self.line.get_mut(&x) {
+                    list.iter_mut().filter(|y| **y == u).for_each(|y| *y = to);
+                }
+            }
+            self.line.remove(&u);
+        }
+        true
+    }
+
+    /// Turns the edge from `a` to `b` if that makes the smallest angle of its triangles larger.
+    pub fn flip(&mut self, a: u32, b: u32) -> bool {
+        if self.is_cut(a, b) {
+            return false;
+        }
+        let [s, t] = self.with_edge(a, b)[..] else { return false };
+        let (Some(&p), Some(&q)) = (self.part(s), self.part(t)) else { return false };
+        let apex = |part: &Part| part.corners.into_iter().find(|&v| v != a && v != b);
+        let (Some(c), Some(d)) = (apex(&p), apex(&q)) else { return false };
+        if c == d
+            || p.left != q.left
+            || (self.is_border(c) && self.is_border(d))
+            || self.neighbours(c).contains(&d)
+        {
+            return false;
+        }
+        let (x, y) =
+            (p.corners.map(|v| if v == b { d } else { v }), p.corners.map(|v| if v == a { d } else { v }));
+        let before = self.min_angle(p.corners).min(self.min_angle(q.corners));
+        if self.min_angle(x).min(self.min_angle(y)) <= before + 1e-9 {
+            return false;
+        }
+        let homes = self.homes(&[a, b, c, d]);
+        let mut new = vec![];
+        for corners in [x, y] {
+            let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
+            let (_, k) = self.nearest(centre, &homes);
+            if !self.is_upright(corners, homes[k].1) || !self.is_near(corners, &homes) {
+                return false;
+            }
+            new.push(Part { corners, face: homes[k].0, home: homes[k].1, left: p.left });
+        }
+        self.replace(s, None);
+        self.replace(t, Some(new[1]));
+        self.replace(s, Some(new[0]));
+        self.altered.extend([p.face, q.face]);
+        true
+    }
+
+    /// Moves a new vertex inside one plane to the middle of its neighbours, if that makes its smallest angle
+    /// larger.
+    pub fn centre(&mut self, v: u32) -> bool {
+        let Some(k) = (v as usize).checked_sub(self.parted.n_old) else { return false };
+        if self.is_border(v) || !self.on_line(v).is_empty() {
+            return false;
+        }
+        let around = self.triangles_at(v).to_vec();
+        let parts = around.iter().filter_map(|&t| self.part(t).copied()).collect::<Vec<_>>();
+        let near = self.neighbours(v);
+        let least =
+            |strip: &Self| parts.iter().map(|p| strip.min_angle(p.corners)).fold(f64::INFINITY, f64::min);
+        let (before, old) = (least(self), self.parted.nodes[k]);
+        let homes = self.homes(&near);
+        let middle = near.iter().map(|&w| self.position(w)).sum::<DVec3>() / near.len().max(1) as f64;
+        // Back onto the surface.
+        let (_, h) = self.nearest(middle, &homes);
+        let Some(&(_, home)) = homes.get(h) else { return false };
+        let (_, weights) = closest(middle, self.home(home));
+        self.parted.nodes[k] = Node::within(self.vertices, home, weights);
+        let fits = least(self) > before
+            && parts.iter().all(|p| self.is_upright(p.corners, p.home) && self.is_near(p.corners, &homes));
+        if !fits {
+            self.parted.nodes[k] = old;
+        }
+        fits
+    }
+}
+
+/// Distance of a point from a triangle, and the weights of its corners there.
+pub(super) fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, [f64; 3]) {
+    let normal = (b - a).cross(c - a);
+    let squared = normal.length_squared();
+    if squared > 0.0 {
+        let inside = [
+            (c - b).cross(p - b).dot(normal),
+            (a - c).cross(p - c).dot(normal),
+            (b - a).cross(p - a).dot(normal),
+        ];
+        if inside.iter().all(|&x| x >= 0.0) {
+            return ((p - a).dot(normal).abs() / squared.sqrt(), inside.map(|x| x / squared));
+        }
+    }
+    let corners = [a, b, c];
+    let side = |k: usize| {
+        let (from, to) = (corners[k], corners[(k + 1) % 3]);
+        let along = to - from;
+        let t = ((p - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let mut weights = [0.0; 3];
+        (weights[k], weights[(k + 1) % 3]) = (1.0 - t, t);
+        ((from + t * along).distance(p), weights)
+    };
+    let sides = [side(0), side(1), side(2)];
+    sides.into_iter().min_by(|x, y| x.0.total_cmp(&y.0)).unwrap_or((f64::INFINITY, [1.0, 0.0, 0.0]))
+}

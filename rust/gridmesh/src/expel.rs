@@ -1,0 +1,104 @@
+//! Mesh vertices that came to lie in a bridged inlet are moved out of it.
+
+use glam::DVec2;
+
+use crate::pockets::{Fans, Pockets, depth_in};
+use crate::segments::nearest_on_segment;
+
+/// No triangle is bent below this angle, unless it was so before: 10 degrees.
+const LEAST_ANGLE: f64 = 10.0 * std::f64::consts::PI / 180.0;
+
+/// How far beyond the wall of its inlet a vertex may go, in edges.
+const BEYOND: [f64; 7] = [0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.6];
+
+/// Moves the vertices that lie in inlets to the inside of the nearest walls, to where their triangles
+/// are best; one that has no good place there stays.
+///
+/// `limit` as for [`pockets`](crate::pockets::pockets), `h` the length of an edge. True if any vertex
+/// moved.
+pub(crate) fn expel(
+    pockets: &Pockets,
+    vertices: &mut [DVec2],
+    triangles: &[[u32; 3]],
+    limit: f64,
+    h: f64,
+) -> bool {
+    let fans = Fans::new(vertices.len(), triangles);
+    let mut moved = false;
+    for &(v, inlet) in &pockets.inside {
+        let at = vertices[v];
+        let cotangent = |p: DVec2| {
+            let with = |t: [u32; 3]| sharpness([p, vertices[t[1] as usize], vertices[t[2] as usize]]);
+            fans.at(v).map(with).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let is_out = |p: DVec2| {
+            let depth = |pocket: &Vec<DVec2>| depth_in(pocket, p).unwrap_or(0.0);
+            pockets.inlets.iter().all(|pocket| depth(pocket) <= limit)
+        };
+        let walls = pockets.inlets[inlet]
+            .windows(2)
+            .map(|wall| wall[0].lerp(wall[1], nearest_on_segment(at, wall[0], wall[1]).0));
+        let places = walls.flat_map(|wall| {
+            let ahead = (wall - at).normalize_or_zero();
+            BEYOND.map(|beyond| wall + beyond * h * ahead)
+        });
+        let best = places
+            .map(|place| (cotangent(place), place))
+            .filter(|&(cotangent, place)| cotangent.is_finite() && is_out(place))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((worst, place)) = best
+            && worst <= cotangent(at).max(1.0 / LEAST_ANGLE.tan())
+        {
+            vertices[v] = place;
+            moved = true;
+        }
+    }
+    moved
+}
+
+/// Cotangent of the least angle of a triangle; infinite if it is not counter-clockwise.
+fn sharpness(p: [DVec2; 3]) -> f64 {
+    let doubled = (p[1] - p[0]).perp_dot(p[2] - p[0]);
+    if doubled <= 0.0 {
+        return f64::INFINITY;
+    }
+    let cotangent = |i: usize| (p[(i + 1) % 3] - p[i]).dot(p[(i + 2) % 3] - p[i]) / doubled;
+    cotangent(0).max(cotangent(1)).max(cotangent(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MIDDLE: DVec2 = DVec2::new(30.0, 50.0);
+
+    #[test]
+    fn a_vertex_leaves_the_inlet_and_its_triangles_stay_in_shape() {
+        let rim: Vec<DVec2> =
+            (0..6).map(|i| MIDDLE + DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
+        let mut vertices = rim.clone();
+        vertices.push(MIDDLE);
+        let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
+        let inlet = vec![rim[1], MIDDLE - DVec2::new(0.0, 0.2), rim[2]];
+        let pockets = Pockets { inlets: vec![inlet.clone()], occupied: vec![], inside: vec![(6, 0)] };
+        assert!(depth_in(&inlet, vertices[6]).is_some_and(|depth| depth > 0.05));
+        assert!(expel(&pockets, &mut vertices, &triangles, 0.05, 1.0));
+        assert!(depth_in(&inlet, vertices[6]).is_none_or(|depth| depth <= 0.05), "{}", vertices[6]);
+        for t in triangles {
+            assert!(sharpness(t.map(|v| vertices[v as usize])) < 1.0 / LEAST_ANGLE.tan());
+        }
+    }
+
+    #[test]
+    fn a_vertex_without_a_good_place_stays() {
+        let rim: Vec<DVec2> =
+            (0..6).map(|i| MIDDLE + DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
+        let mut vertices = rim.clone();
+        vertices.push(MIDDLE);
+        let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
+        let inlet = vec![rim[1], MIDDLE + DVec2::new(2.0, -3.0), MIDDLE - DVec2::new(2.0, 3.0), rim[2]];
+        let pockets = Pockets { inlets: vec![inlet], occupied: vec![], inside: vec![(6, 0)] };
+        assert!(!expel(&pockets, &mut vertices, &triangles, 0.05, 1.0));
+        assert_eq!(vertices[6], MIDDLE);
+    }
+}

@@ -1,0 +1,80 @@
+//! Which lattices are tried for a drawing.
+
+use glam::DVec2;
+
+use super::{Asked, Effort, Job};
+use crate::curve::ClosedCurve;
+use crate::lattice::{Lattice, ROW_HEIGHT};
+use crate::mirror;
+use crate::options::BoundaryMethod;
+use crate::orient::predicted_angles;
+
+/// Lattice placements tried before the drawing is called too coarse for its edge length: shifts of
+/// the origin in edges.
+const SHIFTS: [[f64; 2]; 6] =
+    [[0.0, 0.0], [0.5, 0.29], [0.5, -0.29], [0.25, 0.43], [0.25, -0.14], [0.75, 0.14]];
+
+/// Of the lattices laid on a mirror axis, so many are tried first.
+const MIRROR_CANDIDATES: usize = 4;
+
+impl Job<'_> {
+    /// The lattices to try: angles, and shifts of the origin in edges.
+    pub(super) fn placements_to_try(&self, asked: Asked, effort: Effort) -> Vec<(f64, DVec2)> {
+        if let Some(symmetry) = &self.symmetry {
+            let mut lattices = mirror::placements(symmetry, self.options.angle);
+            lattices.truncate(if effort == Effort::Full { MIRROR_CANDIDATES } else { MIRROR_CANDIDATES / 2 });
+            return lattices;
+        }
+        self.angles(asked, effort).into_iter().map(|angle| (angle, DVec2::ZERO)).collect()
+    }
+
+    /// The lattices to try where those do not do.
+    pub(super) fn shifts(&self, angle: f64) -> Vec<(f64, DVec2)> {
+        match &self.symmetry {
+            Some(symmetry) => {
+                mirror::placements(symmetry, self.options.angle).into_iter().skip(MIRROR_CANDIDATES).collect()
+            }
+            None if self.options.origin.is_some() => Vec::new(),
+            None => SHIFTS[1..].iter().map(|&shift| (angle, DVec2::from_array(shift))).collect(),
+        }
+    }
+
+    /// The lattice angles to try: the one asked for, or those with the fewest turns predicted.
+    fn angles(&self, asked: Asked, effort: Effort) -> Vec<f64> {
+        const CANDIDATES: usize = 4;
+        if let Some(angle) = self.options.angle {
+            return vec![angle.rem_euclid(std::f64::consts::FRAC_PI_3)];
+        }
+        let count = match (self.options.boundary, effort) {
+            (BoundaryMethod::Optimal, Effort::Full) => CANDIDATES,
+            _ => 1,
+        };
+        let edge_length = match asked {
+            Asked::EdgeLength(h) => h,
+            Asked::Triangles(n) => self.first_guess(n),
+        };
+        let angles = predicted_angles(&self.contours, edge_length, count);
+        if angles.is_empty() { vec![0.0] } else { angles }
+    }
+
+    /// The edge length at which a patch has about `n` triangles. The lattice path cuts off what it
+    /// cannot follow, and growth stops inside the curve: on average a patch is so many triangles for
+    /// each edge length of curve short of its area.
+    pub(super) fn first_guess(&self, n: usize) -> f64 {
+        let area = self.area / (0.5 * ROW_HEIGHT);
+        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.09 } else { 0.28 };
+        let short = short * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
+        2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
+    }
+
+    pub(super) fn lattice(&self, edge_length: f64, angle: f64, shift: DVec2) -> Lattice {
+        let origin = self.centre + edge_length * DVec2::from_angle(angle).rotate(shift);
+        let Some(asked) = self.options.origin else {
+            return Lattice { origin, angle, edge_length };
+        };
+        // The point of the asked lattice that is nearest to the drawing: coordinates stay small.
+        let asked = Lattice { origin: asked, angle, edge_length };
+        let nearest = asked.from_units(Lattice::units(Lattice::nearest(asked.to_units(self.centre))));
+        Lattice { origin: nearest, ..asked }
+    }
+}

@@ -1,0 +1,500 @@
+//! Cuts of synthetic meshes keep their promises.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+use gridmesh::cut::{Cut, CutOptions, Keep, Piece, Polygons, Side, Sweep, cut};
+use gridmesh::error::Result;
+use gridmesh::fill::Smooth;
+use gridmesh::metrics::check_mesh;
+use gridmesh::progress::Progress;
+
+/// Vertices, corners, offsets.
+struct Mesh(Vec<DVec3>, Vec<u32>, Vec<u32>);
+
+impl Mesh {
+    fn quads(vertices: Vec<DVec3>, quads: &[[u32; 4]]) -> Mesh {
+        Mesh(vertices, quads.concat(), (0..=quads.len() as u32).map(|k| 4 * k).collect())
+    }
+
+    fn faces(&self) -> Polygons<'_> {
+        Polygons { corners: &self.1, offsets: &self.2 }
+    }
+
+    fn cut(&self, stroke: &[DVec3], options: &CutOptions) -> Result<Cut> {
+        cut(&self.0, self.faces(), stroke, options, Progress::NONE)
+    }
+}
+
+/// A torus of quads around z, bumpy so that nothing is on a line.
+fn torus(n: u32, m: u32) -> Mesh {
+    let at = |i: u32, j: u32| (i % n) * m + j % m;
+    let (mut vertices, mut quads) = (vec![], vec![]);
+    for i in 0..n {
+        for j in 0..m {
+            let (u, v) = (TAU * f64::from(i) / f64::from(n), TAU * f64::from(j) / f64::from(m));
+            let r = 2.0 + 0.8 * v.cos();
+            vertices.push(DVec3::new(r * u.cos(), r * u.sin(), 0.8 * v.sin()));
+            quads.push([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+        }
+    }
+    Mesh::quads(vertices, &quads)
+}
+
+fn cube() -> Mesh {
+    let corner = |k: u32| DVec3::new(f64::from(k >> 2), f64::from(k >> 1 & 1), f64::from(k & 1));
+    let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    Mesh::quads((0..8).map(corner).collect(), &quads)
+}
+
+/// A prism with ends of twelve corners.
+fn prism() -> Mesh {
+    let n = 12u32;
+    let ring = |z: f64| {
+        (0..n).map(move |k| {
+            let t = TAU * f64::from(k) / f64::from(n);
+            DVec3::new(t.cos(), t.sin(), z)
+        })
+    };
+    let mut corners: Vec<u32> = (0..n).rev().chain(n..2 * n).collect();
+    let mut offsets = vec![0, n, 2 * n];
+    for k in 0..n {
+        let next = (k + 1) % n;
+        corners.extend([k, next, next + n, k + n]);
+        offsets.push(corners.len() as u32);
+    }
+    Mesh(ring(-1.0).chain(ring(1.0)).collect(), corners, offsets)
+}
+
+fn triangles(piece: &Piece) -> Vec<[u32; 3]> {
+    // Fans: enough for what is connected to what.
+    let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
+    let fan = |f: usize| {
+        let c = faces.face(f);
+        (1..c.len() - 1).map(|k| [c[0], c[k], c[k + 1]]).collect::<Vec<_>>()
+    };
+    (0..faces.len()).flat_map(fan).collect()
+}
+
+fn assert_closed(cut: &Cut) {
+    for piece in &cut.pieces {
+        let check = check_mesh(piece.vertices.len(), &triangles(piece));
+        assert!(check.watertight, "{:?} {check:?}", piece.side);
+        assert_eq!(piece.source_face.len() + 1, piece.offsets.len());
+        assert_eq!(piece.source_vertices.len(), piece.vertices.len());
+    }
+}
+
+fn assert_volumes(cut: &Cut, tolerance: f64) {
+    let sum: f64 = cut.report.volumes.iter().sum();
+    let whole = cut.report.volume;
+    assert!((sum - whole).abs() <= tolerance * whole.abs(), "{sum} {whole}");
+    assert!(cut.report.volumes.iter().all(|v| *v > 0.0), "{:?}", cut.report.volumes);
+}
+
+/// Cap triangles by position, each from its least corner on.
+fn caps(piece: &Piece, reversed: bool) -> BTreeSet<Vec<[u64; 3]>> {
+    let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
+    let name = |f: usize| {
+        let mut t: Vec<[u64; 3]> =
+            faces.face(f).iter().map(|&v| piece.vertices[v as usize].to_array().map(f64::to_bits)).collect();
+        if reversed {
+            t.reverse();
+        }
+        let least = (0..t.len()).min_by_key(|&k| t[k]).unwrap();
+        t.rotate_left(least);
+        t
+    };
+    (0..faces.len()).filter(|&f| piece.source_face[f] < 0).map(name).collect()
+}
+
+fn assert_mirrored(cut: &Cut) {
+    let [left, right] = &cut.pieces[..] else { panic!("two pieces") };
+    assert!(!caps(left, false).is_empty());
+    assert_eq!(caps(left, false), caps(right, true));
+}
+
+/// Old vertices have their bits, and combinations of old vertices give the new ones outside caps.
+fn assert_sources(mesh: &Mesh, cut: &Cut, tolerance: f64) {
+    for piece in &cut.pieces {
+        let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
+        let outside: BTreeSet<u32> = (0..faces.len())
+            .filter(|&f| piece.source_face[f] >= 0)
+            .flat_map(|f| faces.face(f).iter().copied())
+            .collect();
+        for &v in &outside {
+            let (own, from) = (piece.vertices[v as usize], piece.source_vertices[v as usize]);
+            let weights = piece.source_weights[v as usize];
+            if weights[0] == 1.0 {
+                assert_eq!(own, mesh.0[from[0] as usize]);
+            }
+            let there: DVec3 = (0..3).map(|k| weights[k] * mesh.0[from[k] as usize]).sum();
+            assert!(there.distance(own) <= tolerance, "{there} {own}");
+        }
+    }
+}
+
+/// Faces that are returned whole: by their number in the input.
+fn untouched(mesh: &Mesh, cut: &Cut) -> BTreeMap<i32, Side> {
+    let mut found = BTreeMap::new();
+    for piece in &cut.pieces {
+        let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
+        for f in 0..faces.len() {
+            let source = piece.source_face[f];
+            let old = faces.face(f).iter().map(|&v| piece.source_vertices[v as usize][0]).collect::<Vec<_>>();
+            if source >= 0 && mesh.faces().face(source as usize) == old {
+                found.insert(source, piece.side);
+            }
+        }
+    }
+    found
+}
+
+fn down() -> CutOptions {
+    CutOptions::new(Sweep::Along(-DVec3::Z))
+}
+
+fn line(points: &[(f64, f64)]) -> Vec<DVec3> {
+    points.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect()
+}
+
+fn circle(x: f64, y: f64, r: f64, n: u32) -> Vec<DVec3> {
+    (0..=n)
+        .map(|k| {
+            let t = TAU * f64::from(k % n) / f64::from(n);
+            DVec3::new(x + r * t.cos(), y + r * t.sin(), 0.0)
+        })
+        .collect()
+}
+
+#[test]
+fn both_pieces_are_closed_and_add_up() {
+    let wave: Vec<DVec3> = (0..=80)
+        .map(|k| {
+            let x = -3.5 + 7.0 * f64::from(k) / 80.0;
+            DVec3::new(x, 0.6 * (3.0 * x).sin() + 0.2, 5.0)
+        })
+        .collect();
+    let zigzag: Vec<DVec3> = (0..16)
+        .map(|k| DVec3::new(-3.1 + 0.43 * f64::from(k), if k % 2 == 0 { -0.7 } else { 0.9 }, 0.0))
+        .collect();
+    let strokes = [
+        line(&[(-4.0, 0.3), (4.0, 0.5)]),
+        wave,
+        zigzag,
+        circle(0.3, 0.1, 1.9, 40),
+        circle(0.2, 0.0, 2.1, 5),
+        // Through the ring at one place: a tunnel.
+        circle(2.0, 0.1, 0.4, 24),
+        // The outline's edge.
+        line(&[(-4.0, 2.75), (4.0, 2.75)]),
+    ];
+    let mesh = torus(40, 20);
+    for stroke in &strokes {
+        let cut = mesh.cut(stroke, &down()).unwrap();
+        assert_closed(&cut);
+        assert_volumes(&cut, 1e-9);
+        assert_mirrored(&cut);
+        assert_sources(&mesh, &cut, 1e-12);
+        assert_eq!((cut.report.uncapped, cut.report.folded), (0, 0));
+        let whole = untouched(&mesh, &cut);
+        assert_eq!(whole.len() + cut.report.cut_faces, mesh.faces().len());
+    }
+}
+
+#[test]
+fn exactly_through_vertices_and_along_edges() {
+    let mesh = torus(40, 20);
+    // The plane y = 0 runs along rows of edges, the plane y = x through corners of quads.
+    for stroke in [line(&[(-4.0, 0.0), (4.0, 0.0)]), line(&[(-4.0, -4.0), (4.0, 4.0)])] {
+        let cut = mesh.cut(&stroke, &down()).unwrap();
+        assert_closed(&cut);
+        assert_volumes(&cut, 1e-9);
+        assert_mirrored(&cut);
+        assert_eq!(cut.report.cut_faces, 0, "edges are there already");
+        assert_eq!(cut.report.loops, 2);
+    }
+    // Over walls seen edge on, and through corners.
+    for stroke in [
+        line(&[(-1.0, 0.5), (2.0, 0.5)]),
+        line(&[(-1.0, -1.0), (2.0, 2.0)]),
+        line(&[(0.5, -1.0), (0.5, 0.0), (0.5, 2.0)]),
+    ] {
+        let cut = cube().cut(&stroke, &down()).unwrap();
+        assert_closed(&cut);
+        assert_volumes(&cut, 1e-12);
+        assert_mirrored(&cut);
+        assert!((cut.report.volumes[0] - 0.5).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_hole_punched_through_leaves_a_tunnel_and_a_plug() {
+    for (mesh, stroke) in [(cube(), circle(0.45, 0.5, 0.3, 32)), (prism(), circle(0.1, 0.0, 0.5, 17))] {
+        let height = mesh.0.iter().map(|v| v.z).fold(f64::NEG_INFINITY, f64::max)
+            - mesh.0.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
+        let cut = mesh.cut(&stroke, &down()).unwrap();
+        assert_closed(&cut);
+        assert_volumes(&cut, 1e-12);
+        assert_mirrored(&cut);
+        assert_eq!((cut.report.caps, cut.report.rings), (1, 1));
+        let n = stroke.len() - 1;
+        let area = 0.5 * (0..n).map(|k| stroke[k].truncate().perp_dot(stroke[k + 1].truncate())).sum::<f64>();
+        // The caps' edges cut the corners of the many-sided tunnel.
+        assert!((cut.report.volumes[0] / (area * height) - 1.0).abs() < 0.02, "{:?}", cut.report.volumes);
+        // The other way round, the inside is still the left.
+        let back = stroke.iter().rev().copied().collect::<Vec<_>>();
+        let again = mesh.cut(&back, &down()).unwrap();
+        assert!((again.report.volumes[0] - cut.report.volumes[0]).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_stroke_within_one_face() {
+    // Seen from an oblique eye, the circle lies inside one face at the front.
+    let eye = DVec3::new(0.5, 0.5, 6.0);
+    let stroke: Vec<DVec3> = circle(0.5, 0.5, 0.2, 12).into_iter().map(|p| p + DVec3::Z).collect();
+    let cut = cube().cut(&stroke, &CutOptions::new(Sweep::Through(eye))).unwrap();
+    assert_closed(&cut);
+    assert_volumes(&cut, 1e-12);
+    assert_mirrored(&cut);
+}
+
+#[test]
+fn shells_and_tubes_are_capped_as_rings() {
+    let outer = torus(40, 20);
+    let mut mesh = Mesh(outer.0.clone(), outer.1.clone(), outer.2.clone());
+    // The same torus, thinner and inside out.
+    let n = outer.0.len() as u32;
+    mesh.0.extend(outer.0.iter().map(|p| {
+        let u = p.y.atan2(p.x);
+        let middle = 2.0 * DVec3::new(u.cos(), u.sin(), 0.0);
+        middle + 0.6 * (*p - middle)
+    }));
+    for f in 0..outer.2.len() - 1 {
+        let face = outer.faces().face(f);
+        mesh.1.extend(face.iter().rev().map(|v| v + n));
+        mesh.2.push(mesh.1.len() as u32);
+    }
+    for length in [None, Some(0.25)] {
+        let options = CutOptions { edge_length: length, ..down() };
+        let cut = mesh.cut(&line(&[(-4.0, 0.13), (4.0, 0.21)]), &options).unwrap();
+        assert_eq!((cut.report.loops, cut.report.caps, cut.report.rings), (4, 2, 2));
+        assert_closed(&cut);
+        assert_mirrored(&cut);
+        assert_volumes(&cut, if length.is_none() { 1e-9 } else { 1e-2 });
+    }
+}
+
+#[test]
+fn an_edge_length_makes_the_rim_even() {
+    let mesh = torus(60, 30);
+    for stroke in [line(&[(-4.0, 0.3), (4.0, 0.9)]), circle(2.0, 0.1, 0.5, 60)] {
+        let length = 0.17;
+        let cut = mesh.cut(&stroke, &CutOptions { edge_length: Some(length), ..down() }).unwrap();
+        assert_closed(&cut);
+        assert_mirrored(&cut);
+        assert_volumes(&cut, 0.005);
+        assert!(cut.report.defect <= 0.05 * length, "{}", cut.report.defect);
+        assert!(cut.report.cap_radius_ratio > 0.9, "{}", cut.report.cap_radius_ratio);
+        let piece = &cut.pieces[0];
+        for cap_loop in &piece.cap_loops {
+            let n = cap_loop.len();
+            let at = |k: usize| piece.vertices[cap_loop[k % n] as usize];
+            let mean = (0..n).map(|k| at(k).distance(at(k + 1))).sum::<f64>() / n as f64;
+            assert!((mean / length - 1.0).abs() < 0.25, "{mean}");
+        }
+        let exact = mesh.cut(&stroke, &down()).unwrap();
+        assert!(cut.report.rim_min_angle > exact.report.rim_min_angle);
+        // What is not near the cut stays.
+        assert!(untouched(&mesh, &cut).len() > mesh.faces().len() / 2);
+    }
+}
+
+#[test]
+fn an_open_mesh_is_cut_and_not_capped_where_the_line_is_open() {
+    let n = 12u32;
+    let at = |i: u32, j: u32| i * (n + 1) + j;
+    let vertices =
+        (0..=n).flat_map(|i| (0..=n).map(move |j| DVec3::new(f64::from(i), f64::from(j), 0.0))).collect();
+    let quads = (0..n)
+        .flat_map(|i| (0..n).map(move |j| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]))
+        .collect::<Vec<_>>();
+    let sheet = Mesh::quads(vertices, &quads);
+    for (stroke, open, closed) in
+        [(line(&[(-1.0, 3.3), (13.0, 7.9)]), 1, 0), (circle(5.9, 6.2, 3.3, 30), 0, 1)]
+    {
+        for length in [None, Some(1.0)] {
+            let cut = sheet.cut(&stroke, &CutOptions { edge_length: length, ..down() }).unwrap();
+            assert_eq!((cut.report.open_lines, cut.report.loops), (open, closed));
+            assert_eq!((cut.report.uncapped, cut.report.caps), (closed, 0));
+            for piece in &cut.pieces {
+                let check = check_mesh(piece.vertices.len(), &triangles(piece));
+                assert_eq!((check.bad_edges, check.bad_vertices), (0, 0), "{check:?}");
+                assert!(piece.source_face.iter().all(|f| *f >= 0));
+            }
+        }
+    }
+}
+
+#[test]
+fn vertices_where_a_piece_would_touch_itself_are_doubled() {
+    // Two tents in a row: the plane touches the ridge between them, a saddle, in a vertex.
+    let n = 8u32;
+    let at = |i: u32, j: u32| i * (n + 1) + j;
+    let height = |i: u32, j: u32| {
+        let (x, y) = (f64::from(i) - 4.0, f64::from(j) - 4.0);
+        x * x - y * y
+    };
+    let vertices = (0..=n)
+        .flat_map(|i| (0..=n).map(move |j| DVec3::new(f64::from(i), f64::from(j), height(i, j))))
+        .collect();
+    let quads = (0..n)
+        .flat_map(|i| (0..n).map(move |j| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]))
+        .collect::<Vec<_>>();
+    let saddle = Mesh::quads(vertices, &quads);
+    // Seen along x, the level z = 0 is a line through the saddle.
+    let stroke = [DVec3::new(0.0, -1.0, 0.0), DVec3::new(0.0, 9.0, 0.0)];
+    let cut = saddle.cut(&stroke, &CutOptions::new(Sweep::Along(DVec3::X))).unwrap();
+    assert!(cut.report.pinched > 0);
+    for piece in &cut.pieces {
+        let check = check_mesh(piece.vertices.len(), &triangles(piece));
+        assert_eq!((check.bad_edges, check.bad_vertices), (0, 0), "{check:?}");
+    }
+}
+
+#[test]
+fn sides_are_those_of_the_viewer() {
+    // Looking down, x to the right, y up; the stroke goes right: its left is what has greater y.
+    let stroke = line(&[(-1.0, 0.75), (2.0, 0.75)]);
+    for keep in [Keep::Left, Keep::Right] {
+        let cut = cube().cut(&stroke, &CutOptions { keep, ..down() }).unwrap();
+        assert_eq!(cut.pieces.len(), 1);
+        let expected = if keep == Keep::Left { 0.25 } else { 0.75 };
+        assert!((cut.report.volumes[0] - expected).abs() < 1e-12);
+        assert_closed(&cut);
+    }
+    let eye = CutOptions { keep: Keep::Left, ..CutOptions::new(Sweep::Through(DVec3::new(0.5, 0.5, 9.0))) };
+    let cut = cube().cut(&stroke, &eye).unwrap();
+    assert!(cut.pieces[0].vertices.iter().any(|v| v.y == 1.0) && cut.report.volumes[0] < 0.4);
+}
+
+#[test]
+fn a_gap_is_left_out() {
+    for edge_length in [None, Some(0.2)] {
+        let options = CutOptions { gap: 0.1, edge_length, ..down() };
+        let cut = cube().cut(&line(&[(-1.0, 0.4), (2.0, 0.4)]), &options).unwrap();
+        assert_closed(&cut);
+        assert!((cut.report.volumes[0] - 0.55).abs() < 1e-9, "{:?}", cut.report.volumes);
+        assert!((cut.report.volumes[1] - 0.35).abs() < 1e-9, "{:?}", cut.report.volumes);
+    }
+    let options = CutOptions { gap: 0.1, ..down() };
+    let cut = cube().cut(&circle(0.5, 0.5, 0.3, 64), &options).unwrap();
+    assert_closed(&cut);
+    assert!(cut.report.volumes[0] < TAU / 2.0 * 0.26 * 0.26 && cut.report.volumes[0] > 3.0 * 0.24 * 0.24);
+}
+
+#[test]
+fn smooth_caps_bulge_and_still_fit() {
+    let mesh = torus(40, 20);
+    for smooth in [Smooth::Tangent, Smooth::Curvature] {
+        let options = CutOptions { smooth, edge_length: Some(0.25), ..down() };
+        let cut = mesh.cut(&line(&[(-4.0, 0.3), (4.0, 0.5)]), &options).unwrap();
+        assert_closed(&cut);
+        assert_mirrored(&cut);
+    }
+}
+
+#[test]
+fn without_caps_the_pieces_are_open_at_the_cut_alone() {
+    let cut =
+        torus(40, 20).cut(&line(&[(-4.0, 0.3), (4.0, 0.5)]), &CutOptions { cap: false, ..down() }).unwrap();
+    for piece in &cut.pieces {
+        let check = check_mesh(piece.vertices.len(), &triangles(piece));
+        assert_eq!((check.boundaries, check.bad_edges, check.bad_vertices), (2, 0, 0));
+        let edges: usize = piece.cap_loops.iter().map(Vec::len).sum();
+        assert_eq!(check.boundary_edges, edges);
+    }
+}
+
+#[test]
+fn ten_times_across() {
+    let mut points = vec![];
+    for k in 0..10 {
+        let y = -2.4 + 0.51 * f64::from(k);
+        let x = if k % 2 == 0 { 4.0 } else { -4.0 };
+        points.extend([(-x, y), (x, y)]);
+    }
+    for edge_length in [None, Some(0.2)] {
+        let cut = torus(40, 20).cut(&line(&points), &CutOptions { edge_length, ..down() }).unwrap();
+        assert_closed(&cut);
+        assert_mirrored(&cut);
+        assert!(cut.report.caps >= 10);
+        assert_volumes(&cut, if edge_length.is_none() { 1e-9 } else { 0.02 });
+    }
+}
+
+#[test]
+fn what_cannot_be_cut_is_refused_by_name() {
+    let kind = |stroke: &[DVec3], options: &CutOptions| {
+        cube().cut(stroke, options).err().map_or("none", |e| e.kind())
+    };
+    assert_eq!(kind(&line(&[(-1.0, 1.5), (2.0, 1.5)]), &down()), "stroke_misses");
+    assert_eq!(kind(&circle(5.0, 5.0, 1.0, 12), &down()), "stroke_misses");
+    // All around.
+    assert_eq!(kind(&circle(0.5, 0.5, 3.0, 12), &down()), "stroke_misses");
+    assert_eq!(kind(&[DVec3::ZERO, DVec3::Z], &down()), "stroke_too_short");
+    assert_eq!(kind(&[], &down()), "stroke_too_short");
+    let crossed = line(&[(-1.0, 0.2), (2.0, 0.8), (2.0, 0.2), (-1.0, 0.8)]);
+    assert_eq!(kind(&crossed, &down()), "self_intersecting");
+    let hook = line(&[(-1.0, 0.5), (0.5, 0.5), (0.5, 0.8), (0.3, 0.8), (0.3, 0.6)]);
+    assert_eq!(kind(&hook, &down()), "self_intersecting");
+    let inside = CutOptions::new(Sweep::Through(DVec3::splat(0.5)));
+    assert_eq!(kind(&line(&[(-1.0, 0.2), (2.0, 0.8)]), &inside), "behind_eye");
+    let across = line(&[(-1.0, 0.3), (2.0, 0.3)]);
+    assert_eq!(kind(&across, &CutOptions::new(Sweep::Along(DVec3::ZERO))), "invalid_option");
+    assert_eq!(kind(&across, &CutOptions { gap: -1.0, ..down() }), "invalid_option");
+    assert_eq!(kind(&across, &CutOptions { edge_length: Some(0.0), ..down() }), "invalid_option");
+    assert_eq!(kind(&[DVec3::ZERO, DVec3::NAN], &down()), "not_finite");
+    let bad = |corners: Vec<u32>, offsets: Vec<u32>| {
+        Mesh(cube().0, corners, offsets).cut(&across, &down()).err().map_or("none", |e| e.kind())
+    };
+    assert_eq!(bad(vec![0, 1, 9], vec![0, 3]), "index_out_of_range");
+    assert_eq!(bad(vec![0, 1], vec![0, 2]), "invalid_face");
+    assert_eq!(bad(vec![0, 1, 1], vec![0, 3]), "invalid_face");
+    assert_eq!(bad(vec![0, 1, 2], vec![1, 3]), "invalid_face");
+    assert_eq!(bad(vec![], vec![0]), "stroke_misses");
+}
+
+#[test]
+fn equal_input_gives_equal_output_for_any_number_of_threads() {
+    let stroke = circle(0.3, 0.1, 1.9, 40);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| torus(40, 20).cut(&stroke, &CutOptions { edge_length: Some(0.2), ..down() }).unwrap())
+    };
+    assert_eq!(run(1).pieces, run(3).pieces);
+}
+
+#[test]
+fn progress_rises_and_false_stops() {
+    let seen = std::sync::Mutex::new(vec![]);
+    let note = |f: f64| {
+        seen.lock().unwrap().push(f);
+        true
+    };
+    let mesh = torus(40, 20);
+    let stroke = line(&[(-4.0, 0.3), (4.0, 0.5)]);
+    cut(&mesh.0, mesh.faces(), &stroke, &down(), Progress::new(&note)).unwrap();
+    let seen = seen.into_inner().unwrap();
+    assert!(seen.windows(2).all(|w| w[0] <= w[1]), "{seen:?}");
+    assert_eq!(seen.last(), Some(&1.0));
+    for stop in 0..seen.len() {
+        let count = std::sync::atomic::AtomicUsize::new(0);
+        let until = |_: f64| count.fetch_add(1, std::sync::atomic::Ordering::Relaxed) < stop;
+        let result = cut(&mesh.0, mesh.faces(), &stroke, &down(), Progress::new(&until));
+        assert_eq!(result.err().map_or("none", |e| e.kind()), "cancelled");
+    }
+}

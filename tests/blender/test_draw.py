@@ -1,0 +1,187 @@
+"""Drawing bodies: what the operator makes of a stroke. The gestures themselves are tried in a window."""
+
+import bpy
+import numpy as np
+import pytest
+from drawings import bean, check_body, circle, fingerprint, world_vertices
+
+from addon.draw.gesture import Gesture, pack, relation, unpack
+from addon.live import engine
+
+
+@pytest.fixture(autouse=True)
+def awake(monkeypatch):
+    monkeypatch.setattr(engine, "in_background", True)
+    engine._states.clear()
+
+
+def draw(points, pressure=None, **options):
+    """Draw a stroke in the plane z = 0."""
+    flat = np.asarray(points, float)[:, :2]
+    pressure = np.ones(len(flat)) if pressure is None else pressure
+    options = {"triangles": 600, **options}
+    return bpy.ops.object.gridmesh_draw(
+        "EXEC_DEFAULT", True, stroke=pack(flat, pressure), matrix=np.eye(4).ravel().tolist(), **options
+    )
+
+
+def only_body():
+    (body,) = engine.bodies()
+    return body
+
+
+@pytest.mark.smoke
+def test_a_stroke_becomes_a_body_with_its_outline():
+    assert draw(bean()) == {"FINISHED"}
+    body = only_body()
+    check_body(body)
+    assert body.gridmesh_live.source.type == "GREASEPENCIL"
+    assert body.gridmesh_live.enabled
+    assert bpy.context.view_layer.objects.active == body
+    low, high = world_vertices(body).min(axis=0), world_vertices(body).max(axis=0)
+    assert np.allclose([low[:2], high[:2]], [bean()[:, :2].min(axis=0), bean()[:, :2].max(axis=0)], atol=0.03)
+
+
+def test_a_hole_is_made_with_shift():
+    draw(circle(100, 2))
+    assert draw(circle(40, 0.5, (0.4, 0)), subtract=True) == {"FINISHED"}
+    check_body(only_body(), genus=1)
+
+
+def test_from_inside_it_extends():
+    draw(circle(100, 2))
+    before = np.ptp(world_vertices(only_body())[:, 0])
+    assert draw(circle(60, 0.8, (2, 0), start=np.pi)) == {"FINISHED"}
+    check_body(only_body())
+    assert np.ptp(world_vertices(only_body())[:, 0]) == pytest.approx(before + 0.8, abs=0.05)
+
+
+def test_from_outside_it_trims():
+    draw(circle(100, 2))
+    assert draw(circle(60, 0.8, (2, 0))) == {"FINISHED"}
+    check_body(only_body())
+    assert world_vertices(only_body())[:, 0].max() < 1.95
+
+
+def test_trimmed_apart_it_becomes_two():
+    draw(circle(100, 2))
+    bar = [(x, -3) for x in np.linspace(-0.3, 0.3, 10)] + [(x, 3) for x in np.linspace(0.3, -0.3, 10)]
+    assert draw(bar) == {"FINISHED"}
+    bodies = engine.bodies()
+    assert len(bodies) == 2
+    for body in bodies:
+        check_body(body)
+        assert body.gridmesh_live.problem == ""
+    assert len({body.gridmesh_live.source for body in bodies}) == 1
+    assert engine.settle() in (0, 1, 2)
+    assert len({np.sign(world_vertices(body)[:, 0].mean()) for body in bodies}) == 2
+
+
+def test_a_hole_drawn_over_a_hole_keeps_others_of_the_drawing():
+    draw(circle(100, 2))
+    bar = [(x, -3) for x in np.linspace(-0.3, 0.3, 10)] + [(x, 3) for x in np.linspace(0.3, -0.3, 10)]
+    draw(bar)
+    engine.settle()
+    left, right = sorted(engine.bodies(), key=lambda ob: world_vertices(ob)[:, 0].mean())
+    before = world_vertices(left)
+    assert draw(circle(40, 0.3, (1.1, 0)), subtract=True) == {"FINISHED"}
+    engine.settle()
+    check_body(right, genus=1)
+    assert np.array_equal(world_vertices(left), before)
+    assert left.gridmesh_live.problem == ""
+
+
+def test_apart_is_another_body():
+    draw(circle(60, 1))
+    draw(circle(60, 1, (5, 0)))
+    assert len(engine.bodies()) == 2
+
+
+@pytest.mark.parametrize("points", [circle(4), [(0, 0)] * 20, [(x, 0) for x in range(20)]])
+def test_what_is_no_outline_leaves_nothing(points):
+    before = fingerprint()
+    assert draw(points) == {"CANCELLED"}
+    assert fingerprint() == before
+
+
+def test_subtracting_from_nothing_leaves_nothing():
+    before = fingerprint()
+    assert draw(circle(40), subtract=True) == {"CANCELLED"}
+    assert fingerprint() == before
+
+
+def test_a_cut_that_leaves_nothing_sound_is_refused():
+    draw(circle(100, 2))
+    engine.settle()
+    before = fingerprint()
+    assert draw(circle(100, 1.999, (0, 0)), subtract=True, triangles=600) == {"CANCELLED"}
+    assert fingerprint() == before
+
+
+def test_undo_takes_back_one_stroke():
+    bpy.ops.ed.undo_push(message="base")
+    draw(circle(100, 2))
+    draw(circle(40, 0.5), subtract=True)
+    bpy.ops.ed.undo()
+    check_body(only_body())
+    bpy.ops.ed.undo()
+    assert engine.bodies() == []
+    assert [ob for ob in bpy.data.objects if ob.type == "GREASEPENCIL"] == []
+
+
+def test_pressure_is_recorded_and_makes_it_thick():
+    pressure = np.where(circle(100)[:, 0] > 0, 1.0, 0.3)
+    draw(circle(100), pressure, pen=1.0)
+    body = only_body()
+    points = world_vertices(body)
+    right, left = points[points[:, 0] > 0.5, 2].max(), points[points[:, 0] < -0.5, 2].max()
+    assert right > 1.5 * left
+    drawing = body.gridmesh_live.source.data.layers[0].current_frame().drawing
+    radius = np.empty(100, np.float32)
+    drawing.attributes["radius"].data.foreach_get("value", radius)
+    assert radius.max() == pytest.approx(radius.min() / 0.3, rel=1e-3)
+
+
+def test_the_outline_drawn_is_followed():
+    draw(circle(100, 2))
+    body = only_body()
+    source = body.gridmesh_live.source
+    drawing = source.data.layers[0].current_frame().drawing
+    points = circle(100, 2) * [1.5, 1, 1]
+    drawing.attributes["position"].data.foreach_set("vector", points.astype(np.float32).ravel())
+    drawing.tag_positions_changed()
+    bpy.context.view_layer.update()
+    engine.settle()
+    assert np.ptp(world_vertices(body)[:, 0]) == pytest.approx(6, abs=0.1)
+
+
+def test_relations():
+    outline, hole = circle(80, 2)[:, :2], circle(40, 0.5)[:, :2]
+    assert relation(outline, [], circle(40, 0.5, (5, 0))[:, :2]) == "apart"
+    assert relation(outline, [], circle(40, 0.5, (1, 0))[:, :2]) == "inside"
+    assert relation(outline, [], circle(40, 5)[:, :2]) == "around"
+    assert relation(outline, [], circle(40, 1, (2, 0))[:, :2]) == "across"
+    assert relation(outline, [hole], circle(40, 0.3)[:, :2]) == "apart"
+
+
+def test_the_preview_stands_still_while_the_stroke_grows():
+    gesture = Gesture(1000)
+    lengths, sizes = [], []
+    for point in circle(200, 1.0, turn=1.9 * np.pi, closed=False):
+        gesture.add(tuple(300 * point[:2]), point[:2], 1.0)
+        grid = gesture.preview()
+        if grid is not None:
+            lengths.append(gesture.edge_length)
+            sizes.append(len(grid[1]))
+    assert len(set(lengths)) < 25
+    assert max(sizes) < 2200
+    assert 500 < sizes[-1] < 1900
+
+
+def test_a_stroke_as_text():
+    points, pressure = circle(30)[:, :2], np.linspace(0, 1, 30)
+    again = unpack(pack(points, pressure))
+    assert np.array_equal(again[0], points)
+    assert np.array_equal(again[1], pressure)
+    assert draw(bean()) == {"FINISHED"}
+    assert bpy.ops.object.gridmesh_draw("EXEC_DEFAULT") == {"CANCELLED"}

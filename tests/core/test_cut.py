@@ -1,0 +1,225 @@
+"""Cuts keep what they promise, through the Python face."""
+
+from __future__ import annotations
+
+import doctest
+import inspect
+
+import gridmesh
+import numpy as np
+import pytest
+from checks import check_array
+
+DOWN = [0, 0, -1]
+
+CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+ACROSS = np.array([[-1, 0.3, 0], [2, 0.6, 0]])
+
+
+def torus(n: int = 36, m: int = 18) -> tuple[np.ndarray, np.ndarray]:
+    """A closed torus of quads around z."""
+    u, v = np.meshgrid(np.arange(n) * 2 * np.pi / n, np.arange(m) * 2 * np.pi / m, indexing="ij")
+    radius = 2 + 0.8 * np.cos(v)
+    vertices = np.stack([radius * np.cos(u), radius * np.sin(u), 0.8 * np.sin(v)], axis=-1).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
+
+    def at(i, j):
+        return (i % n) * m + j % m
+
+    return vertices, np.stack([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)], axis=-1).reshape(
+        -1, 4
+    )
+
+
+def circle(x: float, y: float, r: float, n: int = 30) -> np.ndarray:
+    t = np.linspace(0, 2 * np.pi, n, endpoint=False)
+    ring = np.c_[x + r * np.cos(t), y + r * np.sin(t), 0 * t]
+    return np.vstack([ring, ring[:1]])
+
+
+def directed_edges(piece: gridmesh.Piece) -> np.ndarray:
+    after = np.arange(len(piece.corners)) + 1
+    after[piece.offsets[1:] - 1] = piece.offsets[:-1]
+    return np.c_[piece.corners, piece.corners[after]]
+
+
+def open_edges(piece: gridmesh.Piece) -> np.ndarray:
+    """Edges without a neighbour; all others have exactly one, wound against them."""
+    edges = directed_edges(piece).astype(np.int64)
+    keys = edges[:, 0] * len(piece.vertices) + edges[:, 1]
+    assert len(np.unique(keys)) == len(keys)
+    return edges[~np.isin(edges[:, 1] * len(piece.vertices) + edges[:, 0], keys)]
+
+
+def cap_triangles(piece: gridmesh.Piece) -> np.ndarray:
+    caps = np.flatnonzero(piece.source_face < 0)
+    return piece.vertices[np.array([piece.corners[piece.offsets[f] : piece.offsets[f + 1]] for f in caps])]
+
+
+def test_types_and_shapes():
+    done = gridmesh.cut(CUBE, QUADS, ACROSS, direction=DOWN)
+    assert [piece.side for piece in done.pieces] == ["left", "right"]
+    for piece in done.pieces:
+        check_array(piece.vertices, np.float64, 3)
+        check_array(piece.corners, np.int32, None)
+        check_array(piece.offsets, np.int32, None)
+        check_array(piece.source_face, np.int32, None)
+        check_array(piece.source_vertices, np.int32, 3)
+        check_array(piece.source_weights, np.float64, 3)
+        assert len(piece.source_face) == len(piece.offsets) - 1
+        assert len(piece.source_vertices) == len(piece.source_weights) == len(piece.vertices)
+        assert piece.source_vertices.max() < len(CUBE)
+        assert np.allclose(piece.source_weights.sum(axis=1), 1)
+        for ring in piece.cap_loops:
+            check_array(ring, np.int32, None)
+    assert all(isinstance(x, int | float | list | dict) for x in done.report.values())
+
+
+@pytest.mark.parametrize("edge_length", [None, 0.3])
+@pytest.mark.parametrize(
+    "stroke", [[[-4, 0.3, 0], [0, -0.4, 0], [4, 0.5, 0]], circle(2, 0.1, 0.5), circle(0.1, 0, 2.05)]
+)
+def test_closed_pieces_with_mirrored_caps(stroke, edge_length):
+    vertices, faces = torus()
+    done = gridmesh.cut(vertices, faces, stroke, direction=DOWN, edge_length=edge_length)
+    for piece in done.pieces:
+        assert len(open_edges(piece)) == 0
+    left, right = (cap_triangles(piece) for piece in done.pieces)
+    assert len(left) == done.report["cap_triangles"] > 0
+    reversed_rows = {tuple(sorted(map(tuple, t))) for t in right.tolist()}
+    assert {tuple(sorted(map(tuple, t))) for t in left.tolist()} == reversed_rows
+    total = done.report["volume"]
+    assert abs(sum(done.report["volumes"]) - total) <= (1e-9 if edge_length is None else 1e-2) * total
+    if edge_length:
+        assert done.report["defect"] <= 0.05 * edge_length
+
+
+def test_the_three_forms_of_faces_agree():
+    stroke = ACROSS
+    offsets = np.arange(7) * 4
+    one = gridmesh.cut(CUBE, QUADS, stroke, direction=DOWN)
+    two = gridmesh.cut(CUBE.tolist(), (QUADS.ravel(), offsets), stroke.tolist(), direction=DOWN)
+    for a, b in zip(one.pieces, two.pieces, strict=True):
+        assert a.vertices.tobytes() == b.vertices.tobytes()
+        assert a.corners.tobytes() == b.corners.tobytes()
+    triangles = np.vstack([QUADS[:, [0, 1, 2]], QUADS[:, [0, 2, 3]]]).astype(np.uint16)
+    three = gridmesh.cut(CUBE, triangles, stroke, direction=DOWN)
+    assert np.allclose(three.report["volumes"], one.report["volumes"])
+
+
+def test_untouched_faces_keep_their_corners_and_vertices_their_bits():
+    vertices, faces = torus()
+    done = gridmesh.cut(vertices, faces, [[-4, 0.3, 0], [4, 0.5, 0]], direction=DOWN)
+    whole = 0
+    for piece in done.pieces:
+        sizes = np.diff(piece.offsets)
+        own = np.flatnonzero((sizes == 4) & (piece.source_face >= 0))
+        corners = piece.corners[piece.offsets[own][:, None] + np.arange(4)]
+        assert (piece.source_vertices[corners, 0] == faces[piece.source_face[own]]).all()
+        assert (piece.vertices[corners] == vertices[faces[piece.source_face[own]]]).all()
+        whole += len(own)
+    assert whole + done.report["cut_faces"] == len(faces)
+
+
+def test_data_can_be_carried_over():
+    vertices, faces = torus()
+    colour = vertices @ [0.3, -0.2, 0.9]
+    done = gridmesh.cut(vertices, faces, [[-4, 0.3, 0], [4, 0.5, 0]], direction=DOWN, cap=False)
+    for piece in done.pieces:
+        carried = (colour[piece.source_vertices] * piece.source_weights).sum(axis=1)
+        assert np.allclose(carried, piece.vertices @ [0.3, -0.2, 0.9])
+
+
+def test_keep_cap_and_gap():
+    both = gridmesh.cut(CUBE, QUADS, ACROSS, direction=DOWN)
+    for side, piece in zip(("left", "right"), both.pieces, strict=True):
+        one = gridmesh.cut(CUBE, QUADS, ACROSS, direction=DOWN, keep=side)
+        assert [p.side for p in one.pieces] == [side]
+        assert one.pieces[0].vertices.tobytes() == piece.vertices.tobytes()
+    uncapped = gridmesh.cut(CUBE, QUADS, ACROSS, direction=DOWN, cap=False).pieces[0]
+    assert len(open_edges(uncapped)) == len(uncapped.cap_loops[0])
+    assert (uncapped.source_face >= 0).all()
+    apart = gridmesh.cut(CUBE, QUADS, ACROSS, direction=DOWN, gap=0.1).report["volumes"]
+    width = 0.1 * np.hypot(3, 0.3) / 3
+    assert np.allclose(np.subtract(both.report["volumes"], apart), width / 2)
+
+
+def test_through_an_eye():
+    stroke = [[-1, 0.5, 0.0], [2, 0.5, 0.0]]
+    seen = gridmesh.cut(CUBE, QUADS, stroke, eye=[0.5, 0.5, 5])
+    assert np.allclose(seen.report["volumes"], [0.5, 0.5])
+    # The left of a stroke to the right is up: greater y, seen from above.
+    assert seen.pieces[0].vertices[:, 1].min() > 0.49
+
+
+@pytest.mark.parametrize("smooth", ["tangent", "curvature"])
+def test_bulging_caps_close_too(smooth):
+    vertices, faces = torus()
+    stroke = [[-4, 0.3, 0], [4, 0.5, 0]]
+    done = gridmesh.cut(vertices, faces, stroke, direction=DOWN, edge_length=0.3, smooth=smooth)
+    assert all(len(open_edges(piece)) == 0 for piece in done.pieces)
+    flat = gridmesh.cut(vertices, faces, stroke, direction=DOWN, edge_length=0.3)
+    assert done.report["volumes"][0] > flat.report["volumes"][0]
+
+
+@pytest.mark.parametrize(
+    ("kind", "change"),
+    [
+        ("stroke_misses", {"stroke": [[-1, 3, 0], [2, 3, 0]]}),
+        ("stroke_too_short", {"stroke": [[0, 0, 0], [0, 0, 5]]}),
+        ("self_intersecting", {"stroke": [[-1, 0, 0], [2, 1, 0], [2, 0, 0], [-1, 1, 0]]}),
+        ("behind_eye", {"direction": None, "eye": [0.5, 0.5, 0.5]}),
+        ("not_finite", {"stroke": [[-1, np.nan, 0], [2, 0, 0]]}),
+        ("invalid_option", {"direction": None}),
+        ("invalid_option", {"eye": [0, 0, 9]}),
+        ("invalid_option", {"direction": [0, 0, 0]}),
+        ("invalid_option", {"keep": "top"}),
+        ("invalid_option", {"smooth": "round"}),
+        ("invalid_option", {"edge_length": -1}),
+        ("invalid_option", {"gap": np.inf}),
+        ("invalid_shape", {"direction": [0, 1]}),
+        ("invalid_shape", {"faces": [[0, 1]]}),
+        ("invalid_shape", {"stroke": [[0, 1], [1, 2]]}),
+        ("invalid_face", {"faces": [[0, 1, 1]]}),
+        ("index_out_of_range", {"faces": [[0, 1, 8]]}),
+        ("index_out_of_range", {"faces": [[0, 1, -1]]}),
+    ],
+)
+def test_what_is_not_allowed_is_named(kind, change):
+    arguments = {"vertices": CUBE, "faces": QUADS, "stroke": ACROSS, "direction": DOWN} | change
+    with pytest.raises(gridmesh.GridMeshError) as caught:
+        gridmesh.cut(**arguments)
+    assert caught.value.kind == kind, caught.value
+
+
+@pytest.mark.parametrize(
+    "change", [{"cap": 1}, {"progress": 3}, {"edge_length": "fine"}, {"faces": QUADS * 1.0}]
+)
+def test_wrong_types(change):
+    arguments = {"vertices": CUBE, "faces": QUADS, "stroke": ACROSS, "direction": DOWN} | change
+    with pytest.raises(TypeError):
+        gridmesh.cut(**arguments)
+
+
+def test_progress_rises_and_cancels():
+    vertices, faces = torus()
+    seen = []
+    gridmesh.cut(vertices, faces, [[-4, 0.3, 0], [4, 0.5, 0]], direction=DOWN, progress=seen.append)
+    assert seen == sorted(seen)
+    assert seen[-1] == 1
+    with pytest.raises(gridmesh.GridMeshError, match="cancelled"):
+        gridmesh.cut(vertices, faces, ACROSS, direction=DOWN, progress=lambda f: f < 0.3)
+
+
+def test_documentation():
+    example = doctest.DocTestParser().get_doctest(gridmesh.cut.__doc__, {}, "cut", None, 0)
+    failures: list[str] = []
+    doctest.DocTestRunner(verbose=False).run(example, out=failures.append)
+    assert not failures, "".join(failures)
+    text = inspect.getdoc(gridmesh.cut)
+    for parameter in inspect.signature(gridmesh.cut).parameters:
+        assert f"\n{parameter} : " in text, parameter
+    for cls in (gridmesh.Cut, gridmesh.Piece):
+        for name in vars(cls):
+            assert name.startswith("_") or f"\n{name} : " in inspect.getdoc(cls), name
