@@ -16,6 +16,7 @@ mod meet;
 mod mesh;
 mod one;
 mod options;
+mod parts;
 mod patchwork;
 mod quality;
 mod regrid;
@@ -40,6 +41,7 @@ use self::check::check_loop;
 use self::meet::{Box3, count_meetings, is_graph, near_boxes};
 use self::mesh::Rim;
 pub use self::options::{FillOptions, Smooth};
+pub use self::parts::FillParts;
 use self::patchwork::Patchwork;
 pub use self::regrid::{Regrid, regrid};
 pub use self::report::{FillReport, Grid};
@@ -93,7 +95,7 @@ struct Shape {
 /// A loop that is not fit has its own variant for each reason: [`Error::IndexOutOfRange`],
 /// [`Error::TooFewPoints`], [`Error::RepeatedVertex`], [`Error::FigureEight`], [`Error::NotFinite`],
 /// [`Error::ExtremeSize`], [`Error::ZeroLengthEdge`], [`Error::SelfTouching`], [`Error::FacesOnBothSides`],
-/// [`Error::NonManifold`]. [`Error::FillIntersects`] if `strict`; [`Error::Cancelled`].
+/// [`Error::NonManifold`]. [`Error::InvalidOption`]; [`Error::FillIntersects`] if `strict`; [`Error::Cancelled`].
 ///
 /// Source: Nealen et al. 2009, section V, for the patch. The paper leaves the positions of the inner
 /// vertices to its surroundings (FiberMesh); here they come from [`Smooth`].
@@ -148,6 +150,7 @@ struct Job<'a> {
 impl Job<'_> {
     fn run(&self, loops: &[Result<Vec<u32>>], progress: Progress<'_>) -> Result<Vec<Result<Fill>>> {
         progress.report(0.0)?;
+        self.options.check(self.triangles)?;
         let since = Instant::now();
         let n_vertices = self.vertices.len();
         let mut seeds = loops.iter().flatten().flatten().copied().collect::<Vec<_>>();

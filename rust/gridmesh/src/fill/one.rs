@@ -65,7 +65,7 @@ impl Task<'_> {
     fn attempt(&self, unrolled: Unrolled, clock: &mut Clock, progress: Progress<'_>) -> Result<Attempt> {
         let loop_ = &self.checked.vertices;
         let smooth = self.job.options.smooth;
-        let wanted = wanted(loop_, self.rim);
+        let wanted = wanted(loop_, self.rim, &self.job.options.polygons);
         let is_taken = |i: usize, j: usize| self.taken.has(i, j);
         // A triangle that the mesh has already is filled with three others.
         let options = FlatOptions { single: !self.taken.face, ..FlatOptions::default() };
