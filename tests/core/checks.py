@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+import gridmesh
 import numpy as np
 
 
@@ -129,6 +130,7 @@ def check_patch(patch, contours: list[np.ndarray]) -> None:
     rounded = (vertices - patch.origin).astype(np.float32).astype(np.float64)
     assert (orientations(rounded, triangles) == 1).all(), "inverted triangle in float32"
     assert patch.report["min_angle"] > 0
+    assert gridmesh.stitch(patch).report["embedded"], "the boundary crosses itself"
 
     for k, contour in enumerate(contours):
         check_contour(patch, k, contour)

@@ -1,8 +1,11 @@
 //! How far a drawing lies from the boundary of its mesh.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 use crate::curve::ClosedCurve;
+use crate::embed::crossing_edges;
 use crate::segments::{SegmentGrid, nearest_on_segment};
 
 /// A boundary edge that the drawing strays from, and the farthest point of the stretch beside it.
@@ -94,6 +97,24 @@ pub(crate) fn deviation(
     far.sort_by(|a, b| (a.contour, a.edge).cmp(&(b.contour, b.edge)).then(b.distance.total_cmp(&a.distance)));
     far.dedup_by_key(|stray| (stray.contour, stray.edge));
     (worst, far)
+}
+
+/// The boundary edges that cross others, each with the farthest drawn point beside it.
+pub(crate) fn crossings(beside: &[Vec<Beside>], vertices: &[DVec2], arcs: &[Vec<f64>]) -> Vec<Stray> {
+    let mut start = 0;
+    let loops = arcs.iter().map(|arcs| {
+        start += arcs.len() as u32;
+        start - arcs.len() as u32..start
+    });
+    let loops: Vec<Range<u32>> = loops.collect();
+    let stray = |v: u32| {
+        let contour = loops.iter().position(|l| l.contains(&v))?;
+        let edge = (v - loops[contour].start) as usize;
+        let stretch = beside[contour].iter().filter(|point| point.edge == edge);
+        let Beside { point, arc, squared, .. } = *stretch.max_by(|a, b| a.squared.total_cmp(&b.squared))?;
+        Some(Stray { contour, edge, arc, point, distance: squared.sqrt() })
+    };
+    crossing_edges(vertices, &loops).into_iter().filter_map(stray).collect()
 }
 
 /// Replaces the distances by those to the nearest of all boundary edges.

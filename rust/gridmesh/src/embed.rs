@@ -1,5 +1,7 @@
 //! Whether a mesh meets itself: counted in space, or disproved in projection.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -124,15 +126,16 @@ fn segments_meet(p: DVec2, q: DVec2, a: DVec2, b: DVec2) -> bool {
 ///
 /// The number of triangles over a point is then its winding number, which is 0 or 1. A surface that
 /// is a graph over such triangles cannot meet itself.
-pub(crate) fn is_planar_embedding(
-    positions: &[DVec2],
-    triangles: &[[u32; 3]],
-    loops: &[std::ops::Range<u32>],
-) -> bool {
+pub(crate) fn is_planar_embedding(positions: &[DVec2], triangles: &[[u32; 3]], loops: &[Range<u32>]) -> bool {
     let at = |v: u32| positions[v as usize];
-    if !triangles.iter().all(|t| side2(at(t[0]), at(t[1]), at(t[2])) > 0.0) {
-        return false;
-    }
+    triangles.iter().all(|t| side2(at(t[0]), at(t[1]), at(t[2])) > 0.0)
+        && crossing_edges(positions, loops).is_empty()
+}
+
+/// The edges of closed `loops` that meet another one elsewhere than in a shared end (exact), in order,
+/// each by its first vertex.
+pub(crate) fn crossing_edges(positions: &[DVec2], loops: &[Range<u32>]) -> Vec<u32> {
+    let at = |v: u32| positions[v as usize];
     let mut edges = vec![];
     for contour in loops {
         let n = contour.len() as u32;
@@ -143,22 +146,29 @@ pub(crate) fn is_planar_embedding(
         Boxed::<2>::new(Rectangle::from_corners(a.min(b).into(), a.max(b).into()), index as u32)
     });
     let tree = RTree::bulk_load(boxes.collect());
-    edges.iter().enumerate().all(|(index, &[i, j])| {
-        let (a, b) = (at(i), at(j));
+    let meet = |[i, j]: [u32; 2], [k, l]: [u32; 2]| {
+        let (a, b, c, d) = (at(i), at(j), at(k), at(l));
+        if j == k || i == l {
+            // Neighbours along a loop: they must not fold onto each other.
+            let (tip, p, q) = if j == k { (b, a, d) } else { (a, b, c) };
+            return side2(p, tip, q) == 0.0 && (p - tip).dot(q - tip) >= 0.0;
+        }
+        segments_meet(a, b, c, d)
+    };
+    let mut found = vec![];
+    for (index, &edge) in edges.iter().enumerate() {
+        let [a, b] = edge.map(at);
         let envelope = AABB::from_corners(a.min(b).into(), a.max(b).into());
-        tree.locate_in_envelope_intersecting(&envelope).filter(|other| other.data > index as u32).all(
-            |other| {
-                let [k, l] = edges[other.data as usize];
-                let (c, d) = (at(k), at(l));
-                if j == k || i == l {
-                    // Neighbours along a loop: they must not fold onto each other.
-                    let (tip, p, q) = if j == k { (b, a, d) } else { (a, b, c) };
-                    return side2(p, tip, q) != 0.0 || (p - tip).dot(q - tip) < 0.0;
-                }
-                !segments_meet(a, b, c, d)
-            },
-        )
-    })
+        for other in tree.locate_in_envelope_intersecting(&envelope).filter(|o| o.data > index as u32) {
+            let other = edges[other.data as usize];
+            if meet(edge, other) {
+                found.extend([edge[0], other[0]]);
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Where a triangular lattice lies in the plane.
 
+use std::f64::consts::FRAC_PI_3;
+
 use glam::DVec2;
 
 use crate::axial::Axial;
@@ -24,6 +26,12 @@ pub struct Lattice {
 }
 
 impl Lattice {
+    /// The same lattice with the one of its six angles that is in [0, pi/3).
+    pub fn of_least_angle(self) -> Self {
+        let angle = self.angle.rem_euclid(FRAC_PI_3);
+        Self { angle: if angle < FRAC_PI_3 { angle } else { 0.0 }, ..self }
+    }
+
     /// The position of a lattice point, in lattice units.
     pub fn units(point: Axial) -> DVec2 {
         DVec2::new(f64::from(point.q) + 0.5 * f64::from(point.r), ROW_HEIGHT * f64::from(point.r))

@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 use crate::assemble::{Region, assemble};
 use crate::axial::Axial;
 use crate::curve::ClosedCurve;
-use crate::deviation::{beside, deviation};
+use crate::deviation::{beside, crossings, deviation};
 use crate::error::{Error, Result};
 use crate::lattice::{Lattice, ROW_HEIGHT};
 use crate::options::SketchOptions;
@@ -236,16 +236,15 @@ pub(crate) fn symmetrised(
         let Some(found) = both.placed_by(side, options) else { continue };
         // The mean, unless it bends triangles that a single side leaves in shape.
         let angle = min_angle(&found.patch) * if side == Side::Mean { 1.1 } else { 1.0 };
-        let bridged = found.bridged_inlets;
-        let is_better = |&(fewest, least, _): &(usize, f64, Placed)| {
-            bridged < fewest || bridged == fewest && angle > least
-        };
+        let lost = found.lost();
+        let is_better =
+            |&(fewest, least, _): &(usize, f64, Placed)| lost < fewest || lost == fewest && angle > least;
         if best.as_ref().is_none_or(is_better) {
-            best = Some((bridged, angle, found));
+            best = Some((lost, angle, found));
         }
     }
     let exact = is_exact(symmetry, lattice.edge_length);
-    let mut placed = match best {
+    let placed = match best {
         Some((.., placed)) => placed,
         None if exact => return Err(Obstacle { reason: "a triangle stays inverted".to_owned(), at }),
         None => placed.clone(),
@@ -256,9 +255,6 @@ pub(crate) fn symmetrised(
             symmetry.axis.reflected(placed.patch.vertices[v]).distance(image)
         })
         .fold(0.0, f64::max);
-    // The same lattice by the name that other patches give it.
-    let angle = lattice.angle.rem_euclid(FRAC_PI_3);
-    placed.patch.lattice.angle = if angle < FRAC_PI_3 { angle } else { 0.0 };
     Ok((placed, error / lattice.edge_length))
 }
 
@@ -311,6 +307,7 @@ impl Both<'_> {
             return None;
         }
         let found = pockets(&beside, &vertices, &patch.triangles, &arcs, INLET * h);
+        let crossing = if options.relax { crossings(&beside, &vertices, &arcs).len() } else { 0 };
         let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
         let triangles = patch.triangles.clone();
         Some(Placed {
@@ -318,6 +315,7 @@ impl Both<'_> {
             released_corners: self.placed.corners.saturating_sub(kept),
             max_deviation: farthest / h,
             bridged_inlets: found.occupied.len(),
+            crossings: crossing,
             ..self.placed.clone()
         })
     }

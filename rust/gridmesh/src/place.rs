@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::assemble::assemble;
 use crate::curve::ClosedCurve;
-use crate::deviation::{Stray, beside, deviation};
+use crate::deviation::{Stray, beside, crossings, deviation};
 use crate::error::Result;
 use crate::expel::expel;
 use crate::lattice::Lattice;
@@ -47,12 +47,24 @@ pub(crate) struct Placed {
     pub(crate) max_deviation: f64,
     /// Boundary edges that bridge an inlet with a mesh vertex in it.
     pub(crate) bridged_inlets: usize,
+    /// Boundary edges that cross others.
+    pub(crate) crossings: usize,
 }
 
 impl Placed {
-    /// True if a part of the drawing is lost in the mesh; without relaxation that is no fault.
-    pub(crate) fn is_bridged(&self, options: &SketchOptions) -> bool {
-        options.relax && self.bridged_inlets > 0
+    /// In how many places a part of the drawing is lost in the mesh.
+    pub(crate) fn lost(&self) -> usize {
+        self.bridged_inlets + self.crossings
+    }
+
+    /// Why the patch is not to be had, if it is not; without relaxation nothing is a fault.
+    pub(crate) fn fault(&self, options: &SketchOptions) -> Option<&'static str> {
+        match self {
+            _ if !options.relax => None,
+            Placed { crossings: 1.., .. } => Some("two walls of the drawing are too near to each other"),
+            Placed { bridged_inlets: 1.., .. } => Some("an inlet is narrower than the grid"),
+            _ => None,
+        }
     }
 }
 
@@ -138,6 +150,7 @@ pub(crate) fn place(
                 }
             }
         }
+        let crossing = if options.relax { crossings(&beside, &vertices, &arcs) } else { Vec::new() };
         let n_corners = found.iter().map(Vec::len).sum();
         let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
         let placed = Placed {
@@ -152,16 +165,18 @@ pub(crate) fn place(
             released_corners: n_corners - kept,
             max_deviation: farthest / h,
             bridged_inlets,
+            crossings: crossing.len(),
         };
         let first = valid.is_none();
         if valid.as_ref().is_none_or(|best| better(&placed, best)) {
             valid = Some(placed);
         }
         // Following the drawing more closely is worth one more round.
-        if !options.relax || !first && valid.as_ref().is_some_and(|best| best.bridged_inlets == 0) {
+        if !options.relax || !first && valid.as_ref().is_some_and(|best| best.lost() == 0) {
             break;
         }
         strays.extend(occupied);
+        strays.extend(crossing);
         strays.sort_by_key(|stray| (stray.contour, stray.edge));
         strays.dedup_by_key(|stray| (stray.contour, stray.edge));
         held = to_hold(&strays, &rims, &lengths, h);
@@ -175,8 +190,8 @@ pub(crate) fn place(
 /// Whether a patch that follows the drawing more closely is worth the triangles that this bends.
 fn better(placed: &Placed, best: &Placed) -> bool {
     let (least, before) = (min_angle(&placed.patch), min_angle(&best.patch));
-    placed.bridged_inlets < best.bridged_inlets
-        || (placed.bridged_inlets == best.bridged_inlets
+    placed.lost() < best.lost()
+        || (placed.lost() == best.lost()
             && placed.max_deviation < best.max_deviation
             && least >= before.min(LEAST_ANGLE))
 }

@@ -2,12 +2,14 @@
 
 mod lattices;
 mod least;
+mod size;
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use glam::DVec2;
 use rayon::prelude::*;
+use size::Miss;
 
 use crate::contours::read_contours;
 use crate::curve::ClosedCurve;
@@ -17,7 +19,7 @@ use crate::mirror;
 use crate::options::{
     BoundaryMethod, DEFAULT_TRIANGLES, MAX_TRIANGLES, SelfCrossing, SketchOptions, SketchReport,
 };
-use crate::outline::{Obstacle, Outline, grown, traced};
+use crate::outline::{Obstacle, Outline};
 use crate::patch::Patch;
 use crate::place::{Placed, min_angle, min_angle_off_corners, place};
 use crate::progress::Progress;
@@ -141,13 +143,6 @@ enum Effort {
     Quick,
 }
 
-/// Why a lattice angle gives no boundary of the size asked for.
-struct Miss {
-    obstacle: Obstacle,
-    /// There is a boundary, but with too many or too few triangles: a shift of the lattice may help.
-    is_of_count: bool,
-}
-
 struct Job<'a> {
     contours: Vec<ClosedCurve>,
     symmetry: Option<Symmetry>,
@@ -201,22 +196,26 @@ impl Job<'_> {
         self.lap("boundary", started);
         // Where no angle gives a boundary a shift does not either.
         let shifts = match effort {
-            Effort::Full if is_passable => self.shifts(lattices[0].0),
+            Effort::Full if is_passable => self.shifts(&lattices),
             _ => Vec::new(),
         };
-        let mut shifts = shifts.into_iter().enumerate();
+        let part_of = |k: usize| 0.4 + 0.5 * k as f64 / shifts.len() as f64;
+        let mut shifts = shifts.iter().copied().enumerate();
         let mut outlines = outlines.into_iter();
         let mut best: Option<(f64, Outline, Placed, Option<f64>)> = None;
         loop {
             let (lattice, outline) = match outlines.next() {
                 Some(next) => next,
-                None if best.as_ref().is_some_and(|(_, _, placed, _)| !placed.is_bridged(self.options)) => {
+                None if best
+                    .as_ref()
+                    .is_some_and(|(_, _, placed, _)| placed.fault(self.options).is_none()) =>
+                {
                     break;
                 }
                 None => {
                     let Some((k, (angle, shift))) = shifts.next() else { break };
                     let started = Instant::now();
-                    let part = progress.part(0.4 + 0.1 * k as f64, 0.5 + 0.1 * k as f64);
+                    let part = progress.part(part_of(k), part_of(k + 1));
                     let found = self.outline(asked, effort, angle, shift, part)?;
                     self.lap("boundary", started);
                     match found {
@@ -246,9 +245,9 @@ impl Job<'_> {
             }
         }
         if let Some((_, outline, placed, mirror_error)) = best {
-            if placed.is_bridged(self.options) {
-                let at = placed.patch.inlets.first().map_or(DVec2::ZERO, |inlet| inlet[0]);
-                return Ok(Err(Obstacle { reason: "an inlet is narrower than the grid".to_owned(), at }));
+            if let Some(reason) = placed.fault(self.options) {
+                let at = placed.patch.inlets.first().map_or(self.centre, |inlet| inlet[0]);
+                return Ok(Err(Obstacle { reason: reason.to_owned(), at }));
             }
             return Ok(Ok(self.report(&outline, placed, mirror_error)));
         }
@@ -272,98 +271,11 @@ impl Job<'_> {
         })
     }
 
-    /// The outline for one placement; with a number of triangles asked for, the edge length is
-    /// corrected until the number is reached within 5 % (10 % are accepted in the end). Only then
-    /// is a proof worth its time.
-    fn outline(
-        &self,
-        asked: Asked,
-        effort: Effort,
-        angle: f64,
-        shift: DVec2,
-        progress: Progress<'_>,
-    ) -> Result<Result<(Lattice, Outline), Miss>> {
-        const CORRECTIONS: usize = 6;
-        let unproved = SketchOptions { proof_nodes: 0, ..self.options.clone() };
-        let mut edge_length = match asked {
-            Asked::EdgeLength(h) => h,
-            Asked::Triangles(n) => self.first_guess(n),
-        };
-        let mut best: Option<(f64, Lattice, Outline)> = None;
-        let mut obstacle = Obstacle {
-            reason: "the number of triangles is not reached".to_owned(),
-            at: self.contours[0].points()[0],
-        };
-        for _ in 0..CORRECTIONS {
-            progress.report(0.0)?;
-            let lattice = self.lattice(edge_length, angle, shift);
-            let outline = match self.path(&lattice, &unproved, progress)? {
-                Ok(outline) => outline,
-                Err(found) => {
-                    obstacle = found;
-                    break;
-                }
-            };
-            let Asked::Triangles(n) = asked else {
-                best = Some((0.0, lattice, outline));
-                break;
-            };
-            let ratio = outline.triangles() as f64 / n as f64;
-            let off = (ratio - 1.0).abs();
-            if best.as_ref().is_none_or(|(least, ..)| off < *least) {
-                best = Some((off, lattice, outline));
-            }
-            if off <= 0.05 {
-                break;
-            }
-            edge_length *= ratio.sqrt().clamp(0.7, 1.4);
-        }
-        let allowed = match asked {
-            Asked::EdgeLength(_) => 0.0,
-            // A handful of triangles comes in few sizes: 6, 10, 13, 14, 16...
-            Asked::Triangles(n) => f64::max(0.1, 6.0 / n as f64),
-        };
-        let is_near = |outline: &Outline| match asked {
-            Asked::EdgeLength(_) => true,
-            Asked::Triangles(n) => (outline.triangles() as f64 / n as f64 - 1.0).abs() <= allowed,
-        };
-        let Some((off, lattice, mut outline)) = best else {
-            return Ok(Err(Miss { obstacle, is_of_count: false }));
-        };
-        if off > allowed {
-            return Ok(Err(Miss { obstacle, is_of_count: true }));
-        }
-        let is_asked = self.options.proof_nodes > 0 && self.options.boundary == BoundaryMethod::Optimal;
-        if is_asked && effort == Effort::Full && !outline.optimal {
-            // It may come out a little larger or smaller.
-            if let Ok(proved) = self.path(&lattice, self.options, progress)?
-                && is_near(&proved)
-            {
-                outline = proved;
-            }
-        }
-        Ok(Ok((lattice, outline)))
-    }
-
-    fn path(
-        &self,
-        lattice: &Lattice,
-        options: &SketchOptions,
-        progress: Progress<'_>,
-    ) -> Result<Result<Outline, Obstacle>> {
-        if let Some(symmetry) = &self.symmetry {
-            return mirror::traced(&self.contours, symmetry, lattice, options, progress);
-        }
-        match options.boundary {
-            BoundaryMethod::Grown => grown(&self.contours[0], lattice, options, progress),
-            BoundaryMethod::Optimal => traced(&self.contours, lattice, options, progress),
-        }
-    }
-
     /// The patch with its numbers.
     fn report(&mut self, outline: &Outline, placed: Placed, mirror_error: Option<f64>) -> Sketch {
         let started = Instant::now();
-        let patch = placed.patch;
+        let mut patch = placed.patch;
+        patch.lattice = patch.lattice.of_least_angle();
         let mut report = SketchReport {
             triangles: patch.triangles.len(),
             irregular: outline.irregular(),
@@ -408,9 +320,9 @@ fn check_origin(options: &SketchOptions, outline: &ClosedCurve, edge_length: f64
 fn faults(placed: &Placed) -> f64 {
     let (angle, distance) = ENOUGH;
     let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
-    // A patch that bridges an inlet serves only to say where.
-    let bridged = 100.0 * placed.bridged_inlets as f64;
-    bridged + 4.0 * starved + (placed.max_deviation - distance).max(0.0)
+    // A patch that has lost a part of the drawing serves only to say where.
+    let lost = 100.0 * placed.lost() as f64;
+    lost + 4.0 * starved + (placed.max_deviation - distance).max(0.0)
 }
 
 /// The centroid of the enclosed area.

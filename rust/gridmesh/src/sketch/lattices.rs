@@ -1,5 +1,7 @@
 //! Which lattices are tried for a drawing.
 
+use std::f64::consts::FRAC_PI_3;
+
 use glam::DVec2;
 
 use super::{Asked, Effort, Job};
@@ -29,13 +31,18 @@ impl Job<'_> {
     }
 
     /// The lattices to try where those do not do.
-    pub(super) fn shifts(&self, angle: f64) -> Vec<(f64, DVec2)> {
+    pub(super) fn shifts(&self, tried: &[(f64, DVec2)]) -> Vec<(f64, DVec2)> {
         match &self.symmetry {
             Some(symmetry) => {
                 mirror::placements(symmetry, self.options.angle).into_iter().skip(MIRROR_CANDIDATES).collect()
             }
             None if self.options.origin.is_some() => Vec::new(),
-            None => SHIFTS[1..].iter().map(|&shift| (angle, DVec2::from_array(shift))).collect(),
+            None => {
+                let of = |&(angle, _): &(f64, DVec2)| {
+                    SHIFTS[1..].iter().map(move |&shift| (angle, DVec2::from_array(shift)))
+                };
+                tried.iter().flat_map(of).collect()
+            }
         }
     }
 
@@ -43,7 +50,7 @@ impl Job<'_> {
     fn angles(&self, asked: Asked, effort: Effort) -> Vec<f64> {
         const CANDIDATES: usize = 4;
         if let Some(angle) = self.options.angle {
-            return vec![angle.rem_euclid(std::f64::consts::FRAC_PI_3)];
+            return vec![angle.rem_euclid(FRAC_PI_3)];
         }
         let count = match (self.options.boundary, effort) {
             (BoundaryMethod::Optimal, Effort::Full) => CANDIDATES,
@@ -68,6 +75,7 @@ impl Job<'_> {
     }
 
     pub(super) fn lattice(&self, edge_length: f64, angle: f64, shift: DVec2) -> Lattice {
+        let angle = if self.symmetry.is_some() { angle } else { self.turned_with_drawing(angle) };
         let origin = self.centre + edge_length * DVec2::from_angle(angle).rotate(shift);
         let Some(asked) = self.options.origin else {
             return Lattice { origin, angle, edge_length };
@@ -76,5 +84,14 @@ impl Job<'_> {
         let asked = Lattice { origin: asked, angle, edge_length };
         let nearest = asked.from_units(Lattice::units(Lattice::nearest(asked.to_units(self.centre))));
         Lattice { origin: nearest, ..asked }
+    }
+
+    /// Of the six angles of one lattice that which turns with the drawing: the search breaks ties by
+    /// lattice direction, and shifts are not the same in all six frames.
+    fn turned_with_drawing(&self, angle: f64) -> f64 {
+        let out = |point: &&DVec2| point.distance_squared(self.centre);
+        let farthest = self.contours[0].points().iter().max_by(|a, b| out(a).total_cmp(&out(b)));
+        let ahead = farthest.map_or(0.0, |point| (*point - self.centre).to_angle());
+        ahead + (angle - ahead).rem_euclid(FRAC_PI_3)
     }
 }

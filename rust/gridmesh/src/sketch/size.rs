@@ -1,0 +1,108 @@
+//! The boundary on one lattice, of the size asked for.
+
+use glam::DVec2;
+
+use super::{Asked, Effort, Job};
+use crate::error::Result;
+use crate::lattice::Lattice;
+use crate::mirror;
+use crate::options::{BoundaryMethod, SketchOptions};
+use crate::outline::{Obstacle, Outline, grown, traced};
+use crate::progress::Progress;
+
+/// Why a lattice angle gives no boundary of the size asked for.
+pub(super) struct Miss {
+    pub(super) obstacle: Obstacle,
+    /// There is a boundary, but with too many or too few triangles: a shift of the lattice may help.
+    pub(super) is_of_count: bool,
+}
+
+impl Job<'_> {
+    /// The outline for one placement; with a number of triangles asked for, the edge length is
+    /// corrected until the number is reached within 5 % (10 % are accepted in the end). Only then
+    /// is a proof worth its time.
+    pub(super) fn outline(
+        &self,
+        asked: Asked,
+        effort: Effort,
+        angle: f64,
+        shift: DVec2,
+        progress: Progress<'_>,
+    ) -> Result<Result<(Lattice, Outline), Miss>> {
+        const CORRECTIONS: usize = 6;
+        let unproved = SketchOptions { proof_nodes: 0, ..self.options.clone() };
+        let mut edge_length = match asked {
+            Asked::EdgeLength(h) => h,
+            Asked::Triangles(n) => self.first_guess(n),
+        };
+        let mut best: Option<(f64, Lattice, Outline)> = None;
+        let mut obstacle = Obstacle {
+            reason: "the number of triangles is not reached".to_owned(),
+            at: self.contours[0].points()[0],
+        };
+        for _ in 0..CORRECTIONS {
+            progress.report(0.0)?;
+            let lattice = self.lattice(edge_length, angle, shift);
+            let outline = match self.path(&lattice, &unproved, progress)? {
+                Ok(outline) => outline,
+                Err(found) => {
+                    obstacle = found;
+                    break;
+                }
+            };
+            let Asked::Triangles(n) = asked else {
+                best = Some((0.0, lattice, outline));
+                break;
+            };
+            let ratio = outline.triangles() as f64 / n as f64;
+            let off = (ratio - 1.0).abs();
+            if best.as_ref().is_none_or(|(least, ..)| off < *least) {
+                best = Some((off, lattice, outline));
+            }
+            if off <= 0.05 {
+                break;
+            }
+            edge_length *= ratio.sqrt().clamp(0.7, 1.4);
+        }
+        let allowed = match asked {
+            Asked::EdgeLength(_) => 0.0,
+            // A handful of triangles comes in few sizes: 6, 10, 13, 14, 16...
+            Asked::Triangles(n) => f64::max(0.1, 6.0 / n as f64),
+        };
+        let is_near = |outline: &Outline| match asked {
+            Asked::EdgeLength(_) => true,
+            Asked::Triangles(n) => (outline.triangles() as f64 / n as f64 - 1.0).abs() <= allowed,
+        };
+        let Some((off, lattice, mut outline)) = best else {
+            return Ok(Err(Miss { obstacle, is_of_count: false }));
+        };
+        if off > allowed {
+            return Ok(Err(Miss { obstacle, is_of_count: true }));
+        }
+        let is_asked = self.options.proof_nodes > 0 && self.options.boundary == BoundaryMethod::Optimal;
+        if is_asked && effort == Effort::Full && !outline.optimal {
+            // It may come out a little larger or smaller.
+            if let Ok(proved) = self.path(&lattice, self.options, progress)?
+                && is_near(&proved)
+            {
+                outline = proved;
+            }
+        }
+        Ok(Ok((lattice, outline)))
+    }
+
+    fn path(
+        &self,
+        lattice: &Lattice,
+        options: &SketchOptions,
+        progress: Progress<'_>,
+    ) -> Result<Result<Outline, Obstacle>> {
+        if let Some(symmetry) = &self.symmetry {
+            return mirror::traced(&self.contours, symmetry, lattice, options, progress);
+        }
+        match options.boundary {
+            BoundaryMethod::Grown => grown(&self.contours[0], lattice, options, progress),
+            BoundaryMethod::Optimal => traced(&self.contours, lattice, options, progress),
+        }
+    }
+}
