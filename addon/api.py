@@ -162,13 +162,14 @@ def fill(
     loops: Sequence[Sequence[int]],
     *,
     smooth: str,
+    polygons: np.ndarray | None = None,
     poses: Sequence[np.ndarray] = (),
     progress: Progress | None = None,
 ) -> list[Filled | str]:
     """Fill loops of a mesh: for each the patch, or the reason why there is none.
 
-    vertices : (n, 3), triangles : (m, 3), the mesh. loops : vertex indices in order. poses : (n, 3) each, other
-    positions of the same mesh. Raises NativeError without the module, and CancelledError if `progress` or
+    vertices : (n, 3), triangles : (m, 3), the mesh. loops : vertex indices in order. polygons : (m,), of which
+    each triangle is a part. poses : (n, 3) each, other positions of the same mesh. Raises NativeError without the module, and CancelledError if `progress` or
     Ctrl-C asked to stop.
     """
     gridmesh = native("fill_holes")
@@ -184,7 +185,9 @@ def fill(
         return Filled(fill.vertices, fill.triangles, solved, dict(fill.report), fill.extend)
 
     try:
-        fills = gridmesh.fill_holes(vertices, triangles, indices, smooth=smooth, progress=progress)
+        fills = gridmesh.fill_holes(
+            vertices, triangles, indices, smooth=smooth, polygons=polygons, progress=progress
+        )
         return [filled(fill) for fill in fills]
     except KeyboardInterrupt as error:
         raise CancelledError from error

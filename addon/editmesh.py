@@ -102,7 +102,9 @@ class EditMesh:
         mesh.calc_loop_triangles()
         triangles = np.empty(len(mesh.loop_triangles) * 3, np.int32)
         mesh.loop_triangles.foreach_get("vertices", triangles)
-        return Snapshot(positions, triangles.reshape(-1, 3), np.linalg.inv(linear), poses)
+        polygons = np.empty(len(mesh.loop_triangles), np.int32)
+        mesh.loop_triangles.foreach_get("polygon_index", polygons)
+        return Snapshot(positions, triangles.reshape(-1, 3), polygons, np.linalg.inv(linear), poses)
 
     def faulty(self, hole: holes.Hole, positions: np.ndarray) -> Problem | None:
         """Say what is wrong with the positions of a loop, if anything."""
@@ -251,6 +253,8 @@ class Snapshot:
     positions: np.ndarray
     """(n, 3), those of the active shape key."""
     triangles: np.ndarray
+    polygons: np.ndarray
+    """(m,) the face that each triangle is a part of."""
     to_local: np.ndarray
     """(3, 3), back to the object's space."""
     poses: list[np.ndarray]

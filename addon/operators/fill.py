@@ -207,7 +207,15 @@ class Job:
             return
         at = self.snapshot
         loops = [hole.vertices for hole in self.found.holes]
-        fills = api.fill(at.positions, at.triangles, loops, smooth=smooth, poses=at.poses, progress=progress)
+        fills = api.fill(
+            at.positions,
+            at.triangles,
+            loops,
+            smooth=smooth,
+            polygons=at.polygons,
+            poses=at.poses,
+            progress=progress,
+        )
         for loop, fill in zip(loops, fills, strict=True):
             if isinstance(fill, str):
                 edges = tuple(zip(loop, loop[1:] + loop[:1], strict=True))

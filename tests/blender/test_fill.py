@@ -47,8 +47,9 @@ def test_result_is_the_one_of_the_module():
     mesh = ob.data
     mesh.calc_loop_triangles()
     triangles = np.array([t.vertices[:] for t in mesh.loop_triangles], np.int32)
+    polygons = np.array([t.polygon_index for t in mesh.loop_triangles], np.int32)
     n, n_faces = len(mesh.vertices), len(mesh.polygons)
-    (expected,) = gridmesh.fill_holes(vertices(mesh), triangles)
+    (expected,) = gridmesh.fill_holes(vertices(mesh), triangles, polygons=polygons)
     bm = edit(ob)
     select(ob, rim(bm)[:1])
     fill()

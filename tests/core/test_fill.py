@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import doctest
+import pickle
 
 import gridmesh
 import numpy as np
@@ -375,3 +376,107 @@ def test_random_loops(n: int, seed: int, rough: float, wild: bool, smooth: str) 
     centre = loop.mean(axis=0)
     if len(fill.vertices):
         assert np.abs(fill.vertices - centre).max() < 20 * size
+
+
+@settings(deadline=None, max_examples=300)
+@given(st.data())
+def test_any_loop_is_filled_or_refused(data: st.DataObject) -> None:
+    """Repeated and touching vertices, flat triangles, edges of many faces: no crash, no edge made worse."""
+    count = data.draw(st.integers(3, 14))
+    seed = data.draw(st.integers(0, 2**32 - 1))
+    rng = np.random.default_rng(seed)
+    # Points of a coarse grid coincide, lie on lines and on each other's edges.
+    flat = data.draw(st.booleans())
+    vertices = rng.integers(0, data.draw(st.integers(2, 5)), (count, 3)).astype(float)
+    if flat:
+        vertices[:, 2] = 0.0
+    faces = rng.integers(0, count, (data.draw(st.integers(0, 12)), 3)).astype(np.int32)
+    if data.draw(st.booleans()):
+        loop = rng.permutation(count)[: data.draw(st.integers(3, count))]
+    else:
+        loop = rng.integers(0, count, data.draw(st.integers(0, count + 2)))
+    try:
+        fill = gridmesh.fill_hole(vertices, faces, loop)
+    except gridmesh.GridMeshError:
+        return
+    assert np.isfinite(fill.vertices).all()
+    size = max(np.ptp(vertices[loop], axis=0).max(), 1e-9)
+    if len(fill.vertices):
+        assert np.abs(fill.vertices - vertices[loop].mean(axis=0)).max() < 20 * size
+    patch: dict[tuple[int, int], int] = {}
+    for a, b in half_edges(fill.triangles).tolist():
+        patch[min(a, b), max(a, b)] = patch.get((min(a, b), max(a, b)), 0) + 1
+    around = {(min(a, b), max(a, b)) for a, b in zip(loop.tolist(), np.roll(loop, -1).tolist(), strict=True)}
+    assert {edge for edge, times in patch.items() if times == 1} == around
+    assert max(patch.values()) <= 2
+    sound = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]
+    old = {(min(a, b), max(a, b)) for a, b in half_edges(sound).tolist()}
+    assert not (patch.keys() - around) & old
+
+
+def sheet_of_quads(cut: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Quads with a square hole, each cut along one of its diagonals; also which quad each triangle is of."""
+    a, b = np.meshgrid(np.arange(13), np.arange(13), indexing="ij")
+    vertices = np.c_[a.ravel(), b.ravel(), 0 * a.ravel()].astype(float)
+    quads = [13 * i + j for i in range(12) for j in range(12) if not (4 <= i < 8 and 4 <= j < 8)]
+    triangles = []
+    for quad, one in zip(quads, cut[: len(quads)], strict=True):
+        p, q, r, s = quad, quad + 13, quad + 14, quad + 1
+        triangles += [(p, q, r), (p, r, s)] if one else [(p, q, s), (q, r, s)]
+    faces = np.array(triangles, np.int32)
+    side = [13 * 4 + j for j in range(4, 8)]
+    loop = side + [13 * i + 8 for i in range(4, 8)]
+    loop += [13 * 8 + j for j in range(8, 4, -1)] + [13 * i + 4 for i in range(8, 4, -1)]
+    return vertices, faces, np.array(loop), np.repeat(np.arange(len(quads)), 2)
+
+
+def test_diagonals_of_quads_do_not_matter() -> None:
+    rng = np.random.default_rng(2)
+    fills = []
+    for cut in (np.zeros(144, bool), np.ones(144, bool), rng.random(144) < 0.5):
+        vertices, faces, loop, polygons = sheet_of_quads(cut)
+        fills.append(gridmesh.fill_hole(vertices, faces, loop, polygons=polygons))
+    for fill in fills[1:]:
+        assert fill.triangles.tobytes() == fills[0].triangles.tobytes()
+    with pytest.raises(gridmesh.GridMeshError, match="polygons"):
+        gridmesh.fill_hole(vertices, faces, loop, polygons=polygons[1:])
+    with pytest.raises(TypeError, match="polygons"):
+        gridmesh.fill_hole(vertices, faces, loop, polygons=polygons + 0.5)
+
+
+def test_a_fill_survives_pickling() -> None:
+    vertices, faces, loop, _ = sheet_of_quads(np.zeros(144, bool))
+    vertices[:, 2] = np.sin(vertices[:, 0])
+    for smooth in ("flat", "tangent", "curvature"):
+        for way in (loop, loop[::-1]):
+            fill = gridmesh.fill_hole(vertices, faces, way, smooth=smooth)
+            again = pickle.loads(pickle.dumps(fill))
+            for name in ("loop", "vertices", "triangles"):
+                assert getattr(again, name).tobytes() == getattr(fill, name).tobytes()
+            assert again.report == fill.report
+            moved = vertices * [1.0, 1.1, 0.7]
+            assert again.refit(moved).tobytes() == fill.refit(moved).tobytes()
+            values = np.arange(len(loop), dtype=float)
+            assert again.extend(values).tobytes() == fill.extend(values).tobytes()
+    done = gridmesh.regrid(vertices, faces, np.arange(40))
+    again = pickle.loads(pickle.dumps(done))
+    assert again.off == done.off
+    assert again.fill.vertices.tobytes() == done.fill.vertices.tobytes()
+    assert again.source_weights.tobytes() == done.source_weights.tobytes()
+
+
+@pytest.mark.parametrize("damage", ["index", "loop", "columns", "smooth"])
+def test_a_damaged_pickle_of_a_fill_is_refused(damage: str) -> None:
+    vertices, faces, loop, _ = sheet_of_quads(np.zeros(144, bool))
+    make, fields = gridmesh.fill_hole(vertices, faces, loop).__reduce__()
+    fields = list(fields)
+    if damage == "index":
+        fields[7] = fields[7] + 1000
+    elif damage == "loop":
+        fields[0] = fields[0][:-1]
+    elif damage == "columns":
+        fields[5] = fields[5][:, :2].copy()
+    else:
+        fields[2] = "rough"
+    with pytest.raises(gridmesh.GridMeshError, match="damaged"):
+        make(*fields)

@@ -1,14 +1,15 @@
 //! `fill_hole`, `fill_holes` and the Python class `Fill`.
 
-use glam::DVec3;
-use gridmesh::fill::{Fill as CoreFill, FillOptions, FillReport, Smooth};
+use glam::{DVec2, DVec3};
+use gridmesh::fill::{Fill as CoreFill, FillOptions, FillParts, FillReport, Smooth};
 use numpy::{
-    AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods, PyUntypedArrayMethods,
+    AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods, PyReadonlyArray1,
+    PyReadonlyArray2, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::error::{detached, from_core};
+use crate::error::{detached, error, from_core};
 use crate::input::Argument;
 use crate::mesh::{Mesh, as_positions, indices, loop_argument, positions_argument, read_positions};
 use crate::watch::Watch;
@@ -29,6 +30,9 @@ use crate::{arrays, reports};
 ///     its slope and curvature.
 /// strict : bool
 ///     True: a fill that meets itself or the mesh is refused. False: this is counted in the report.
+/// polygons : (m,) array of int, optional
+///     The polygon that each triangle is a part of, the triangles of one following each other: the loop's
+///     vertices then get the edges that quads want, whichever diagonals cut them.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
 ///
@@ -64,9 +68,10 @@ use crate::{arrays, reports};
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, triangles, r#loop, *, smooth = None, strict = None, progress = None),
-    text_signature = "(vertices, triangles, loop, *, smooth='tangent', strict=False, progress=None)"
+    signature = (vertices, triangles, r#loop, *, smooth = None, strict = None, polygons = None, progress = None),
+    text_signature = "(vertices, triangles, loop, *, smooth='tangent', strict=False, polygons=None, progress=None)"
 )]
+#[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn fill_hole(
     py: Python<'_>,
     vertices: &Bound<'_, PyAny>,
@@ -74,11 +79,12 @@ pub fn fill_hole(
     r#loop: &Bound<'_, PyAny>,
     smooth: Option<&Bound<'_, PyAny>>,
     strict: Option<&Bound<'_, PyAny>>,
+    polygons: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Fill> {
     let mesh = Mesh::read(vertices, triangles)?;
     let indices = indices(&loop_argument("loop", r#loop))?;
-    let options = options(smooth, strict)?;
+    let options = options(smooth, strict, polygons)?;
     let (positions, faces) = (mesh.positions()?, mesh.faces()?);
     let fill = Watch::new(progress)?
         .run(py, |progress| gridmesh::fill::fill_hole(&positions, &faces, &indices, &options, progress))?;
@@ -95,7 +101,7 @@ pub fn fill_hole(
 ///     Loops as `fill_hole` takes them; None: all boundary loops of the mesh.
 /// max_edges : int, optional
 ///     Without `loops`: holes with more edges are left open (an open sheet's own border, say).
-/// smooth, strict, progress
+/// smooth, strict, polygons, progress
 ///     As in `fill_hole`.
 ///
 /// Returns
@@ -123,8 +129,8 @@ pub fn fill_hole(
 /// [22, 22]
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, triangles, loops = None, *, max_edges = None, smooth = None, strict = None, progress = None),
-    text_signature = "(vertices, triangles, loops=None, *, max_edges=None, smooth='tangent', strict=False, progress=None)"
+    signature = (vertices, triangles, loops = None, *, max_edges = None, smooth = None, strict = None, polygons = None, progress = None),
+    text_signature = "(vertices, triangles, loops=None, *, max_edges=None, smooth='tangent', strict=False, polygons=None, progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn fill_holes(
@@ -135,10 +141,11 @@ pub fn fill_holes(
     max_edges: Option<&Bound<'_, PyAny>>,
     smooth: Option<&Bound<'_, PyAny>>,
     strict: Option<&Bound<'_, PyAny>>,
+    polygons: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Py<PyList>> {
     let mesh = Mesh::read(vertices, triangles)?;
-    let mut options = options(smooth, strict)?;
+    let mut options = options(smooth, strict, polygons)?;
     if let Some(value) = max_edges {
         let it = Argument { name: "max_edges", value, allowed: "a whole number not below 0, or None" };
         options.max_edges = Some(it.count()?);
@@ -180,7 +187,7 @@ pub fn fill_holes(
 ///     The triangles of the region, which must be a disk: connected, one border, not touching itself.
 /// keep_shape : bool
 ///     True: the new vertices are laid on the old surface. False: the hole is filled as by `fill_hole`.
-/// smooth, strict, progress
+/// smooth, strict, polygons, progress
 ///     As in `fill_hole`; `smooth` matters without `keep_shape` only.
 ///
 /// Returns
@@ -211,8 +218,8 @@ pub fn fill_holes(
 /// (32, True)
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, triangles, faces, *, keep_shape = None, smooth = None, strict = None, progress = None),
-    text_signature = "(vertices, triangles, faces, *, keep_shape=True, smooth='tangent', strict=False, progress=None)"
+    signature = (vertices, triangles, faces, *, keep_shape = None, smooth = None, strict = None, polygons = None, progress = None),
+    text_signature = "(vertices, triangles, faces, *, keep_shape=True, smooth='tangent', strict=False, polygons=None, progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn regrid(
@@ -223,12 +230,13 @@ pub fn regrid(
     keep_shape: Option<&Bound<'_, PyAny>>,
     smooth: Option<&Bound<'_, PyAny>>,
     strict: Option<&Bound<'_, PyAny>>,
+    polygons: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Regrid> {
     let mesh = Mesh::read(vertices, triangles)?;
     let allowed = "an (f,) array of whole numbers";
     let region = indices(&Argument { name: "faces", value: faces, allowed })?;
-    let options = options(smooth, strict)?;
+    let options = options(smooth, strict, polygons)?;
     let keep = keep_shape
         .map_or(Ok(true), |value| Argument { name: "keep_shape", value, allowed: "True or False" }.bool())?;
     let (positions, all) = (mesh.positions()?, mesh.faces()?);
@@ -286,11 +294,30 @@ impl Regrid {
     fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
         slf
     }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let py = slf.py();
+        let this = slf.get();
+        let fields = (&this.fill, &this.source_faces, &this.source_weights, &this.unused, this.off);
+        Ok((py.import("gridmesh._native")?.getattr("_regrid")?, fields.into_pyobject(py)?.into_any()))
+    }
+}
+
+/// Makes a region from what `Regrid.__reduce__` returned.
+#[pyfunction]
+pub fn _regrid(
+    fill: Py<Fill>,
+    source_faces: Py<PyArray1<i32>>,
+    source_weights: Py<PyArray2<f64>>,
+    unused: Py<PyArray1<i32>>,
+    off: f64,
+) -> Regrid {
+    Regrid { fill, source_faces, source_weights, unused, off }
 }
 
 /// A filled hole; made by `fill_hole` and `fill_holes`.
 ///
-/// All arrays are read-only and C-contiguous; copy them to change them.
+/// All arrays are read-only and C-contiguous; copy them to change them. A fill can be pickled.
 ///
 /// Attributes
 /// ----------
@@ -326,11 +353,16 @@ pub struct Fill {
 
 impl Fill {
     fn new(py: Python<'_>, inner: CoreFill) -> PyResult<Self> {
+        let report = report(py, &inner.report)?;
+        Self::made(py, inner, report)
+    }
+
+    fn made(py: Python<'_>, inner: CoreFill, report: Py<PyDict>) -> PyResult<Self> {
         Ok(Self {
             r#loop: arrays::indices(py, inner.loop_.iter().copied()),
             vertices: arrays::space_points(py, &inner.vertices)?,
             triangles: arrays::triangles(py, &inner.triangles)?,
-            report: report(py, &inner.report)?,
+            report,
             inner,
         })
     }
@@ -415,17 +447,86 @@ impl Fill {
     fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
         slf
     }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let py = slf.py();
+        let parts = slf.get().inner.parts();
+        let smooth = WORDS.iter().find(|(_, smooth)| *smooth == parts.smooth).map(|(word, _)| *word);
+        let fields = (
+            arrays::indices(py, parts.loop_.into_iter()),
+            parts.reversed,
+            smooth,
+            parts.vertices,
+            arrays::plane_points(py, &parts.flat)?,
+            arrays::space_points(py, &parts.positions)?,
+            arrays::indices(py, parts.outer.into_iter()),
+            arrays::triangles(py, &parts.triangles)?,
+            parts.patch,
+            slf.get().report.clone_ref(py),
+        );
+        Ok((py.import("gridmesh._native")?.getattr("_fill")?, fields.into_pyobject(py)?.into_any()))
+    }
 }
 
-fn options(smooth: Option<&Bound<'_, PyAny>>, strict: Option<&Bound<'_, PyAny>>) -> PyResult<FillOptions> {
+/// Makes a fill from what `Fill.__reduce__` returned.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the fields of the class")]
+pub fn _fill(
+    py: Python<'_>,
+    r#loop: PyReadonlyArray1<'_, i32>,
+    backwards: bool,
+    smooth: &str,
+    vertices: usize,
+    flat: PyReadonlyArray2<'_, f64>,
+    positions: PyReadonlyArray2<'_, f64>,
+    outer: PyReadonlyArray1<'_, i32>,
+    triangles: PyReadonlyArray2<'_, i32>,
+    patch: usize,
+    report: Py<PyDict>,
+) -> PyResult<Fill> {
+    let broken = || error(py, "invalid_shape", "the pickled fill is damaged");
+    let smooth = WORDS.iter().find(|(word, _)| *word == smooth).ok_or_else(broken)?.1;
+    // Negative numbers become large ones, which are refused.
+    let numbers = |array: &PyReadonlyArray1<'_, i32>| array.as_array().iter().map(|&v| v as u32).collect();
+    let columns = |array: &PyReadonlyArray2<'_, f64>, n| array.as_array().ncols() == n;
+    if !columns(&flat, 2) || !columns(&positions, 3) || triangles.as_array().ncols() != 3 {
+        return Err(broken());
+    }
+    let parts = FillParts {
+        loop_: numbers(&r#loop),
+        reversed: backwards,
+        smooth,
+        vertices,
+        flat: flat.as_array().rows().into_iter().map(|p| DVec2::new(p[0], p[1])).collect(),
+        positions: positions.as_array().rows().into_iter().map(|p| DVec3::new(p[0], p[1], p[2])).collect(),
+        outer: numbers(&outer),
+        triangles: triangles.as_array().rows().into_iter().map(|t| [0, 1, 2].map(|k| t[k] as u32)).collect(),
+        patch,
+    };
+    let inner = CoreFill::from_parts(parts, FillReport::default()).map_err(|_| broken())?;
+    Fill::made(py, inner, report)
+}
+
+/// The words for `smooth`.
+const WORDS: [(&str, Smooth); 3] =
+    [("flat", Smooth::Flat), ("tangent", Smooth::Tangent), ("curvature", Smooth::Curvature)];
+
+fn options(
+    smooth: Option<&Bound<'_, PyAny>>,
+    strict: Option<&Bound<'_, PyAny>>,
+    polygons: Option<&Bound<'_, PyAny>>,
+) -> PyResult<FillOptions> {
     let mut options = FillOptions::default();
     if let Some(value) = smooth {
-        let words = [("flat", Smooth::Flat), ("tangent", Smooth::Tangent), ("curvature", Smooth::Curvature)];
         let it = Argument { name: "smooth", value, allowed: "'flat', 'tangent' or 'curvature'" };
-        options.smooth = it.word(&words)?;
+        options.smooth = it.word(&WORDS)?;
     }
     if let Some(value) = strict {
         options.strict = Argument { name: "strict", value, allowed: "True or False" }.bool()?;
+    }
+    if let Some(value) = polygons {
+        let allowed = "an (m,) array of whole numbers, or None";
+        options.polygons = indices(&Argument { name: "polygons", value, allowed })?;
     }
     Ok(options)
 }

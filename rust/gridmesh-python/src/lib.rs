@@ -443,5 +443,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(cut::cut, module)?)?;
     module.add_function(wrap_pyfunction!(patch::_patch, module)?)?;
     module.add_function(wrap_pyfunction!(surface::_surface, module)?)?;
+    module.add_function(wrap_pyfunction!(fill::_fill, module)?)?;
+    module.add_function(wrap_pyfunction!(fill::_regrid, module)?)?;
     Ok(())
 }

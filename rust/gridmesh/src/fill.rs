@@ -14,7 +14,9 @@ mod grown;
 pub mod holes;
 mod meet;
 mod mesh;
+mod one;
 mod options;
+mod parts;
 mod patchwork;
 mod quality;
 mod regrid;
@@ -23,6 +25,7 @@ mod reserve;
 mod settle;
 mod small;
 mod solver;
+mod span;
 mod sweep;
 mod unroll;
 mod walls;
@@ -34,18 +37,17 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use self::check::{Checked, check_loop};
-use self::flat::{FlatOptions, fill_flat};
+use self::check::check_loop;
 use self::meet::{Box3, count_meetings, is_graph, near_boxes};
 use self::mesh::Rim;
 pub use self::options::{FillOptions, Smooth};
+pub use self::parts::FillParts;
 use self::patchwork::Patchwork;
 pub use self::regrid::{Regrid, regrid};
 pub use self::report::{FillReport, Grid};
-use self::reserve::{Taken, edges, groups, refuse_shared_edges, wanted};
+use self::reserve::{edges, groups, refuse_shared_edges};
 pub use self::unroll::Unrolling;
 use crate::error::{Error, Result};
-use crate::metrics::min_angle;
 use crate::progress::Progress;
 
 /// Groups of loops filled between two reports of progress.
@@ -93,7 +95,7 @@ struct Shape {
 /// A loop that is not fit has its own variant for each reason: [`Error::IndexOutOfRange`],
 /// [`Error::TooFewPoints`], [`Error::RepeatedVertex`], [`Error::FigureEight`], [`Error::NotFinite`],
 /// [`Error::ExtremeSize`], [`Error::ZeroLengthEdge`], [`Error::SelfTouching`], [`Error::FacesOnBothSides`],
-/// [`Error::NonManifold`]. [`Error::FillIntersects`] if `strict`; [`Error::Cancelled`].
+/// [`Error::NonManifold`]. [`Error::InvalidOption`]; [`Error::FillIntersects`] if `strict`; [`Error::Cancelled`].
 ///
 /// Source: Nealen et al. 2009, section V, for the patch. The paper leaves the positions of the inner
 /// vertices to its surroundings (FiberMesh); here they come from [`Smooth`].
@@ -148,6 +150,7 @@ struct Job<'a> {
 impl Job<'_> {
     fn run(&self, loops: &[Result<Vec<u32>>], progress: Progress<'_>) -> Result<Vec<Result<Fill>>> {
         progress.report(0.0)?;
+        self.options.check(self.triangles)?;
         let since = Instant::now();
         let n_vertices = self.vertices.len();
         let mut seeds = loops.iter().flatten().flatten().copied().collect::<Vec<_>>();
@@ -205,88 +208,6 @@ impl Job<'_> {
         self.count_meetings(&mut fills);
         progress.report(1.0)?;
         Ok(fills)
-    }
-
-    /// Fills one loop; `reserved` edges are taken by earlier fills.
-    fn one(
-        &self,
-        checked: &Checked,
-        rim: &Rim,
-        reserved: &FxHashSet<[u32; 2]>,
-        progress: Progress<'_>,
-    ) -> Result<Fill> {
-        let mut clock = Clock::new();
-        progress.report(0.0)?;
-        let loop_ = &checked.vertices;
-        let n = loop_.len();
-        let around = loop_.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
-        let unrolled = unroll::unroll(&around);
-        clock.stage("unroll");
-
-        let taken = Taken::new(checked, rim, reserved);
-        let wanted = wanted(loop_, rim);
-        let is_taken = |i: usize, j: usize| taken.has(i, j);
-        // A triangle that the mesh has already is filled with three others.
-        let flat_options = FlatOptions { single: !taken.face, ..FlatOptions::default() };
-        let patch = fill_flat(&unrolled.points, &wanted, &is_taken, &flat_options, progress)?;
-        if patch.quality.repeated > 0 {
-            return Err(Error::NoPatch {
-                reason: "every patch repeats an edge of the mesh".into(),
-                at: around[0].truncate().to_array(),
-            });
-        }
-        let method = Grid::of(patch.method);
-        clock.stage("grid");
-        progress.report(0.0)?;
-
-        let rings = if self.options.smooth == Smooth::Curvature { 2 } else { 1 };
-        let work = Patchwork::new(loop_, patch.interior.len(), &patch.triangles, rim, rings);
-        let folded = patch.folded;
-        let mut flat = unrolled.points;
-        flat.extend(patch.interior);
-        let mut shape = Shape {
-            work,
-            loop_: loop_.clone(),
-            reversed: checked.reversed,
-            flat,
-            smooth: self.options.smooth,
-            vertices: self.vertices.len(),
-            positions: vec![],
-        };
-        let solved = shape.solve(self.vertices)?;
-        shape.positions = solved.positions;
-        clock.stage("fair");
-
-        let first_new = self.vertices.len() as u32;
-        let name = |v: u32| if (v as usize) < n { loop_[v as usize] } else { first_new + v - n as u32 };
-        let work = &shape.work;
-        let own = &shape.work.triangles[..work.n_patch];
-        let valence = |v: usize| work.range(v).len();
-        let report = FillReport {
-            triangles: own.len(),
-            vertices: work.inner().len(),
-            irregular: work.inner().filter(|&v| valence(v) != 6).count(),
-            irregular_loop: (0..n).filter(|&v| valence(v) != 6).count(),
-            grid: method,
-            folded,
-            rim_angle: solved.rim_angle,
-            unrolling: unrolled.method,
-            distortion: unrolled.distortion,
-            winding_conflicts: checked.conflicts,
-            wire_edges: checked.wire,
-            min_angle: min_angle(&shape.positions, own),
-            folds: fit::folds(work, &shape.positions),
-            self_intersections: 0,
-            repaired: solved.repaired,
-            seconds: clock.seconds,
-        };
-        Ok(Fill {
-            loop_: if checked.reversed { loop_.iter().rev().copied().collect() } else { loop_.clone() },
-            vertices: shape.positions[work.inner()].to_vec(),
-            triangles: own.iter().map(|t| t.map(name)).collect(),
-            report,
-            shape: Arc::new(shape),
-        })
     }
 
     /// Counts what new triangles meet: the mesh, themselves, and those of fills that come before.
@@ -394,7 +315,11 @@ impl Clock {
     }
 
     fn stage(&mut self, name: &'static str) {
-        self.seconds.push((name, self.since.elapsed().as_secs_f64()));
+        let elapsed = self.since.elapsed().as_secs_f64();
+        match self.seconds.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, seconds)) => *seconds += elapsed,
+            None => self.seconds.push((name, elapsed)),
+        }
         self.since = Instant::now();
     }
 }

@@ -14,7 +14,9 @@ __all__ = [
     "Regrid",
     "Surface",
     "__version__",
+    "_fill",
     "_patch",
+    "_regrid",
     "_surface",
     "combine",
     "cut",
@@ -170,6 +172,7 @@ def fill_hole(
     *,
     smooth: Literal["flat", "tangent", "curvature"] = "tangent",
     strict: bool = False,
+    polygons: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> Fill: ...
 def fill_holes(
@@ -180,6 +183,7 @@ def fill_holes(
     max_edges: int | None = None,
     smooth: Literal["flat", "tangent", "curvature"] = "tangent",
     strict: bool = False,
+    polygons: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> list[Fill | GridMeshError]: ...
 def regrid(
@@ -190,6 +194,7 @@ def regrid(
     keep_shape: bool = True,
     smooth: Literal["flat", "tangent", "curvature"] = "tangent",
     strict: bool = False,
+    polygons: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> Regrid: ...
 
@@ -248,3 +253,16 @@ def map_sketches(
 ) -> list[Surface | GridMeshError]: ...
 def _patch(vertices: Any, triangles: Any, contours: Any, inlets: Any, lattice: Any, report: Any) -> Patch: ...
 def _surface(vertices: Any, triangles: Any, silhouette: Any, uv: Any, report: Any) -> Surface: ...
+def _fill(
+    loop: Any,
+    backwards: Any,
+    smooth: Any,
+    vertices: Any,
+    flat: Any,
+    positions: Any,
+    outer: Any,
+    triangles: Any,
+    patch: Any,
+    report: Any,
+) -> Fill: ...
+def _regrid(fill: Any, source_faces: Any, source_weights: Any, unused: Any, off: Any) -> Regrid: ...

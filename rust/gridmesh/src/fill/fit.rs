@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::fair::{Bending, Membrane, seams};
+use super::meet::{count_meetings, is_graph};
 use super::patchwork::Patchwork;
 use super::sweep::sweep;
 use super::unroll::area_vector;
@@ -37,10 +38,31 @@ const PLANAR: f64 = 1e-12;
 pub(super) struct Solved {
     /// Of all vertices of the patchwork.
     pub positions: Vec<DVec3>,
+    pub faults: Faults,
     /// Fallbacks.
     pub repaired: usize,
     /// Mean angle between the film and the surface around the loop, in radians.
     pub rim_angle: f64,
+}
+
+/// What is wrong with a patch in space; less is better.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Faults {
+    /// Pairs of triangles, of the patch or one of it and one around it, that meet.
+    pub meetings: usize,
+    /// The surface is not continued although it should be: the film was the only one without meetings.
+    pub film: bool,
+    /// Inner edges with more than 120 degrees between the triangles.
+    pub folds: usize,
+}
+
+impl Faults {
+    fn of(work: &Patchwork, positions: &[DVec3]) -> Faults {
+        let (own, around) = work.triangles.split_at(work.n_patch);
+        let apart = is_graph(&positions[..work.n], &positions[..work.end], own);
+        let (meetings, _) = count_meetings(|v| positions[v as usize], own, around, apart);
+        Faults { meetings, film: false, folds: folds(work, positions) }
+    }
 }
 
 impl Shape {
@@ -60,30 +82,31 @@ impl Shape {
             positions[work.end + k] = mesh[v as usize];
         }
         let membrane = if work.inner().is_empty() { None } else { self.film(&mut positions)? };
-        let mut solved = Solved { rim_angle: rim_angle(work, &positions), positions, repaired: 0 };
-        if work.inner().is_empty() || self.smooth == Smooth::Flat || !work.closed[..work.n].contains(&true) {
-            return Ok(solved);
-        }
-        let mut stages = vec![solved.positions.clone()];
-        match self.bend(&mut solved.positions, membrane, &mut stages) {
-            Ok(()) => {}
-            // Triangles without area can spoil the equations: what was reached before has to do.
-            Err(Error::Solver { .. }) => {
-                solved.positions = stages.pop().unwrap_or_default();
-                solved.repaired = 1;
-                return Ok(solved);
+        let rim_angle = rim_angle(work, &positions);
+        let mut solved = Solved { positions, faults: Faults::default(), repaired: 0, rim_angle };
+        let mut stages = vec![];
+        if !work.inner().is_empty() && self.smooth != Smooth::Flat && work.closed[..work.n].contains(&true) {
+            stages.push(solved.positions.clone());
+            match self.bend(&mut solved.positions, membrane, &mut stages) {
+                Ok(()) => {}
+                // Triangles without area can spoil the equations: what was reached before has to do.
+                Err(Error::Solver { .. }) => {
+                    solved.positions = stages.pop().unwrap_or_default();
+                    solved.repaired = 1;
+                }
+                Err(other) => return Err(other),
             }
-            Err(other) => return Err(other),
         }
-        let mut least = folds(work, &solved.positions);
-        // The film itself folds least, but it does not continue the surface.
-        for stage in stages.into_iter().skip(1).rev() {
-            if least == 0 {
+        solved.faults = Faults::of(work, &solved.positions);
+        // The film has the fewest faults, but it does not continue the surface: it is for patches that meet
+        // something and could do without.
+        for (k, stage) in stages.into_iter().enumerate().rev() {
+            if solved.faults == Faults::default() || (k == 0 && solved.faults.meetings == 0) {
                 break;
             }
-            let folded = folds(work, &stage);
-            if folded < least {
-                (solved.positions, least, solved.repaired) = (stage, folded, 1);
+            let faults = Faults { film: k == 0, ..Faults::of(work, &stage) };
+            if faults < solved.faults && (k > 0 || faults.meetings == 0) {
+                (solved.positions, solved.faults, solved.repaired) = (stage, faults, 1);
             }
         }
         Ok(solved)

@@ -136,8 +136,9 @@ pub(crate) fn fill_flat(
 /// Loops with more vertices are tried with fewer candidates.
 const LARGE: usize = 300;
 
-/// Badness below which no further method is tried.
-const GOOD: f64 = 1.5;
+/// Badness below which no further method is tried. With 1.5 the mean radius ratio on disks cut from meshes
+/// is lower by a hundredth, with 0.8 it is the same.
+const GOOD: f64 = 1.0;
 
 struct Contest<'a> {
     points: &'a [DVec2],
@@ -212,6 +213,9 @@ impl Contest<'_> {
             }
             found.sort_by_key(|f| f.0);
             for (i, (_, target)) in found.iter().take(options.placed).enumerate() {
+                if i > 0 && self.points.len() > LARGE && self.is_good() {
+                    break;
+                }
                 progress.report(i as f64 / options.placed as f64)?;
                 let wishes =
                     Wishes { target, turns: &turns, closeness: options.closeness, reach: options.reach };
@@ -230,11 +234,15 @@ impl Contest<'_> {
                 }
             }
             let uneven = shape.flux.iter().map(|f| f.abs()).sum::<f64>() > 1.0;
-            if !uneven || self.best.as_ref().is_some_and(|(badness, _)| *badness < GOOD) {
+            if !uneven || self.is_good() {
                 break;
             }
         }
         Ok(())
+    }
+
+    fn is_good(&self) -> bool {
+        self.best.as_ref().is_some_and(|(badness, _)| *badness < GOOD)
     }
 
     /// Triangles inside a path, mapped to the loop.

@@ -16,6 +16,8 @@ pub(crate) struct Rim {
     pub ids: Vec<u32>,
     /// Triangles in the order of the mesh, with vertices as numbered here.
     pub triangles: Vec<[u32; 3]>,
+    /// Their numbers in the mesh.
+    pub numbers: Vec<u32>,
     start: Vec<u32>,
     incident: Vec<u32>,
 }
@@ -48,12 +50,12 @@ impl Rim {
             }
             found = touching(&marked, triangles)?;
         }
-        let near = found.iter().map(|&t| triangles[t as usize]).filter(|t| !repeats(t));
-        Ok(Self::of(near.collect()))
+        found.retain(|&t| !repeats(&triangles[t as usize]));
+        Ok(Self::of(found.iter().map(|&t| triangles[t as usize]).collect(), found))
     }
 
     /// All of the given triangles.
-    fn of(mut triangles: Vec<[u32; 3]>) -> Self {
+    fn of(mut triangles: Vec<[u32; 3]>, numbers: Vec<u32>) -> Self {
         let mut ids = triangles.iter().flatten().copied().collect::<Vec<_>>();
         ids.sort_unstable();
         ids.dedup();
@@ -75,7 +77,7 @@ impl Rim {
                 fill[v as usize] += 1;
             }
         }
-        Rim { ids, triangles, start, incident }
+        Rim { ids, triangles, numbers, start, incident }
     }
 
     /// The number here of a vertex of the mesh, if it belongs to a triangle here.

@@ -1,5 +1,7 @@
 //! What can be chosen about a fill.
 
+use crate::error::{Error, Result};
+
 /// How a patch continues the surface around its loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Smooth {
@@ -21,4 +23,22 @@ pub struct FillOptions {
     pub strict: bool,
     /// Of [`fill_holes`](super::fill_holes) without given loops: leave holes with more edges open.
     pub max_edges: Option<usize>,
+    /// For each triangle the polygon that it is a part of, the triangles of one following each other; empty
+    /// if all are faces of their own. Vertices of the loop are then to be regular by the polygons' corners,
+    /// not by diagonals that happen to cut them.
+    pub polygons: Vec<u32>,
+}
+
+impl FillOptions {
+    /// Refuses options that do not fit a mesh.
+    pub(super) fn check(&self, triangles: &[[u32; 3]]) -> Result<()> {
+        if self.polygons.is_empty() || self.polygons.len() == triangles.len() {
+            return Ok(());
+        }
+        Err(Error::InvalidOption {
+            name: "polygons",
+            value: format!("of length {}", self.polygons.len()),
+            allowed: "one number for each triangle, or none",
+        })
+    }
 }

@@ -58,12 +58,17 @@ impl Patchwork {
         let mut triangles = patch.to_vec();
         triangles
             .extend(around.iter().map(|&t| rim.triangles[t as usize].map(|v| number(rim.ids[v as usize]))));
+        Patchwork::of(n, end, outer, triangles, patch.len())
+    }
+
+    /// Of triangles over `n` loop vertices, new ones up to `end` and `outer`, those of the patch first.
+    pub fn of(n: usize, end: usize, outer: Vec<u32>, triangles: Vec<[u32; 3]>, n_patch: usize) -> Self {
         let count = end + outer.len();
         let mut it = Patchwork {
             n,
             end,
             outer,
-            n_patch: patch.len(),
+            n_patch,
             start: vec![0],
             near: vec![],
             slots: vec![],

@@ -51,6 +51,7 @@ pub fn regrid(
     options: &FillOptions,
     progress: Progress<'_>,
 ) -> Result<Regrid> {
+    options.check(triangles)?;
     let mut chosen = vec![false; triangles.len()];
     for &face in faces {
         let mark = chosen.get_mut(face as usize).ok_or(Error::IndexOutOfRange {
@@ -64,7 +65,7 @@ pub fn regrid(
         let kept = (0..triangles.len()).filter(|&t| chosen[t] == wanted && !repeats(&triangles[t]));
         kept.map(|t| (t as u32, triangles[t])).unzip()
     };
-    let ((numbers, region), (_, rest)) = (pick(true), pick(false));
+    let ((numbers, region), (kept, rest)) = (pick(true), pick(false));
     let mut loops = boundary_loops(vertices.len(), &region)?;
     let mut used = region.iter().flatten().copied().collect::<Vec<_>>();
     used.sort_unstable();
@@ -78,8 +79,12 @@ pub fn regrid(
     }
     // The patch takes the region's place: it runs as the region does, against the direction of a hole in it.
     let loop_ = border.iter().rev().copied().collect::<Vec<_>>();
+    let polygons = &options.polygons;
+    let polygons =
+        if polygons.is_empty() { vec![] } else { kept.iter().map(|&t| polygons[t as usize]).collect() };
+    let options = &FillOptions { polygons, ..options.clone() };
     // What counts is where the vertices come to lie in the end.
-    let first = FillOptions { smooth: Smooth::Flat, strict: false, max_edges: None };
+    let first = FillOptions { smooth: Smooth::Flat, strict: false, ..options.clone() };
     let job = Job { vertices, triangles: &rest, options: if keep_shape { &first } else { options } };
     let mut fills = job.run(&[Ok(loop_)], progress.part(0.0, 0.5))?;
     let mut fill = fills.pop().unwrap_or(Err(Error::Cancelled))?;

@@ -4,13 +4,11 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
+use super::span::Span;
 use crate::segments::{SegmentGrid, segments_meet};
 
 /// A projection is taken if it leaves each edge at least this share of its length.
 const FORESHORTENED: f64 = 0.8;
-
-/// Vertices of the coarse surface at most: it takes the cube of their number.
-const COARSE: usize = 120;
 
 /// How a loop was laid out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,16 +54,6 @@ pub(crate) struct Unrolled {
 /// Should that meet itself, the turning at the vertices is blended with that of a circle. Nothing is
 /// left to chance: the inscribed polygon with the loop's edge lengths is simple.
 pub(crate) fn unroll(positions: &[DVec3]) -> Unrolled {
-    let finish = |points: Vec<DVec2>, method| {
-        let n = points.len();
-        let change = |k: usize| {
-            let (flat, true_length) =
-                (points[k].distance(points[(k + 1) % n]), positions[k].distance(positions[(k + 1) % n]));
-            (flat / true_length - 1.0).abs()
-        };
-        let distortion = (0..n).map(change).fold(0.0, f64::max);
-        Unrolled { points, method, distortion }
-    };
     let flat = projected(positions);
     let kept = |points: &[DVec2]| {
         let n = points.len();
@@ -75,19 +63,40 @@ pub(crate) fn unroll(positions: &[DVec3]) -> Unrolled {
         })
     };
     if kept(&flat) && is_simple(&flat) {
-        return finish(flat, Unrolling::Projected);
+        return finish(positions, flat, Unrolling::Projected);
     }
-    let developed = developed(positions);
+    let developed = developed(positions, &Span::least_area(positions));
+    let (points, method) =
+        made_simple(positions, developed).unwrap_or_else(|| (inscribed(positions), Unrolling::Circle));
+    finish(positions, points, method)
+}
+
+/// As [`unroll`] does with loops that are not planar, but on the triangulation that bends least, `outside`
+/// included: the normals of the triangles beyond the edges. `None` if that meets itself however its
+/// turning is evened out.
+pub(crate) fn unroll_least_bent(positions: &[DVec3], outside: &[Option<DVec3>]) -> Option<Unrolled> {
+    let developed = developed(positions, &Span::least_bent(positions, outside));
+    made_simple(positions, developed).map(|(points, method)| finish(positions, points, method))
+}
+
+/// A developed loop, its turning evened out as far as needed.
+fn made_simple(positions: &[DVec3], developed: Vec<DVec2>) -> Option<(Vec<DVec2>, Unrolling)> {
     if is_simple(&developed) {
-        return finish(developed, Unrolling::Developed);
+        return Some((developed, Unrolling::Developed));
     }
-    for share in [0.25, 0.5, 0.75] {
-        let points = evened(positions, &developed, share);
-        if is_simple(&points) {
-            return finish(points, Unrolling::Evened);
-        }
-    }
-    finish(inscribed(positions), Unrolling::Circle)
+    let mut evened = [0.25, 0.5, 0.75].into_iter().map(|share| evened(positions, &developed, share));
+    evened.find(|points| is_simple(points)).map(|points| (points, Unrolling::Evened))
+}
+
+fn finish(positions: &[DVec3], points: Vec<DVec2>, method: Unrolling) -> Unrolled {
+    let n = points.len();
+    let change = |k: usize| {
+        let (flat, true_length) =
+            (points[k].distance(points[(k + 1) % n]), positions[k].distance(positions[(k + 1) % n]));
+        (flat / true_length - 1.0).abs()
+    };
+    let distortion = (0..n).map(change).fold(0.0, f64::max);
+    Unrolled { points, method, distortion }
 }
 
 /// Twice the area vector of a loop.
@@ -136,55 +145,13 @@ pub(crate) fn is_simple(points: &[DVec2]) -> bool {
     simple
 }
 
-/// Numbers of at most [`COARSE`] vertices, evenly spread along the loop.
-fn coarse(positions: &[DVec3]) -> Vec<usize> {
+/// Unfolds a triangulation; vertices that it leaves out are laid beside its border as they lie beside it in
+/// the plane of the triangle there.
+fn developed(positions: &[DVec3], span: &Span) -> Vec<DVec2> {
     let n = positions.len();
-    if n <= COARSE {
-        return (0..n).collect();
-    }
-    let mut arc = vec![0.0];
-    for k in 0..n {
-        arc.push(arc[k] + positions[k].distance(positions[(k + 1) % n]));
-    }
-    let mut chosen = (0..COARSE)
-        .map(|c| arc.partition_point(|&x| x < arc[n] * c as f64 / COARSE as f64).min(n - 1))
-        .collect::<Vec<_>>();
-    chosen.dedup();
-    chosen
-}
-
-/// For each pair `(i, k)` the apex of the triangle on it in the triangulation of least area of the
-/// polygon `corners[i..=k]`. By dynamic programming, in the cube of their number.
-fn least_area(corners: &[DVec3]) -> Vec<u32> {
-    let m = corners.len();
-    let mut cost = vec![0.0; m * m];
-    let mut apex = vec![0u32; m * m];
-    for width in 2..m {
-        for i in 0..m - width {
-            let k = i + width;
-            let mut best = f64::INFINITY;
-            for j in i + 1..k {
-                let area = (corners[j] - corners[i]).cross(corners[k] - corners[i]).length();
-                let sum = cost[i * m + j] + cost[j * m + k] + area;
-                if sum < best {
-                    best = sum;
-                    apex[i * m + k] = j as u32;
-                }
-            }
-            cost[i * m + k] = best;
-        }
-    }
-    apex
-}
-
-/// Unfolds the triangulation of least area; vertices that it leaves out are laid beside its border as
-/// they lie beside it in the plane of the triangle there.
-fn developed(positions: &[DVec3]) -> Vec<DVec2> {
-    let n = positions.len();
-    let chosen = coarse(positions);
+    let Span { chosen, apex } = span;
     let m = chosen.len();
     let corners = chosen.iter().map(|&k| positions[k]).collect::<Vec<_>>();
-    let apex = least_area(&corners);
     let mut flat = vec![DVec2::ZERO; m];
     flat[0] = DVec2::new(corners[0].distance(corners[m - 1]), 0.0);
     let mut points = vec![DVec2::ZERO; n];

@@ -1,0 +1,150 @@
+//! One loop filled: laid out, triangulated, placed, and tried another way if that went wrong.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use rustc_hash::FxHashSet;
+
+use super::check::Checked;
+use super::fit::{Faults, Solved};
+use super::flat::{FlatFill, FlatOptions, fill_flat};
+use super::mesh::Rim;
+use super::patchwork::Patchwork;
+use super::reserve::{Taken, wanted};
+use super::unroll::{Unrolled, unroll, unroll_least_bent};
+use super::{Clock, Fill, FillReport, Grid, Job, Shape, Smooth};
+use crate::error::{Error, Result};
+use crate::metrics::min_angle;
+use crate::progress::Progress;
+
+/// A patch in space.
+struct Attempt {
+    unrolled: Unrolled,
+    patch: FlatFill,
+    shape: Shape,
+    solved: Solved,
+}
+
+impl Job<'_> {
+    /// Fills one loop; `reserved` edges are taken by earlier fills.
+    pub(super) fn one(
+        &self,
+        checked: &Checked,
+        rim: &Rim,
+        reserved: &FxHashSet<[u32; 2]>,
+        progress: Progress<'_>,
+    ) -> Result<Fill> {
+        progress.report(0.0)?;
+        let mut clock = Clock::new();
+        let task = Task { job: self, checked, rim, taken: Taken::new(checked, rim, reserved) };
+        let around = checked.vertices.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
+        let unrolled = unroll(&around);
+        clock.stage("unroll");
+        let mut best = task.attempt(unrolled, &mut clock, progress)?;
+        if best.solved.faults != Faults::default()
+            && let Some(unrolled) = unroll_least_bent(&around, &task.outside())
+        {
+            let other = task.attempt(unrolled, &mut clock, progress)?;
+            if other.solved.faults < best.solved.faults {
+                best = other;
+            }
+        }
+        Ok(task.finish(best, clock))
+    }
+}
+
+/// A loop, and what has to be known about it.
+struct Task<'a> {
+    job: &'a Job<'a>,
+    checked: &'a Checked,
+    rim: &'a Rim,
+    taken: Taken,
+}
+
+impl Task<'_> {
+    fn attempt(&self, unrolled: Unrolled, clock: &mut Clock, progress: Progress<'_>) -> Result<Attempt> {
+        let loop_ = &self.checked.vertices;
+        let smooth = self.job.options.smooth;
+        let wanted = wanted(loop_, self.rim, &self.job.options.polygons);
+        let is_taken = |i: usize, j: usize| self.taken.has(i, j);
+        // A triangle that the mesh has already is filled with three others.
+        let options = FlatOptions { single: !self.taken.face, ..FlatOptions::default() };
+        let patch = fill_flat(&unrolled.points, &wanted, &is_taken, &options, progress)?;
+        if patch.quality.repeated > 0 {
+            return Err(Error::NoPatch {
+                reason: "every patch repeats an edge of the mesh".into(),
+                at: self.job.vertices[loop_[0] as usize].truncate().to_array(),
+            });
+        }
+        clock.stage("grid");
+        progress.report(0.0)?;
+
+        let rings = if smooth == Smooth::Curvature { 2 } else { 1 };
+        let work = Patchwork::new(loop_, patch.interior.len(), &patch.triangles, self.rim, rings);
+        let shape = Shape {
+            work,
+            loop_: loop_.clone(),
+            reversed: self.checked.reversed,
+            flat: [unrolled.points.as_slice(), &patch.interior].concat(),
+            smooth,
+            vertices: self.job.vertices.len(),
+            positions: vec![],
+        };
+        let solved = shape.solve(self.job.vertices)?;
+        clock.stage("fair");
+        Ok(Attempt { unrolled, patch, shape, solved })
+    }
+
+    /// Normals of the triangles beyond the loop's edges, as if wound like the patch.
+    fn outside(&self) -> Vec<Option<DVec3>> {
+        let loop_ = &self.checked.vertices;
+        let at = |v: u32| self.job.vertices[self.rim.ids[v as usize] as usize];
+        let beyond = |k: usize| {
+            let (a, b) = (self.rim.local(loop_[k])?, self.rim.local(loop_[(k + 1) % loop_.len()])?);
+            let fan = self.rim.around(a).iter().map(|&t| self.rim.triangles[t as usize]);
+            let triangle = fan.into_iter().find(|t| t.contains(&b))?;
+            let [p, q, r] = triangle.map(at);
+            let along = (0..3).any(|i| triangle[i] == a && triangle[(i + 1) % 3] == b);
+            Some((q - p).cross(r - p) * if along { -1.0 } else { 1.0 })
+        };
+        (0..loop_.len()).map(beyond).collect()
+    }
+
+    fn finish(&self, attempt: Attempt, clock: Clock) -> Fill {
+        let Attempt { unrolled, patch, mut shape, solved } = attempt;
+        let checked = self.checked;
+        let loop_ = &checked.vertices;
+        let n = loop_.len();
+        shape.positions = solved.positions;
+        let first_new = self.job.vertices.len() as u32;
+        let name = |v: u32| if (v as usize) < n { loop_[v as usize] } else { first_new + v - n as u32 };
+        let work = &shape.work;
+        let own = &shape.work.triangles[..work.n_patch];
+        let valence = |v: usize| work.range(v).len();
+        let report = FillReport {
+            triangles: own.len(),
+            vertices: work.inner().len(),
+            irregular: work.inner().filter(|&v| valence(v) != 6).count(),
+            irregular_loop: (0..n).filter(|&v| valence(v) != 6).count(),
+            grid: Grid::of(patch.method),
+            folded: patch.folded,
+            rim_angle: solved.rim_angle,
+            unrolling: unrolled.method,
+            distortion: unrolled.distortion,
+            winding_conflicts: checked.conflicts,
+            wire_edges: checked.wire,
+            min_angle: min_angle(&shape.positions, own),
+            folds: solved.faults.folds,
+            self_intersections: 0,
+            repaired: solved.repaired,
+            seconds: clock.seconds,
+        };
+        Fill {
+            loop_: if checked.reversed { loop_.iter().rev().copied().collect() } else { loop_.clone() },
+            vertices: shape.positions[work.inner()].to_vec(),
+            triangles: own.iter().map(|t| t.map(name)).collect(),
+            report,
+            shape: Arc::new(shape),
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! A fill taken apart and put together again, for those who store it.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::patchwork::Patchwork;
+use super::{Fill, FillReport, Shape, Smooth};
+use crate::error::{Error, Result};
+
+/// All that a [`Fill`] knows but its report.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FillParts {
+    /// The loop as the patch's boundary runs.
+    pub loop_: Vec<u32>,
+    /// It was given the other way round.
+    pub reversed: bool,
+    /// How the patch continues the surface.
+    pub smooth: Smooth,
+    /// Vertices of the mesh.
+    pub vertices: usize,
+    /// Loop, then new vertices, as laid out in the plane.
+    pub flat: Vec<DVec2>,
+    /// Loop, new vertices, those around.
+    pub positions: Vec<DVec3>,
+    /// The mesh's numbers of the vertices around.
+    pub outer: Vec<u32>,
+    /// The patch's triangles, then those around, by the place of their vertices in `positions`.
+    pub triangles: Vec<[u32; 3]>,
+    /// How many of them are the patch's.
+    pub patch: usize,
+}
+
+impl Fill {
+    /// What this fill is made of.
+    pub fn parts(&self) -> FillParts {
+        let shape = self.shape.as_ref();
+        let work = &shape.work;
+        FillParts {
+            loop_: shape.loop_.clone(),
+            reversed: shape.reversed,
+            smooth: shape.smooth,
+            vertices: shape.vertices,
+            flat: shape.flat.clone(),
+            positions: shape.positions.clone(),
+            outer: work.outer.clone(),
+            triangles: work.triangles.clone(),
+            patch: work.n_patch,
+        }
+    }
+
+    /// The fill that these are the parts of.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] if they do not fit together.
+    pub fn from_parts(parts: FillParts, report: FillReport) -> Result<Fill> {
+        let FillParts { loop_, reversed, smooth, vertices, flat, positions, outer, triangles, patch } = parts;
+        let (n, end) = (loop_.len(), flat.len());
+        let known = |v: &u32| (*v as usize) < vertices;
+        let within = |t: &[u32; 3], most: usize| {
+            t.iter().all(|&v| (v as usize) < most) && t[0] != t[1] && t[1] != t[2] && t[2] != t[0]
+        };
+        let sound = n >= 3
+            && end >= n
+            && patch + n + 2 == 2 * end
+            && positions.len() == end + outer.len()
+            && loop_.iter().chain(&outer).all(known)
+            && patch <= triangles.len()
+            && triangles.iter().all(|t| within(t, positions.len()))
+            && triangles[..patch].iter().all(|t| within(t, end))
+            && vertices.checked_add(end).is_some_and(|most| u32::try_from(most).is_ok());
+        if !sound {
+            return Err(Error::InvalidOption {
+                name: "parts",
+                value: "of different fills".into(),
+                allowed: "the parts of one fill",
+            });
+        }
+        let name = |v: u32| if (v as usize) < n { loop_[v as usize] } else { v - n as u32 + vertices as u32 };
+        let named = triangles[..patch].iter().map(|t| t.map(name)).collect();
+        let given = if reversed { loop_.iter().rev().copied().collect() } else { loop_.clone() };
+        let work = Patchwork::of(n, end, outer, triangles, patch);
+        let new = positions[n..end].to_vec();
+        let shape = Arc::new(Shape { work, loop_, reversed, flat, smooth, vertices, positions });
+        Ok(Fill { loop_: given, vertices: new, triangles: named, report, shape })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fill::{FillOptions, fill_hole};
+    use crate::progress::Progress;
+
+    fn filled() -> (Vec<DVec3>, Fill) {
+        // The wall of a drum, its upper rim open.
+        let n = 20;
+        let place = |k: u32, z: f64| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(n);
+            DVec3::new(angle.cos(), angle.sin(), z)
+        };
+        let vertices = (0..2 * n).map(|v| place(v % n, f64::from(v / n) * 0.3)).collect::<Vec<_>>();
+        let wall = (0..n).flat_map(|k| {
+            let next = (k + 1) % n;
+            [[k, next, k + n], [next, next + n, k + n]]
+        });
+        let rim = (n..2 * n).collect::<Vec<_>>();
+        let options = FillOptions::default();
+        let fill = fill_hole(&vertices, &wall.collect::<Vec<_>>(), &rim, &options, Progress::NONE).unwrap();
+        (vertices, fill)
+    }
+
+    #[test]
+    fn a_fill_put_together_again_is_the_same() {
+        let (mut vertices, fill) = filled();
+        let again = Fill::from_parts(fill.parts(), fill.report.clone()).unwrap();
+        assert_eq!((&again, again.parts()), (&fill, fill.parts()));
+        vertices[3].z -= 0.2;
+        assert_eq!(again.refit(&vertices).unwrap(), fill.refit(&vertices).unwrap());
+        let values = (0..20).map(|k| f64::from(k % 3)).collect::<Vec<_>>();
+        assert_eq!(again.extend(&values, 1).unwrap(), fill.extend(&values, 1).unwrap());
+    }
+
+    #[test]
+    fn parts_that_do_not_fit_are_refused() {
+        let parts = filled().1.parts();
+        let damages: [fn(&mut FillParts); 7] = [
+            |p| p.loop_[0] = 99,
+            |p| p.outer.push(1),
+            |p| p.triangles[0][0] = 10_000,
+            |p| p.triangles[0][0] = p.triangles[0][1],
+            |p| p.patch = 10_000,
+            |p| p.flat.truncate(4),
+            |p| p.positions.truncate(4),
+        ];
+        for damage in damages {
+            let mut broken = parts.clone();
+            damage(&mut broken);
+            assert_eq!(Fill::from_parts(broken, FillReport::default()).unwrap_err().kind(), "invalid_option");
+        }
+    }
+}
