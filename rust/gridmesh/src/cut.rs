@@ -209,15 +209,17 @@ fn part(
                 let crossed = edges.named(vertices, tolerance, &released);
                 match split::split(vertices, faces, &sheet, &met, crossed, tolerance) {
                     Ok(parted) => {
-                        let touching = if tolerance.length > 0.0 { parted.touching() } else { vec![] };
-                        let before = released.len();
-                        released.extend(touching);
-                        if released.len() > before {
-                            continue;
+                        if tolerance.length > 0.0 {
+                            let before = released.len();
+                            released.extend(parted.touching());
+                            tally.report.repeated += released.len() - before;
+                            released.extend(parted.far(vertices, &sheet, &locator, tolerance.length));
+                            if released.len() > before {
+                                continue;
+                            }
                         }
                         tally.stage("faces");
                         tally.report.cut_faces = parted.cut_faces;
-                        tally.report.repeated += released.len();
                         return Ok((sheet, parted));
                     }
                     Err((Error::StrokeMisses, _)) if tolerance.length == 0.0 => {
@@ -227,6 +229,7 @@ fn part(
                         failed = error;
                         let before = released.len();
                         released.extend(at.into_iter().flatten());
+                        tally.report.repeated += released.len() - before;
                         if tolerance.length == 0.0 || released.len() == before {
                             break;
                         }

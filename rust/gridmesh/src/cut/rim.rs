@@ -7,15 +7,12 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
 use super::input::{Polygons, triangles};
 use super::report::Tally;
 use super::split::{Part, Parted};
-use super::strip::{Strip, closest};
-
-/// How far the new faces may be off the old ones, in edge lengths.
-const TOLERANCE: f64 = 0.045;
+use super::strip::{SPACING, Strip, closest, samples};
 
 /// The line keeps its vertices where it turns by more.
 const CORNER: f64 = 0.6;
@@ -42,7 +39,7 @@ pub(super) fn even_out(
     let parts = gather(vertices, faces, parted);
     let old = std::mem::take(&mut parted.parts);
     let own = old.iter().map(|p| p.face).collect::<FxHashSet<_>>();
-    let mut strip = Strip::new(vertices, parted, parts, TOLERANCE * length);
+    let mut strip = Strip::new(vertices, parted, parts, length);
     let kept = resample(&mut strip, length);
     for round in 0..ROUNDS {
         let mut changes = thin_out(&mut strip, &kept);
@@ -55,7 +52,7 @@ pub(super) fn even_out(
     }
     let Strip { parts, altered, .. } = strip;
     let parts = parts.into_iter().flatten().collect::<Vec<_>>();
-    tally.report.defect = defect(vertices, faces, parted, &parts, &altered);
+    tally.report.defect = defect(vertices, faces, parted, &parts, &altered, SPACING * length);
     for &f in &altered {
         parted.divided[f as usize] = true;
     }
@@ -442,6 +439,7 @@ fn defect(
     parted: &Parted,
     parts: &[Part],
     altered: &FxHashSet<u32>,
+    spacing: f64,
 ) -> f64 {
     let mut old = vec![];
     let mut known = FxHashSet::default();
@@ -456,16 +454,13 @@ fn defect(
         }
     }
     let tree = RTree::bulk_load(old);
-    let off = |p: DVec3| tree.nearest_neighbor(&p.to_array()).map_or(0.0, |f| closest(p, f.0).0);
     let mut most = 0.0f64;
-    let mut edges: FxHashMap<(u32, u32), ()> = FxHashMap::default();
     for part in parts.iter().filter(|p| altered.contains(&p.face)) {
-        let corners = part.corners.map(|v| parted.position(vertices, v));
-        most = most.max(off(corners.iter().sum::<DVec3>() / 3.0));
-        for k in 0..3 {
-            let (a, b) = (part.corners[k], part.corners[(k + 1) % 3]);
-            if edges.insert((a.min(b), a.max(b)), ()).is_none() {
-                most = most.max(off(0.5 * (corners[k] + corners[(k + 1) % 3])));
+        let home = part.home.map(|v| vertices[v as usize]);
+        for p in samples(part.corners.map(|v| parted.position(vertices, v)), spacing) {
+            // Most are near the triangle that they come from.
+            if closest(p, home).0 > most {
+                most = most.max(tree.nearest_neighbor(&p.to_array()).map_or(0.0, |f| closest(p, f.0).0));
             }
         }
     }

@@ -10,9 +10,15 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::cross::{Crossed, Node};
 use super::input::Polygons;
-use super::locate::Met;
+use super::locate::{Locator, Met};
 use super::sheet::{Sheet, side_of_edge};
 use crate::error::{Error, Result};
+
+/// How far vertices that the cut is drawn through may be off the swept surface, in diameters of their line.
+const SEAM: f64 = 0.018;
+
+/// A part of a triangle has at least this part of the square over its longest edge as its area, twice.
+const AREA: f64 = 1e-9;
 
 /// What counts as one point, in edges.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +74,42 @@ impl Parted {
         let mut found = ends.into_iter().filter(|e| e.1 > 2).map(|e| e.0).collect::<Vec<_>>();
         found.sort_unstable();
         found
+    }
+
+    /// Old vertices that the cut was drawn through, farther from the swept surface than suits their line's size.
+    pub fn far(&self, vertices: &[DVec3], sheet: &Sheet, locator: &Locator<'_>, reach: f64) -> Vec<u32> {
+        let mut line_of: FxHashMap<u32, u32> = FxHashMap::default();
+        let mut edges = self.cut.keys().copied().collect::<Vec<_>>();
+        edges.sort_unstable();
+        fn root(line_of: &mut FxHashMap<u32, u32>, mut v: u32) -> u32 {
+            while let Some(&next) = line_of.get(&v).filter(|&&next| next != v) {
+                let onward = line_of.get(&next).copied().unwrap_or(next);
+                line_of.insert(v, onward);
+                v = onward;
+            }
+            v
+        }
+        for &(a, b) in &edges {
+            let (a, b) = (root(&mut line_of, a), root(&mut line_of, b));
+            line_of.insert(a.max(b), a.min(b));
+        }
+        let mut boxes: FxHashMap<u32, [DVec3; 2]> = FxHashMap::default();
+        for v in edges.iter().flat_map(|&(a, b)| [a, b]) {
+            let p = self.position(vertices, v);
+            let around = boxes.entry(root(&mut line_of, v)).or_insert([p, p]);
+            *around = [around[0].min(p), around[1].max(p)];
+        }
+        let mut own =
+            edges.iter().flat_map(|&(a, b)| [a, b]).filter(|&v| (v as usize) < self.n_old).collect::<Vec<_>>();
+        own.sort_unstable();
+        own.dedup();
+        own.retain(|&v| {
+            let [low, high] = boxes.get(&root(&mut line_of, v)).copied().unwrap_or_default();
+            let allowed = SEAM * low.distance(high);
+            let depth = sheet.view.depth(vertices[v as usize]);
+            allowed < reach && depth * locator.distance(sheet.seen[v as usize], reach / depth) > allowed
+        });
+        own
     }
 
     /// Of every vertex: an end of an edge of the cut.
@@ -348,7 +390,31 @@ impl Divider<'_> {
         let mut all = vec![stops[0]];
         all.extend(kept);
         all.push(stops[stops.len() - 1]);
-        *stops = all;
+        *stops = self.straightened(&all);
+    }
+
+    /// A chain without the stroke's points that its neighbours make superfluous. Next to a side of the triangle they would
+    /// be on the wrong side of it after rounding.
+    fn straightened(&self, stops: &[Stop]) -> Vec<Stop> {
+        const MOST: usize = 32;
+        let [Some(&start), Some(&end)] = [stops.first(), stops.last()] else { return stops.to_vec() };
+        let reach = self.tolerance.node * self.position(start.node).distance(self.position(end.node));
+        let mut kept = vec![start];
+        let mut from = 0;
+        for k in 1..stops.len() - 1 {
+            let (p, q) = (self.position(stops[from].node), self.position(stops[k + 1].node));
+            let along = (q - p) / (q - p).length_squared().max(f64::MIN_POSITIVE);
+            let is_straight = |s: &Stop| {
+                let r = self.position(s.node);
+                r.distance(p + (r - p).dot(along).clamp(0.0, 1.0) * (q - p)) <= reach
+            };
+            if k - from > MOST || !stops[from + 1..=k].iter().all(is_straight) {
+                kept.push(stops[k]);
+                from = k;
+            }
+        }
+        kept.push(end);
+        kept
     }
 
     /// Divides a triangle with a boundary `ring` along `chains`.
@@ -439,6 +505,11 @@ impl Divider<'_> {
                 }
             }
             let own = inner.vertices().map(|v| number[v.index()]);
+            let [p, q, r] = own.map(|v| self.position(v));
+            let longest = p.distance_squared(q).max(q.distance_squared(r)).max(r.distance_squared(p));
+            if self.tolerance.length > 0.0 && (q - p).cross(r - p).length() <= AREA * longest {
+                return Err(failed("a part of a face has no area"));
+            }
             new.push(Part { corners: own, face, home: corners, left });
         }
         self.parts.extend(new);

@@ -25,15 +25,24 @@ pub(super) struct Strip<'a> {
     pub fresh: Vec<u32>,
     /// How far a triangle may be off the old ones.
     pub tolerance: f64,
+    /// How far apart that is looked at.
+    spacing: f64,
     /// The cut's edges, by vertex.
     line: FxHashMap<u32, Vec<u32>>,
 }
+
+/// How far the new faces may be off the old ones, in edge lengths; less than what is promised, for it is
+/// measured at points.
+const TOLERANCE: f64 = 0.045;
+
+/// How far apart these points are at most, in edge lengths.
+pub(super) const SPACING: f64 = 0.5;
 
 /// How much of a right way up is left to a triangle.
 const UPRIGHT: f64 = 0.5;
 
 impl<'a> Strip<'a> {
-    pub fn new(vertices: &'a [DVec3], parted: &'a mut Parted, parts: Vec<Part>, tolerance: f64) -> Self {
+    pub fn new(vertices: &'a [DVec3], parted: &'a mut Parted, parts: Vec<Part>, length: f64) -> Self {
         let mut around: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
         let mut sides: FxHashMap<(u32, u32), i32> = FxHashMap::default();
         for (i, part) in parts.iter().enumerate() {
@@ -61,7 +70,8 @@ impl<'a> Strip<'a> {
             border,
             altered: FxHashSet::default(),
             fresh: vec![],
-            tolerance,
+            tolerance: TOLERANCE * length,
+            spacing: SPACING * length,
             line,
         }
     }
@@ -148,11 +158,12 @@ impl<'a> Strip<'a> {
         off.map(|(k, d)| (d, k)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, 0))
     }
 
-    /// True if the triangle stays near the old ones.
-    fn is_near(&self, corners: [u32; 3], homes: &[(u32, [u32; 3])]) -> bool {
-        let [a, b, c] = corners.map(|v| self.position(v));
-        let samples = [(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
-        samples.iter().all(|&p| self.nearest(p, homes).0 <= self.tolerance)
+    /// True if the triangle stays near the old ones, of which `home` is the likeliest.
+    fn is_near(&self, corners: [u32; 3], home: [u32; 3], homes: &[(u32, [u32; 3])]) -> bool {
+        let own = self.home(home);
+        let near = |p: DVec3, old: [DVec3; 3]| closest(p, old).0 <= self.tolerance;
+        samples(corners.map(|v| self.position(v)), self.spacing)
+            .all(|p| near(p, own) || homes.iter().any(|h| near(p, self.home(h.1))))
     }
 
     fn replace(&mut self, t: u32, part: Option<Part>) {
@@ -247,7 +258,7 @@ impl<'a> Strip<'a> {
             let part = Part { corners, face: homes[k].0, home: homes[k].1, ..*part };
             if self.min_angle(corners) < least
                 || !self.is_upright(corners, part.home)
-                || !self.is_near(corners, &homes)
+                || !self.is_near(corners, part.home, &homes)
             {
                 return false;
             }
@@ -312,7 +323,7 @@ impl<'a> Strip<'a> {
         for corners in [x, y] {
             let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
             let (_, k) = self.nearest(centre, &homes);
-            if !self.is_upright(corners, homes[k].1) || !self.is_near(corners, &homes) {
+            if !self.is_upright(corners, homes[k].1) || !self.is_near(corners, homes[k].1, &homes) {
                 return false;
             }
             new.push(Part { corners, face: homes[k].0, home: homes[k].1, left: p.left });
@@ -345,12 +356,24 @@ impl<'a> Strip<'a> {
         let (_, weights) = closest(middle, self.home(home));
         self.parted.nodes[k] = Node::within(self.vertices, home, weights);
         let fits = least(self) > before
-            && parts.iter().all(|p| self.is_upright(p.corners, p.home) && self.is_near(p.corners, &homes));
+            && parts.iter().all(|p| self.is_upright(p.corners, p.home) && self.is_near(p.corners, p.home, &homes));
         if !fits {
             self.parted.nodes[k] = old;
         }
         fits
     }
+}
+
+/// Points of a triangle where its distance from others is taken: a lattice with at least four steps to an edge, and
+/// steps no longer than `spacing` while that makes no more than 24.
+pub(super) fn samples([a, b, c]: [DVec3; 3], spacing: f64) -> impl Iterator<Item = DVec3> {
+    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt();
+    let n = (longest / spacing).ceil().clamp(6.0, 24.0) as u32;
+    let at = move |i: u32, j: u32| {
+        let [u, v, w] = [i, j, n - i - j].map(|k| f64::from(k) / f64::from(n));
+        (i.max(j).max(n - i - j) < n).then(|| u * a + v * b + w * c)
+    };
+    (0..=n).flat_map(move |i| (0..=n - i).filter_map(move |j| at(i, j)))
 }
 
 /// Distance of a point from a triangle, and the weights of its corners there.
