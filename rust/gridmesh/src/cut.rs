@@ -7,17 +7,24 @@
 
 mod bridge;
 mod cap;
+mod chains;
 mod cross;
+mod defect;
 mod input;
 mod locate;
 mod loops;
+mod nearness;
 mod offset;
 mod options;
+mod parted;
 mod pieces;
 mod regions;
 mod report;
+mod reshape;
 mod rim;
 mod sheet;
+mod sources;
+mod spacing;
 mod split;
 mod strip;
 
@@ -29,11 +36,12 @@ use rustc_hash::FxHashSet;
 pub use self::input::Polygons;
 use self::input::check;
 pub use self::options::{CutOptions, Keep, Sweep};
+use self::parted::Parted;
 pub use self::pieces::{Piece, Side};
 pub use self::report::CutReport;
 use self::report::Tally;
 use self::sheet::Sheet;
-use self::split::{Parted, Tolerance};
+use self::split::Tolerance;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 
@@ -129,16 +137,25 @@ fn divide(
     progress: Progress<'_>,
 ) -> Result<Cut> {
     let coarse = options.edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
-    match divide_with(vertices, faces, sheet.clone(), options, coarse, progress.part(0.0, 0.9)) {
-        // Drawn through vertices near by, lines may touch that were apart.
-        Err(Error::CutFailed { .. }) if coarse.is_some() => {
-            let mut cut = divide_with(vertices, faces, sheet, options, None, progress.part(0.9, 1.0))?;
-            cut.report.repeated += 1;
-            Ok(cut)
+    // Drawn through vertices near by, lines may touch that were apart; and through a vertex exactly, a line may touch
+    // itself there. Then without the one, and moved by the least bit.
+    let mut failed = Error::StrokeMisses;
+    for (tries, (nudge, coarse)) in [(0, coarse), (0, None), (1, coarse), (1, None)].into_iter().enumerate() {
+        if tries % 2 == 1 && options.edge_length.is_none() {
+            continue;
         }
-        Ok(cut) => progress.report(1.0).map(|()| cut),
-        Err(error) => Err(error),
+        let from = if tries == 0 { 0.0 } else { 0.9 + 0.025 * tries as f64 };
+        let to = if tries == 0 { 0.9 } else { from + 0.025 };
+        match divide_with(vertices, faces, sheet.nudged(nudge)?, options, coarse, progress.part(from, to)) {
+            Ok(mut cut) => {
+                cut.report.repeated += tries;
+                return progress.report(1.0).map(|()| cut);
+            }
+            Err(error @ Error::CutFailed { .. }) => failed = error,
+            Err(error) => return Err(error),
+        }
     }
+    Err(failed)
 }
 
 /// Divides and caps; first with this tolerance, if there is one.

@@ -5,6 +5,7 @@
 //! nothing is on the line, and all answers fit together.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
@@ -104,7 +105,7 @@ pub(super) struct Sheet {
     pub low: DVec2,
     pub high: DVec2,
     /// Where every vertex is seen.
-    pub seen: Vec<DVec2>,
+    pub seen: Arc<Vec<DVec2>>,
 }
 
 impl Sheet {
@@ -145,6 +146,7 @@ impl Sheet {
         if points.len() < needed {
             return Err(Error::StrokeTooShort { distinct: points.len() });
         }
+        let seen = Arc::new(seen);
         let mut sheet = Sheet { view, points, closed, around: vec![], arc: vec![], size, low, high, seen };
         if closed {
             let area: f64 =
