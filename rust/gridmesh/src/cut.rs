@@ -126,6 +126,9 @@ const TOLERANCES: [Tolerance; 3] = [
 /// With an edge length, the cut is drawn through vertices that are nearer than this part of it.
 const THROUGH: f64 = 0.3;
 
+/// With an edge length, a line that touches itself in a vertex is moved aside by this part of it.
+const ASIDE: f64 = 0.02;
+
 /// Vertices that are let go one after the other, until the faces around them can be divided.
 const RELEASES: usize = 200;
 
@@ -140,13 +143,16 @@ fn divide(
     // Drawn through vertices near by, lines may touch that were apart; and through a vertex exactly, a line may touch
     // itself there. Then without the one, and moved by the least bit.
     let mut failed = Error::StrokeMisses;
-    for (tries, (nudge, coarse)) in [(0, coarse), (0, None), (1, coarse), (1, None)].into_iter().enumerate() {
+    let depth = vertices.first().map_or(1.0, |&v| sheet.view.depth(v));
+    let away = options.edge_length.map_or(sheet.nudged(1), |length| sheet.moved(ASIDE * length / depth));
+    let ways = [(&sheet, coarse), (&sheet, None), (&away, coarse), (&away, None)];
+    for (tries, (sheet, coarse)) in ways.into_iter().enumerate() {
         if tries % 2 == 1 && options.edge_length.is_none() {
             continue;
         }
         let from = if tries == 0 { 0.0 } else { 0.9 + 0.025 * tries as f64 };
         let to = if tries == 0 { 0.9 } else { from + 0.025 };
-        match divide_with(vertices, faces, sheet.nudged(nudge)?, options, coarse, progress.part(from, to)) {
+        match divide_with(vertices, faces, sheet.clone(), options, coarse, progress.part(from, to)) {
             Ok(mut cut) => {
                 cut.report.repeated += tries;
                 return progress.report(1.0).map(|()| cut);
@@ -214,7 +220,7 @@ fn part(
 ) -> Result<(Sheet, Parted)> {
     let mut failed = Error::StrokeMisses;
     for nudge in 0..3 {
-        let sheet = sheet.nudged(nudge)?;
+        let sheet = sheet.nudged(nudge);
         let locator = locate::Locator::new(vertices, &sheet)?;
         let met = locator.find(vertices, faces)?;
         let edges = cross::cross(vertices, faces, &sheet, &locator, &met);

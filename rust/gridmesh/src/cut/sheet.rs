@@ -177,14 +177,19 @@ impl Sheet {
     }
 
     /// The same line moved a little, `k` times as far: for where rounding stands in the way.
-    pub fn nudged(&self, k: usize) -> Result<Self> {
+    pub fn nudged(&self, k: usize) -> Self {
+        self.moved(1e-7 * k as f64 * self.size)
+    }
+
+    /// The same line moved by about as much, in units of the plane.
+    pub fn moved(&self, by: f64) -> Self {
         let mut sheet = self.clone();
-        let by = 1e-7 * k as f64 * self.size * DVec2::new(0.6180339887, 0.4142135624);
+        let by = by * DVec2::new(0.6180339887, 0.4142135624);
         for p in sheet.points.iter_mut().chain(&mut sheet.around) {
             *p += by;
         }
         sheet.measure();
-        Ok(sheet)
+        sheet
     }
 
     /// Straight on at both ends to a circle well around everything, and back along it on the left.
