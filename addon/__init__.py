@@ -4,7 +4,7 @@
     operators.strokes -> strokes, curves (from Blender) -> outlines, api (numpy only) -> meshes (to Blender)
     draw -> outlines of its own; live keeps bodies up to date with their strokes; overlay shows what meshes are like
     operators.fill -> editmesh (from Blender) -> holes, api (no bpy) -> editmesh, attributes (to Blender)
-    operators.cut -> cutline, cutobject (from Blender) -> cutting (no bpy) -> cutmesh, cutcorners (to Blender)
+    operators.cut -> cutline, cutobject (from Blender) -> cutsweep, cutting (no bpy) -> cutmesh, cutcorners (to Blender)
 
 `properties` holds what the redo panel shows, `ui` the sidebar and the menus. The native module `gridmesh` is
 imported by `native` when it is first needed, so that the extension registers, and can say what is wrong, without it;

@@ -42,17 +42,17 @@ class Surroundings:
         neighbours = [_neighbour(a, b) for a, b in _edges(loop)]
         self.faces = [corners[0].face for corners in neighbours if corners is not None]
         """The face at each edge of the loop that has one."""
-        parts: list[Any] = [_Vertices(layer, loop) for layer in _layers(bm.verts.layers, _FLOATS)]
+        parts: list[Any] = [_Vertices(layer, loop) for layer in layers_of(bm.verts.layers, _FLOATS)]
         deform = bm.verts.layers.deform.active
         if deform is not None:
-            parts += [_Weights(deform, group, loop) for group in _groups(loop, deform)]
+            parts += [_Weights(deform, group, loop) for group in groups_of(loop, deform)]
         arc = np.array([(a.co - b.co).length for a, b in _edges(loop)])
-        corners = [_Corners(layer, neighbours, arc) for layer in _layers(bm.loops.layers, _CORNERS)]
+        corners = [_Corners(layer, neighbours, arc) for layer in layers_of(bm.loops.layers, _CORNERS)]
         parts += [part for part in corners if part.values is not None]
         self._parts = [part for part in parts if np.isfinite(part.values).all()]
         self._common = [
             (layer, loop[0][layer])
-            for layer in _layers(bm.verts.layers, _PLAIN)
+            for layer in layers_of(bm.verts.layers, _PLAIN)
             if not layer.name.startswith(".") and all(vertex[layer] == loop[0][layer] for vertex in loop)
         ]
         self.torn = sum(part.torn for part in corners)
@@ -201,14 +201,16 @@ class _Corners:
                     corner[self.layer] = at[0] if self.scalar else at
 
 
-def _layers(access: Any, kinds: Sequence[str]) -> Iterator[Any]:
+def layers_of(access: Any, kinds: Sequence[str]) -> Iterator[Any]:
+    """Layers of these kinds, one after the other."""
     for kind in kinds:
         for layer in getattr(access, kind).values():
             if not layer.name.startswith(_OF_GEOMETRY):
                 yield layer
 
 
-def _groups(loop: Sequence[Any], layer: Any) -> list[int]:
+def groups_of(loop: Sequence[Any], layer: Any) -> list[int]:
+    """Vertex groups that any of these vertices is in, ascending."""
     return sorted({group for vertex in loop for group in vertex[layer].keys()})  # noqa: SIM118
 
 

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from . import outlines, strokes
-from .cutting import CutError, Sweep, normal_of
+from .cutsweep import CutError, Sweep, normal_of
 
 # Away from the viewer of the right, the front and the top view.
 AXES = {"X": (-1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, -1.0)}
@@ -85,7 +85,7 @@ def sweep_of(direction: str, points: np.ndarray, view: View | None) -> tuple[Swe
         return Sweep.along(AXES[direction]), []
     if direction == "VIEW" and view is not None:
         return Sweep(view.direction, view.eye if view.perspective else None), []
-    normal = outlines._facing(normal_of(points))
+    normal = outlines.facing(normal_of(points))
     notes = (
         ["there is no view here: cut along the normal of the stroke's plane"] if direction == "VIEW" else []
     )

@@ -15,7 +15,9 @@ import numpy as np
 
 from . import attributes
 from .cutcorners import Corners
-from .cutting import WEIGHT, CutError, Extension, Model, Part, Sweep, connected, rims_of, unrolled
+from .cutextension import Extension, connected, rims_of
+from .cutsweep import CutError, Sweep, unrolled
+from .cutting import WEIGHT, Model, Part
 
 _FLOATS = ("float", "float_vector", "float_color", "color")
 
@@ -165,14 +167,14 @@ class Surgery:
                 vertex[layer] = place
         needed = [self.verts[index] for index in extension.needed.tolist()]
         rim = [self.verts[index] for index in part.old[extension.rim_old].tolist()]
-        for layer in attributes._layers(self.bm.verts.layers, _FLOATS):
+        for layer in attributes.layers_of(self.bm.verts.layers, _FLOATS):
             values = extension(_values(needed, layer), _values(rim, layer))
             scalar = values.shape[1] == 1
             for vertex, value in zip(new, values.tolist(), strict=True):
                 vertex[layer] = value[0] if scalar else value
         deform = self.bm.verts.layers.deform.active
         if deform is not None and new:
-            groups = attributes._groups(needed, deform)
+            groups = attributes.groups_of(needed, deform)
             values = extension(_weights(needed, deform, groups), _weights(rim, deform, groups))
             member = extension(_members(needed, deform, groups), _members(rim, deform, groups))
             for vertex, row, inside in zip(new, values.tolist(), member.tolist(), strict=True):
@@ -247,7 +249,7 @@ class Surgery:
         floats = [
             (layer, kind == "uv")
             for kind in ("uv", *_FLOATS)
-            for layer in attributes._layers(layers, (kind,))
+            for layer in attributes.layers_of(layers, (kind,))
         ]
         for layer, is_uv in floats:
             values = corners.interpolated(layer, is_uv=is_uv)
@@ -259,7 +261,7 @@ class Surgery:
             else:
                 cap = self._around(part, extension, corners, values, layer)
             _write(cap_loops, layer, cap[cap_corners], is_uv=is_uv)
-        for layer in attributes._layers(layers, ("int", "bool", "string")):
+        for layer in attributes.layers_of(layers, ("int", "bool", "string")):
             values = corners.nearest(layer)
             for loop, value in zip(loops, (values[at] for at in np.flatnonzero(written)), strict=True):
                 loop[layer] = value

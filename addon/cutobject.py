@@ -12,7 +12,8 @@ import bpy
 import numpy as np
 
 from .cutmesh import Surface, Surgery, Written
-from .cutting import CutError, Model, Part, Sweep
+from .cutsweep import CutError, Sweep
+from .cutting import Model, Part
 from .meshes import Transaction
 from .outlines import LARGEST
 

@@ -126,7 +126,7 @@ def fit_plane(points: np.ndarray) -> Plane:
     _, widths, directions = np.linalg.svd(centred - mean, full_matrices=False)
     if widths[1] <= STRAIGHT * widths[0]:
         raise StrokeError("it is a straight line; draw a closed shape")
-    normal = _facing(directions[2])
+    normal = facing(directions[2])
     level = np.array([1.0, 0.0, 0.0]) if normal[2] > 0.9 else np.array([-normal[1], normal[0], 0.0])
     x = level - normal * (level @ normal)
     x /= np.linalg.norm(x)
@@ -137,7 +137,7 @@ def fit_plane(points: np.ndarray) -> Plane:
     return Plane(origin=middle + centre @ axes, axes=axes)
 
 
-def _facing(normal: np.ndarray) -> np.ndarray:
+def facing(normal: np.ndarray) -> np.ndarray:
     """Choose the sign of a plane's normal, and take away the noise of one that is meant to be an axis."""
     normal = np.where(np.abs(normal) < 1e-6, 0.0, normal)
     normal = normal / np.linalg.norm(normal)

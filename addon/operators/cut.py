@@ -19,7 +19,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from .. import api, cutline, cutting
+from .. import api, cutline, cutsweep, cutting
 from ..cutobject import Caps, Target
 from ..progress import Pointer
 from .cut_draw import DrawnCut
@@ -195,7 +195,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
                     smooth=self.smooth.lower(),
                 )
             if any(part.is_empty for part in division.parts):
-                raise cutting.CutError(
+                raise cutsweep.CutError(
                     "a side of the stroke has nothing of the mesh; draw the stroke across it"
                 )
             objects = target.apply(
@@ -206,7 +206,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
                 Caps(self.smooth == "FLAT", self.use_cap and self.use_cap_slot, material),
                 together=self.pieces == "TOGETHER",
             )
-        except (api.NativeError, cutting.CutError) as error:
+        except (api.NativeError, cutsweep.CutError) as error:
             self.report({"ERROR"}, listed([str(error)]))
             return {"CANCELLED"}
         except api.CancelledError:
@@ -262,13 +262,13 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             self.remember_view(cutline.View.of(region_data))
         direction = np.array(self.view_direction, float)
         if not direction.any():
-            raise cutting.CutError("view_direction is zero; give the direction in which the view looks")
+            raise cutsweep.CutError("view_direction is zero; give the direction in which the view looks")
         direction /= np.linalg.norm(direction)
         return cutline.View(np.array(self.view_eye, float), direction, self.view_kind == "PERSPECTIVE")
 
     def _line(
         self, context: bpy.types.Context, target: Target
-    ) -> tuple[np.ndarray, cutting.Sweep, list[str]]:
+    ) -> tuple[np.ndarray, cutsweep.Sweep, list[str]]:
         """Return stroke and sweep about the target's origin, and what the user should know of them."""
         view = self._view(context)
         notes: list[str] = []
@@ -276,15 +276,15 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             points, cyclic = np.array([point.location for point in self.stroke], float), False
             close_gaps = 0.0
         elif self.source == "DRAWN":
-            raise cutting.CutError("the stroke has no points; call this operator from a 3D view to draw one")
+            raise cutsweep.CutError("the stroke has no points; call this operator from a 3D view to draw one")
         else:
             found, notes = cutline.read(context, self.number)
             points, cyclic, close_gaps = np.asarray(found.points, float), found.cyclic, self.close_gaps
-        cutting.require_finite(points)
+        cutsweep.require_finite(points)
         sweep, more = cutline.sweep_of(self.direction, points, view)
         if sweep.eye is not None:
-            sweep = cutting.Sweep(sweep.direction, sweep.eye - target.origin)
-        stroke = cutting.checked(points - target.origin, cyclic=cyclic, sweep=sweep, close_gaps=close_gaps)
+            sweep = cutsweep.Sweep(sweep.direction, sweep.eye - target.origin)
+        stroke = cutsweep.checked(points - target.origin, cyclic=cyclic, sweep=sweep, close_gaps=close_gaps)
         return stroke, sweep, notes + more
 
     def _material(self) -> bpy.types.Material | None:
@@ -292,7 +292,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             return None
         material = bpy.data.materials.get(self.cap_material)
         if material is None:
-            raise cutting.CutError(
+            raise cutsweep.CutError(
                 f"there is no material '{self.cap_material}'; choose another one, or none for an empty slot"
             )
         return material

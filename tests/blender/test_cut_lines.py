@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from drawings import circle
 
-from addon import cutting, drawnline
+from addon import cutsweep, cutting, drawnline
 
 RIGHTWARD = np.array([[0.0, 0.0], [10.0, 0.0], [20.0, 0.0]])
 
@@ -51,16 +51,16 @@ def test_short_way_back_is_not_closed():
 def test_seen_and_placed_are_inverse(eye):
     rng = np.random.default_rng(4)
     points = rng.normal(size=(50, 3))
-    sweep = cutting.Sweep(np.array([0.0, 0.6, 0.8]), None)
+    sweep = cutsweep.Sweep(np.array([0.0, 0.6, 0.8]), None)
     if eye is not None:
-        sweep = cutting.Sweep(np.array([0.0, 1.0, 0.0]), np.array(eye))
+        sweep = cutsweep.Sweep(np.array([0.0, 1.0, 0.0]), np.array(eye))
     flat, depth = sweep.seen(points)
     back = np.vstack([sweep.placed(one[None], away) for one, away in zip(flat, depth, strict=True)])
     assert np.allclose(back, points)
 
 
 def test_right_and_up_are_as_the_front_view_shows_them():
-    right, up, away = cutting.Sweep.along((0, 1, 0)).frame()
+    right, up, away = cutsweep.Sweep.along((0, 1, 0)).frame()
     assert np.allclose(away, (0, 1, 0))
     assert np.allclose(np.cross(right, up), -away)
 
@@ -69,13 +69,13 @@ def test_overshoot_is_cut_off():
     points = circle(60, 1.0, turn=2 * np.pi * 1.02, closed=False)
     points *= np.linspace(1, 1.03, 60)[:, None]
     points = points[:, [0, 2, 1]]
-    stroke = cutting.checked(points, cyclic=False, sweep=cutting.Sweep.along((0, 1, 0)), close_gaps=0.1)
+    stroke = cutsweep.checked(points, cyclic=False, sweep=cutsweep.Sweep.along((0, 1, 0)), close_gaps=0.1)
     assert np.array_equal(stroke[0], stroke[-1])
 
 
 def test_open_stroke_stays_open():
     points = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 1], [3, 0, 0]])
-    stroke = cutting.checked(points, cyclic=False, sweep=cutting.Sweep.along((0, 1, 0)), close_gaps=0.1)
+    stroke = cutsweep.checked(points, cyclic=False, sweep=cutsweep.Sweep.along((0, 1, 0)), close_gaps=0.1)
     assert np.array_equal(stroke, points)
 
 
@@ -84,7 +84,7 @@ def test_unrolled_keeps_lengths():
     t = np.linspace(0, np.pi, 400)
     stroke = np.column_stack([np.cos(t), np.sin(t), 0 * t])
     corners = np.array([[np.cos(a), np.sin(a), z] for a, z in ((1.0, 0), (1.5, 0), (1.5, 0.5), (1.0, 0.5))])
-    flat = cutting.unrolled(corners, stroke, cutting.Sweep.along((0, 0, 1)))
+    flat = cutsweep.unrolled(corners, stroke, cutsweep.Sweep.along((0, 0, 1)))
     sides = np.linalg.norm(flat - np.roll(flat, 1, axis=0), axis=1)
     assert np.allclose(sides, 0.5, atol=1e-3)
 

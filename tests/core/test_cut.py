@@ -153,6 +153,65 @@ def test_through_an_eye():
     assert seen.pieces[0].vertices[:, 1].min() > 0.49
 
 
+def smallest_angle(piece: gridmesh.Piece) -> float:
+    """In radians, over the triangles."""
+    ends = zip(piece.offsets[:-1], piece.offsets[1:], strict=True)
+    corners = piece.vertices[[piece.corners[a:b] for a, b in ends if b - a == 3]]
+    least = np.inf
+    for k in range(3):
+        to, other = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
+        double = np.linalg.norm(np.cross(to, other), axis=1)
+        least = min(least, np.arctan2(double, (to * other).sum(axis=1)).min())
+    return least
+
+
+@pytest.mark.parametrize("edge_length", [None, 0.15])
+def test_an_edge_on_both_ends_of_which_the_stroke_passes_leaves_no_slivers(edge_length):
+    # Seen from the eye the stroke's points and the diagonals of two faces are on one line, but for rounding.
+    done = gridmesh.cut(
+        2 * CUBE - 1, QUADS, [[1, -1, -1], [1, -1, 1]], eye=[0, 0, -6], edge_length=edge_length
+    )
+    for piece in done.pieces:
+        assert len(open_edges(piece)) == 0
+        assert smallest_angle(piece) > 1e-3
+    assert done.report["repeated"] == 0
+
+
+def test_points_on_a_straight_stroke_change_nothing():
+    few = np.array([[-4, 0.3, 0], [4, 0.5, 0]])
+    many = few[:1] + np.linspace(0, 1, 200)[:, None] * (few[1:] - few[:1])
+    vertices, faces = torus()
+    one, other = (gridmesh.cut(vertices, faces, stroke, direction=DOWN).report for stroke in (few, many))
+    assert one["cap_triangles"] == other["cap_triangles"]
+    assert one["cut_faces"] == other["cut_faces"]
+
+
+def test_the_seam_of_a_small_cap_stays_on_the_swept_surface():
+    # Two slices near the top, far smaller than the edges beside them would allow a cut to be moved.
+    vertices, faces = torus()
+    for height in (2.45, 2.6, 2.75):
+        done = gridmesh.cut(
+            vertices, faces, [[-4, height, 0], [4, height, 0]], direction=DOWN, edge_length=0.35
+        )
+        for ring in done.pieces[0].cap_loops:
+            seam = done.pieces[0].vertices[ring]
+            across = np.linalg.norm(np.ptp(seam, axis=0))
+            assert np.abs(seam[:, 1] - height).max() <= 0.02 * across
+
+
+@pytest.mark.parametrize("slope", [0.1, 0.35, 0.8])
+def test_the_rebuilt_rim_stays_near_the_surface(slope):
+    cube = gridmesh.cut(
+        2 * CUBE - 1, QUADS, [[-4, -4 * slope, 0], [4, 4 * slope, 0]], direction=DOWN, edge_length=0.15
+    )
+    assert 0 <= cube.report["defect"] <= 0.05 * 0.15
+    vertices, faces = torus()
+    for edge_length in (0.15, 0.3):
+        ends = [[-4, -4 * slope, 0.1], [4, 4 * slope, 0.3]]
+        done = gridmesh.cut(vertices, faces, ends, direction=[0.2, 0.1, -1], edge_length=edge_length)
+        assert 0 < done.report["defect"] <= 0.05 * edge_length
+
+
 @pytest.mark.parametrize("smooth", ["tangent", "curvature"])
 def test_bulging_caps_close_too(smooth):
     vertices, faces = torus()

@@ -7,17 +7,24 @@
 
 mod bridge;
 mod cap;
+mod chains;
 mod cross;
+mod defect;
 mod input;
 mod locate;
 mod loops;
+mod nearness;
 mod offset;
 mod options;
+mod parted;
 mod pieces;
 mod regions;
 mod report;
+mod reshape;
 mod rim;
 mod sheet;
+mod sources;
+mod spacing;
 mod split;
 mod strip;
 
@@ -29,11 +36,12 @@ use rustc_hash::FxHashSet;
 pub use self::input::Polygons;
 use self::input::check;
 pub use self::options::{CutOptions, Keep, Sweep};
+use self::parted::Parted;
 pub use self::pieces::{Piece, Side};
 pub use self::report::CutReport;
 use self::report::Tally;
 use self::sheet::Sheet;
-use self::split::{Parted, Tolerance};
+use self::split::Tolerance;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 
@@ -118,6 +126,9 @@ const TOLERANCES: [Tolerance; 3] = [
 /// With an edge length, the cut is drawn through vertices that are nearer than this part of it.
 const THROUGH: f64 = 0.3;
 
+/// With an edge length, a line that touches itself in a vertex is moved aside by this part of it.
+const ASIDE: f64 = 0.02;
+
 /// Vertices that are let go one after the other, until the faces around them can be divided.
 const RELEASES: usize = 200;
 
@@ -129,16 +140,28 @@ fn divide(
     progress: Progress<'_>,
 ) -> Result<Cut> {
     let coarse = options.edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
-    match divide_with(vertices, faces, sheet.clone(), options, coarse, progress.part(0.0, 0.9)) {
-        // Drawn through vertices near by, lines may touch that were apart.
-        Err(Error::CutFailed { .. }) if coarse.is_some() => {
-            let mut cut = divide_with(vertices, faces, sheet, options, None, progress.part(0.9, 1.0))?;
-            cut.report.repeated += 1;
-            Ok(cut)
+    // Drawn through vertices near by, lines may touch that were apart; and through a vertex exactly, a line may touch
+    // itself there. Then without the one, and moved by the least bit.
+    let mut failed = Error::StrokeMisses;
+    let depth = vertices.first().map_or(1.0, |&v| sheet.view.depth(v));
+    let away = options.edge_length.map_or(sheet.nudged(1), |length| sheet.moved(ASIDE * length / depth));
+    let ways = [(&sheet, coarse), (&sheet, None), (&away, coarse), (&away, None)];
+    for (tries, (sheet, coarse)) in ways.into_iter().enumerate() {
+        if tries % 2 == 1 && options.edge_length.is_none() {
+            continue;
         }
-        Ok(cut) => progress.report(1.0).map(|()| cut),
-        Err(error) => Err(error),
+        let from = if tries == 0 { 0.0 } else { 0.9 + 0.025 * tries as f64 };
+        let to = if tries == 0 { 0.9 } else { from + 0.025 };
+        match divide_with(vertices, faces, sheet.clone(), options, coarse, progress.part(from, to)) {
+            Ok(mut cut) => {
+                cut.report.repeated += tries;
+                return progress.report(1.0).map(|()| cut);
+            }
+            Err(error @ Error::CutFailed { .. }) => failed = error,
+            Err(error) => return Err(error),
+        }
     }
+    Err(failed)
 }
 
 /// Divides and caps; first with this tolerance, if there is one.
@@ -197,7 +220,7 @@ fn part(
 ) -> Result<(Sheet, Parted)> {
     let mut failed = Error::StrokeMisses;
     for nudge in 0..3 {
-        let sheet = sheet.nudged(nudge)?;
+        let sheet = sheet.nudged(nudge);
         let locator = locate::Locator::new(vertices, &sheet)?;
         let met = locator.find(vertices, faces)?;
         let edges = cross::cross(vertices, faces, &sheet, &locator, &met);
@@ -209,15 +232,17 @@ fn part(
                 let crossed = edges.named(vertices, tolerance, &released);
                 match split::split(vertices, faces, &sheet, &met, crossed, tolerance) {
                     Ok(parted) => {
-                        let touching = if tolerance.length > 0.0 { parted.touching() } else { vec![] };
-                        let before = released.len();
-                        released.extend(touching);
-                        if released.len() > before {
-                            continue;
+                        if tolerance.length > 0.0 {
+                            let before = released.len();
+                            released.extend(parted.touching());
+                            tally.report.repeated += released.len() - before;
+                            released.extend(parted.far(vertices, &sheet, &locator, tolerance.length));
+                            if released.len() > before {
+                                continue;
+                            }
                         }
                         tally.stage("faces");
                         tally.report.cut_faces = parted.cut_faces;
-                        tally.report.repeated += released.len();
                         return Ok((sheet, parted));
                     }
                     Err((Error::StrokeMisses, _)) if tolerance.length == 0.0 => {
@@ -227,6 +252,7 @@ fn part(
                         failed = error;
                         let before = released.len();
                         released.extend(at.into_iter().flatten());
+                        tally.report.repeated += released.len() - before;
                         if tolerance.length == 0.0 || released.len() == before {
                             break;
                         }

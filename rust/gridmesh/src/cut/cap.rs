@@ -11,10 +11,11 @@ use super::cross::Node;
 use super::input::{Polygons, triangles};
 use super::loops::Loops;
 use super::options::{CutOptions, Keep};
+use super::parted::Parted;
 use super::regions::{self, Region, Spot};
 use super::report::Tally;
 use super::sheet::Sheet;
-use super::split::Parted;
+use super::sources;
 use crate::error::{Error, Result};
 use crate::fill::flat::{FlatFill, FlatOptions, fill_flat};
 use crate::fill::{FillOptions, Smooth, fill_hole};
@@ -219,16 +220,13 @@ impl Capper<'_> {
         let key = |a: u32, b: u32| (a.min(b), a.max(b));
         let base = self.first + self.caps.vertices.len() as u32;
         let name = |v: u32| polygon.get(v as usize).map_or(base + v.wrapping_sub(n as u32), |s| s.node);
-        let flat = polygon.iter().map(|s| roll.flatten(s.at).to_array());
-        let tree =
-            RTree::bulk_load(flat.enumerate().map(|(k, p)| GeomWithData::new(p, k)).collect::<Vec<_>>());
-        for &p in &patch.interior {
-            let at = roll.unflatten(p);
-            let mut node = self.node(at);
-            if let Some(near) = tree.nearest_neighbor(&p.to_array()) {
-                let from = self.source(polygon[near.data].node);
-                (node.source, node.weights) = (from.source, from.weights);
-            }
+        let mut flat = polygon.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
+        flat.extend(&patch.interior);
+        let near = sources::nearest_on_rim(n, &flat, &patch.triangles);
+        for (&p, near) in patch.interior.iter().zip(near) {
+            let mut node = self.node(roll.unflatten(p));
+            let from = self.source(polygon[near as usize].node);
+            (node.source, node.weights) = (from.source, from.weights);
             self.caps.vertices.push(node);
         }
         for t in &patch.triangles {
@@ -253,6 +251,9 @@ impl Capper<'_> {
 
     /// Gives vertices of bridges, and those next to them, the sources of the nearest vertices of the cut.
     fn name_sources(&mut self, polygons: &[Vec<Spot>]) {
+        if self.caps.vertices.iter().all(|node| node.source[0] != u32::MAX) {
+            return;
+        }
         let known = polygons.iter().flatten().filter(|s| s.node < self.first);
         let place = |s: &Spot| {
             let p = self.parted.position(self.vertices, s.node);
@@ -322,14 +323,13 @@ impl Capper<'_> {
     fn prove(&self) -> Result<()> {
         let mut found = FxHashSet::default();
         let edges = || self.caps.triangles.iter().flat_map(|t| (0..3).map(|k| (t[k], t[(k + 1) % 3])));
-        let single = edges().all(|e| found.insert(e));
+        let twice = edges().filter(|&e| !found.insert(e)).last();
         let is_cut = |a: u32, b: u32| self.parted.cut.contains_key(&(a.min(b), a.max(b)));
         let open = edges().find(|&(a, b)| found.contains(&(b, a)) == is_cut(a, b));
-        match open {
-            None if single => Ok(()),
-            other => {
-                let v = other.map_or(0, |e| e.0);
-                let at = if v < self.first { self.parted.position(self.vertices, v) } else { DVec3::ZERO };
+        match twice.or(open) {
+            None => Ok(()),
+            Some((v, _)) => {
+                let at = self.source(v).position;
                 Err(Error::CutFailed { reason: "cut lines touch each other", at: at.into() })
             }
         }

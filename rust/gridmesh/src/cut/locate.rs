@@ -163,6 +163,19 @@ impl<'a> Locator<'a> {
         found.dedup();
     }
 
+    /// Distance of a point of the plane from the line, if it is less than `reach`; else more than that.
+    pub fn distance(&self, p: DVec2, reach: f64) -> f64 {
+        let mut near = vec![];
+        self.near(p - reach, p + reach, &mut near);
+        let off = near.into_iter().map(|k| {
+            let [from, to] = self.sheet.segment(k as usize);
+            let along = to - from;
+            let t = (p - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
+            p.distance(from + t.clamp(0.0, 1.0) * along)
+        });
+        off.fold(f64::INFINITY, f64::min)
+    }
+
     /// Faces near the line, and the sides of all vertices.
     pub fn find(&self, vertices: &[glam::DVec3], faces: Polygons<'_>) -> Result<Met> {
         let seen = &self.sheet.seen;

@@ -3,8 +3,8 @@
 use rustc_hash::FxHashMap;
 
 use super::input::Polygons;
+use super::parted::Parted;
 use super::sheet::Sheet;
-use super::split::Parted;
 
 /// A closed stretch of the cut, as the left piece's faces run along it: in the unrolled surface the model
 /// is on its left, if its faces look outward.

@@ -9,8 +9,8 @@ use super::cross::Node;
 use super::input::{Polygons, volume};
 use super::loops::Loops;
 use super::options::Keep;
+use super::parted::Parted;
 use super::report::Tally;
-use super::split::Parted;
 
 /// Which piece it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::loops::{Loop, Loops};
+use super::parted::Parted;
 use super::sheet::Sheet;
-use super::split::Parted;
 
 /// A corner of a region: a vertex of the mesh, at a place of the line and a height.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,6 +5,7 @@
 //! nothing is on the line, and all answers fit together.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
@@ -104,7 +105,7 @@ pub(super) struct Sheet {
     pub low: DVec2,
     pub high: DVec2,
     /// Where every vertex is seen.
-    pub seen: Vec<DVec2>,
+    pub seen: Arc<Vec<DVec2>>,
 }
 
 impl Sheet {
@@ -145,6 +146,7 @@ impl Sheet {
         if points.len() < needed {
             return Err(Error::StrokeTooShort { distinct: points.len() });
         }
+        let seen = Arc::new(seen);
         let mut sheet = Sheet { view, points, closed, around: vec![], arc: vec![], size, low, high, seen };
         if closed {
             let area: f64 =
@@ -175,14 +177,19 @@ impl Sheet {
     }
 
     /// The same line moved a little, `k` times as far: for where rounding stands in the way.
-    pub fn nudged(&self, k: usize) -> Result<Self> {
+    pub fn nudged(&self, k: usize) -> Self {
+        self.moved(1e-7 * k as f64 * self.size)
+    }
+
+    /// The same line moved by about as much, in units of the plane.
+    pub fn moved(&self, by: f64) -> Self {
         let mut sheet = self.clone();
-        let by = 1e-7 * k as f64 * self.size * DVec2::new(0.6180339887, 0.4142135624);
+        let by = by * DVec2::new(0.6180339887, 0.4142135624);
         for p in sheet.points.iter_mut().chain(&mut sheet.around) {
             *p += by;
         }
         sheet.measure();
-        Ok(sheet)
+        sheet
     }
 
     /// Straight on at both ends to a circle well around everything, and back along it on the left.

@@ -1,18 +1,22 @@
 //! Divides the faces that the line meets.
 //!
-//! The line runs through a triangle in chains from edge to edge. Which of its crossings belong together follows from
-//! exact answers alone: a segment and a triangle are convex, so they meet in one stretch, and between two
-//! segments the line is inside or it is not.
+//! The line runs through a triangle in chains from edge to edge. With its own boundary they are the constraints of a
+//! triangulation, which is flooded from the boundary to tell the sides.
 
 use glam::{DVec2, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
+use super::chains::Chains;
 use super::cross::{Crossed, Node};
 use super::input::Polygons;
 use super::locate::Met;
-use super::sheet::{Sheet, side_of_edge};
+use super::parted::{Part, Parted};
+use super::sheet::Sheet;
 use crate::error::{Error, Result};
+
+/// A part of a triangle has at least this part of the square over its longest edge as its area, twice.
+const AREA: f64 = 1e-9;
 
 /// What counts as one point, in edges.
 #[derive(Clone, Copy, Debug)]
@@ -24,73 +28,6 @@ pub(super) struct Tolerance {
     /// Between the cut and a vertex, in units of the mesh.
     pub length: f64,
 }
-
-/// A part of a face.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
-    pub corners: [u32; 3],
-    pub face: u32,
-    /// The old triangle that it is a part of.
-    pub home: [u32; 3],
-    pub left: bool,
-}
-
-/// A mesh with its faces divided along the cut, both sides still together.
-pub(super) struct Parted {
-    /// Number of old vertices; new ones follow.
-    pub n_old: usize,
-    pub nodes: Vec<Node>,
-    /// Of every face: on the left. Means nothing for those that are divided.
-    pub left: Vec<bool>,
-    /// Of every face: replaced by parts.
-    pub divided: Vec<bool>,
-    pub parts: Vec<Part>,
-    /// Edges of the cut, lower vertex first, with the places of its ends on the unrolled line; on a closed line,
-    /// one of the two may be off by a turn, their difference is right.
-    pub cut: FxHashMap<(u32, u32), [f64; 2]>,
-    pub cut_faces: usize,
-}
-
-impl Parted {
-    pub fn position(&self, vertices: &[DVec3], v: u32) -> DVec3 {
-        match (v as usize).checked_sub(self.n_old) {
-            Some(k) => self.nodes[k].position,
-            None => vertices[v as usize],
-        }
-    }
-
-    /// Old vertices in which the cut touches itself.
-    pub fn touching(&self) -> Vec<u32> {
-        let mut ends = FxHashMap::<u32, u32>::default();
-        for v in self.cut.keys().flat_map(|&(a, b)| [a, b]).filter(|&v| (v as usize) < self.n_old) {
-            *ends.entry(v).or_default() += 1;
-        }
-        let mut found = ends.into_iter().filter(|e| e.1 > 2).map(|e| e.0).collect::<Vec<_>>();
-        found.sort_unstable();
-        found
-    }
-
-    /// Of every vertex: an end of an edge of the cut.
-    pub fn on_cut(&self) -> Vec<bool> {
-        let mut on = vec![false; self.n_old + self.nodes.len()];
-        for &(a, b) in self.cut.keys() {
-            on[a as usize] = true;
-            on[b as usize] = true;
-        }
-        on
-    }
-
-    /// The new vertex of this number, or an old one, as a combination of old ones.
-    pub fn source(&self, vertices: &[DVec3], v: u32) -> Node {
-        match (v as usize).checked_sub(self.n_old) {
-            Some(k) => self.nodes[k],
-            None => Node { position: vertices[v as usize], source: [v; 3], weights: [1.0, 0.0, 0.0] },
-        }
-    }
-}
-
-/// A chain's edge: both ends with their places, counted once for each time the line runs along it.
-type Chains = Vec<([u32; 2], [f64; 2], bool)>;
 
 /// Divides all faces that the line meets. With an error comes the triangle that stood in the way.
 pub(super) fn split(
@@ -149,38 +86,31 @@ pub(super) fn split(
     Ok(parted)
 }
 
-struct Divider<'a> {
-    vertices: &'a [DVec3],
-    sheet: &'a Sheet,
-    met: &'a Met,
-    edges: &'a FxHashMap<(u32, u32), u32>,
-    hits: &'a [Vec<super::cross::Hit>],
-    nodes: Vec<Node>,
-    tolerance: Tolerance,
-    parts: Vec<Part>,
-    cut: FxHashMap<(u32, u32), [f64; 2]>,
-}
-
-/// A point of a chain.
-#[derive(Clone, Copy)]
-struct Stop {
-    node: u32,
-    place: f64,
+pub(super) struct Divider<'a> {
+    pub vertices: &'a [DVec3],
+    pub sheet: &'a Sheet,
+    pub met: &'a Met,
+    pub edges: &'a FxHashMap<(u32, u32), u32>,
+    pub hits: &'a [Vec<super::cross::Hit>],
+    pub nodes: Vec<Node>,
+    pub tolerance: Tolerance,
+    pub parts: Vec<Part>,
+    pub cut: FxHashMap<(u32, u32), [f64; 2]>,
 }
 
 impl Divider<'_> {
-    fn hits(&self, a: u32, b: u32) -> &[super::cross::Hit] {
+    pub fn hits(&self, a: u32, b: u32) -> &[super::cross::Hit] {
         self.edges.get(&(a.min(b), a.max(b))).map_or(&[], |&k| &self.hits[k as usize])
     }
 
-    fn position(&self, v: u32) -> DVec3 {
+    pub fn position(&self, v: u32) -> DVec3 {
         match (v as usize).checked_sub(self.vertices.len()) {
             Some(k) => self.nodes[k].position,
             None => self.vertices[v as usize],
         }
     }
 
-    fn failed(&self, corners: [u32; 3], reason: &'static str) -> Error {
+    pub fn failed(&self, corners: [u32; 3], reason: &'static str) -> Error {
         let at = corners.iter().map(|&v| self.vertices[v as usize]).sum::<DVec3>() / 3.0;
         Error::CutFailed { reason, at: at.into() }
     }
@@ -234,121 +164,6 @@ impl Divider<'_> {
             }
         }
         Ok(())
-    }
-
-    /// The line within a triangle.
-    fn chains(&mut self, corners: [u32; 3]) -> Result<Chains> {
-        // Crossings by segment; which of a segment's two comes first does not matter.
-        let mut events: Vec<(u32, Stop)> = vec![];
-        for k in 0..3 {
-            for hit in self.hits(corners[k], corners[(k + 1) % 3]) {
-                let place = self.sheet.place(hit.segment as usize, hit.s);
-                events.push((hit.segment, Stop { node: hit.node, place }));
-            }
-        }
-        events.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.place.total_cmp(&y.1.place)));
-        let mut chains = Chains::new();
-        if events.is_empty() {
-            if self.sheet.closed && self.is_inside(corners, 0) {
-                let n = self.sheet.n_segments();
-                let stops = (0..n).map(|k| self.inner(corners, k)).collect::<Option<Vec<_>>>();
-                let Some(mut stops) = stops else { return Ok(chains) };
-                stops.push(stops[0]);
-                add_chain(&mut chains, &stops);
-            }
-            return Ok(chains);
-        }
-        // Begin where the line is outside: at a segment with two crossings, or after one that leaves.
-        let is_alone = |k: usize| {
-            let same = |j: usize| events[j].0 == events[k].0;
-            !((k > 0 && same(k - 1)) || (k + 1 < events.len() && same(k + 1)))
-        };
-        let start = (0..events.len())
-            .find(|&k| {
-                let first_of_pair = k + 1 < events.len() && events[k].0 == events[k + 1].0;
-                first_of_pair || (is_alone(k) && !self.is_inside(corners, events[k].0 as usize))
-            })
-            .ok_or_else(|| self.failed(corners, "the line never enters a face"))?;
-        let n = self.sheet.n_segments() as u32;
-        let count = events.len();
-        if count % 2 == 1 {
-            return Err(self.failed(corners, "the line enters a face and does not leave it"));
-        }
-        for pair in 0..count / 2 {
-            let (first, second) =
-                (events[(start + 2 * pair) % count], events[(start + 2 * pair + 1) % count]);
-            let mut stops = vec![first.1];
-            let steps = (second.0 + n - first.0) % n;
-            for step in 1..=steps {
-                let k = (first.0 + step) as usize % self.sheet.points.len();
-                stops.extend(self.inner(corners, k));
-            }
-            stops.push(second.1);
-            self.merge(&mut stops);
-            add_chain(&mut chains, &stops);
-        }
-        Ok(chains)
-    }
-
-    /// True if the stroke's point `k` is in the triangle.
-    fn is_inside(&self, corners: [u32; 3], k: usize) -> bool {
-        let [a, b, c] = corners.map(|v| self.sheet.seen[v as usize]);
-        if a == b || b == c || c == a {
-            return false;
-        }
-        let p = self.sheet.point(k);
-        let left = side_of_edge(a, b, p) > 0.0;
-        (side_of_edge(b, c, p) > 0.0) == left && (side_of_edge(c, a, p) > 0.0) == left
-    }
-
-    /// The stroke's point `k` as a vertex within a triangle; none if that is seen edge on.
-    fn inner(&mut self, corners: [u32; 3], k: usize) -> Option<Stop> {
-        const EDGE_ON: f64 = 1e-5;
-        let [a, b, c] = corners.map(|v| self.sheet.seen[v as usize]);
-        let place = self.sheet.place(k.min(self.sheet.n_segments()), 0.0);
-        let p = self.sheet.point(k);
-        let [x, y, z] = corners.map(|v| self.vertices[v as usize]);
-        let normal = (y - x).cross(z - x);
-        if normal.dot(self.sheet.view.ray(p)).abs() <= EDGE_ON * normal.length() {
-            return None;
-        }
-        let mut weights = [(b - p).perp_dot(c - p), (c - p).perp_dot(a - p), (a - p).perp_dot(b - p)];
-        let sum: f64 = weights.iter().sum();
-        for (w, v) in weights.iter_mut().zip([x, y, z]) {
-            *w = (*w / sum).clamp(0.0, 1.0) / self.sheet.view.depth(v);
-        }
-        let sum: f64 = weights.iter().sum();
-        weights.iter_mut().for_each(|w| *w /= sum);
-        if !weights.iter().all(|w| w.is_finite()) {
-            return None;
-        }
-        let node = (self.vertices.len() + self.nodes.len()) as u32;
-        self.nodes.push(Node::within(self.vertices, corners, weights));
-        Some(Stop { node, place })
-    }
-
-    /// Leaves out the stroke's points that nearly coincide with the ends of their chain.
-    fn merge(&mut self, stops: &mut Vec<Stop>) {
-        if stops.len() < 3 {
-            return;
-        }
-        let (first, last) = (stops[0].node, stops[stops.len() - 1].node);
-        let (p, q) = (self.position(first), self.position(last));
-        let n_old = self.vertices.len();
-        let near = |v: u32, p: DVec3, end: u32| {
-            let node = &self.nodes[v as usize - n_old];
-            let [a, b, c] = node.source.map(|v| self.vertices[v as usize]);
-            let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
-            let share = if (end as usize) < n_old { self.tolerance.vertex } else { self.tolerance.node };
-            let reach = if (end as usize) < n_old { self.tolerance.length } else { 0.0 };
-            node.position.distance(p) <= (share * size).max(reach)
-        };
-        let inner = stops[1..stops.len() - 1].to_vec();
-        let kept = inner.into_iter().filter(|s| !near(s.node, p, first) && !near(s.node, q, last));
-        let mut all = vec![stops[0]];
-        all.extend(kept);
-        all.push(stops[stops.len() - 1]);
-        *stops = all;
     }
 
     /// Divides a triangle with a boundary `ring` along `chains`.
@@ -439,24 +254,14 @@ impl Divider<'_> {
                 }
             }
             let own = inner.vertices().map(|v| number[v.index()]);
+            let [p, q, r] = own.map(|v| self.position(v));
+            let longest = p.distance_squared(q).max(q.distance_squared(r)).max(r.distance_squared(p));
+            if self.tolerance.length > 0.0 && (q - p).cross(r - p).length() <= AREA * longest {
+                return Err(failed("a part of a face has no area"));
+            }
             new.push(Part { corners: own, face, home: corners, left });
         }
         self.parts.extend(new);
         Ok(())
-    }
-}
-
-/// Appends the edges of a chain; running along one twice cancels out.
-fn add_chain(chains: &mut Chains, stops: &[Stop]) {
-    for pair in stops.windows(2) {
-        let [a, b] = [pair[0], pair[1]];
-        if a.node == b.node {
-            continue;
-        }
-        let known = chains.iter_mut().find(|c| c.0 == [a.node, b.node] || c.0 == [b.node, a.node]);
-        match known {
-            Some(known) => known.2 = !known.2,
-            None => chains.push(([a.node, b.node], [a.place, b.place], true)),
-        }
     }
 }

@@ -8,7 +8,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::cap::shape;
 use super::cross::Node;
-use super::split::{Part, Parted};
+use super::nearness::{closest, samples};
+use super::parted::{Part, Parted};
 
 pub(super) struct Strip<'a> {
     pub vertices: &'a [DVec3],
@@ -25,15 +26,37 @@ pub(super) struct Strip<'a> {
     pub fresh: Vec<u32>,
     /// How far a triangle may be off the old ones.
     pub tolerance: f64,
+    /// How far apart that is looked at.
+    spacing: f64,
     /// The cut's edges, by vertex.
     line: FxHashMap<u32, Vec<u32>>,
+    /// Counts changes; and for each vertex, the last one of its triangles.
+    clock: u32,
+    changed: FxHashMap<u32, u32>,
+    /// For each vertex, when each edit was last tried in vain.
+    tried: [FxHashMap<u32, u32>; 3],
 }
+
+/// An edit that is tried again and again.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Trial {
+    Thin,
+    Clear,
+    Centre,
+}
+
+/// How far the new faces may be off the old ones, in edge lengths; less than what is promised, for it is
+/// measured at points.
+const TOLERANCE: f64 = 0.045;
+
+/// How far apart these points are at most, in edge lengths.
+const SPACING: f64 = 0.5;
 
 /// How much of a right way up is left to a triangle.
 const UPRIGHT: f64 = 0.5;
 
 impl<'a> Strip<'a> {
-    pub fn new(vertices: &'a [DVec3], parted: &'a mut Parted, parts: Vec<Part>, tolerance: f64) -> Self {
+    pub fn new(vertices: &'a [DVec3], parted: &'a mut Parted, parts: Vec<Part>, length: f64) -> Self {
         let mut around: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
         let mut sides: FxHashMap<(u32, u32), i32> = FxHashMap::default();
         for (i, part) in parts.iter().enumerate() {
@@ -61,8 +84,32 @@ impl<'a> Strip<'a> {
             border,
             altered: FxHashSet::default(),
             fresh: vec![],
-            tolerance,
+            tolerance: TOLERANCE * length,
+            spacing: SPACING * length,
             line,
+            clock: 0,
+            changed: FxHashMap::default(),
+            tried: Default::default(),
+        }
+    }
+
+    /// True if an edit of `v` failed before, and nothing that it depends on has changed since.
+    pub fn is_hopeless(&self, v: u32, trial: Trial) -> bool {
+        let Some(&when) = self.tried[trial as usize].get(&v) else { return false };
+        let same = |w: u32| self.changed.get(&w).is_none_or(|&at| at <= when);
+        let near = self.triangles_at(v).iter().filter_map(|&t| self.part(t)).flat_map(|p| p.corners);
+        same(v) && near.into_iter().all(same)
+    }
+
+    /// Notes that an edit of `v` failed.
+    pub fn give_up(&mut self, v: u32, trial: Trial) {
+        self.tried[trial as usize].insert(v, self.clock);
+    }
+
+    pub fn touch(&mut self, corners: [u32; 3]) {
+        self.clock += 1;
+        for v in corners {
+            self.changed.insert(v, self.clock);
         }
     }
 
@@ -79,7 +126,7 @@ impl<'a> Strip<'a> {
         self.border.contains(&v)
     }
 
-    fn is_cut(&self, a: u32, b: u32) -> bool {
+    pub fn is_cut(&self, a: u32, b: u32) -> bool {
         self.parted.cut.contains_key(&(a.min(b), a.max(b)))
     }
 
@@ -104,7 +151,7 @@ impl<'a> Strip<'a> {
         own.sum::<DVec3>().normalize_or_zero()
     }
 
-    fn neighbours(&self, v: u32) -> Vec<u32> {
+    pub fn neighbours(&self, v: u32) -> Vec<u32> {
         let mut found = vec![];
         for part in self.triangles_at(v).iter().filter_map(|&t| self.part(t)) {
             found.extend(part.corners.into_iter().filter(|&w| w != v));
@@ -114,17 +161,17 @@ impl<'a> Strip<'a> {
         found
     }
 
-    fn with_edge(&self, a: u32, b: u32) -> Vec<u32> {
+    pub fn with_edge(&self, a: u32, b: u32) -> Vec<u32> {
         let has = |t: &&u32| self.part(**t).is_some_and(|p| p.corners.contains(&b));
         self.triangles_at(a).iter().filter(has).copied().collect()
     }
 
-    fn home(&self, home: [u32; 3]) -> [DVec3; 3] {
+    pub fn home(&self, home: [u32; 3]) -> [DVec3; 3] {
         home.map(|v| self.vertices[v as usize])
     }
 
     /// True if a triangle has an area and faces as its old one does.
-    fn is_upright(&self, corners: [u32; 3], home: [u32; 3]) -> bool {
+    pub fn is_upright(&self, corners: [u32; 3], home: [u32; 3]) -> bool {
         let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
         let p = corners.map(|v| self.position(v));
         let (own, old) = (normal(p), normal(self.home(home)));
@@ -134,7 +181,7 @@ impl<'a> Strip<'a> {
     }
 
     /// The old triangles around some vertices, each once.
-    fn homes(&self, around: &[u32]) -> Vec<(u32, [u32; 3])> {
+    pub fn homes(&self, around: &[u32]) -> Vec<(u32, [u32; 3])> {
         let parts = around.iter().flat_map(|&v| self.triangles_at(v)).filter_map(|&t| self.part(t));
         let mut homes = parts.map(|p| (p.face, p.home)).collect::<Vec<_>>();
         homes.sort_unstable();
@@ -143,21 +190,27 @@ impl<'a> Strip<'a> {
     }
 
     /// Distance of a point from the nearest of these old triangles, and which it is.
-    fn nearest(&self, p: DVec3, homes: &[(u32, [u32; 3])]) -> (f64, usize) {
+    pub fn nearest(&self, p: DVec3, homes: &[(u32, [u32; 3])]) -> (f64, usize) {
         let off = homes.iter().map(|h| closest(p, self.home(h.1)).0).enumerate();
         off.map(|(k, d)| (d, k)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, 0))
     }
 
-    /// True if the triangle stays near the old ones.
-    fn is_near(&self, corners: [u32; 3], homes: &[(u32, [u32; 3])]) -> bool {
-        let [a, b, c] = corners.map(|v| self.position(v));
-        let samples = [(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
-        samples.iter().all(|&p| self.nearest(p, homes).0 <= self.tolerance)
+    /// Points of a triangle where its distance from the old ones is taken.
+    pub fn samples(&self, corners: [u32; 3]) -> impl Iterator<Item = DVec3> {
+        samples(corners.map(|v| self.position(v)), self.spacing)
     }
 
-    fn replace(&mut self, t: u32, part: Option<Part>) {
+    /// True if the triangle stays near the old ones, of which `home` is the likeliest.
+    pub fn is_near(&self, corners: [u32; 3], home: [u32; 3], homes: &[(u32, [u32; 3])]) -> bool {
+        let own = self.home(home);
+        let near = |p: DVec3, old: [DVec3; 3]| closest(p, old).0 <= self.tolerance;
+        self.samples(corners).all(|p| near(p, own) || homes.iter().any(|h| near(p, self.home(h.1))))
+    }
+
+    pub fn replace(&mut self, t: u32, part: Option<Part>) {
         if let Some(old) = self.parts[t as usize].take() {
             self.altered.insert(old.face);
+            self.touch(old.corners);
             for v in old.corners {
                 if let Some(list) = self.around.get_mut(&v) {
                     list.retain(|&x| x != t);
@@ -170,6 +223,7 @@ impl<'a> Strip<'a> {
             }
             self.parts[t as usize] = Some(part);
             self.fresh.push(t);
+            self.touch(part.corners);
         }
     }
 
@@ -247,7 +301,7 @@ impl<'a> Strip<'a> {
             let part = Part { corners, face: homes[k].0, home: homes[k].1, ..*part };
             if self.min_angle(corners) < least
                 || !self.is_upright(corners, part.home)
-                || !self.is_near(corners, &homes)
+                || !self.is_near(corners, part.home, &homes)
             {
                 return false;
             }
@@ -284,98 +338,4 @@ impl<'a> Strip<'a> {
         }
         true
     }
-
-    /// Turns the edge from `a` to `b` if that makes the smallest angle of its triangles larger.
-    pub fn flip(&mut self, a: u32, b: u32) -> bool {
-        if self.is_cut(a, b) {
-            return false;
-        }
-        let [s, t] = self.with_edge(a, b)[..] else { return false };
-        let (Some(&p), Some(&q)) = (self.part(s), self.part(t)) else { return false };
-        let apex = |part: &Part| part.corners.into_iter().find(|&v| v != a && v != b);
-        let (Some(c), Some(d)) = (apex(&p), apex(&q)) else { return false };
-        if c == d
-            || p.left != q.left
-            || (self.is_border(c) && self.is_border(d))
-            || self.neighbours(c).contains(&d)
-        {
-            return false;
-        }
-        let (x, y) =
-            (p.corners.map(|v| if v == b { d } else { v }), p.corners.map(|v| if v == a { d } else { v }));
-        let before = self.min_angle(p.corners).min(self.min_angle(q.corners));
-        if self.min_angle(x).min(self.min_angle(y)) <= before + 1e-9 {
-            return false;
-        }
-        let homes = self.homes(&[a, b, c, d]);
-        let mut new = vec![];
-        for corners in [x, y] {
-            let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
-            let (_, k) = self.nearest(centre, &homes);
-            if !self.is_upright(corners, homes[k].1) || !self.is_near(corners, &homes) {
-                return false;
-            }
-            new.push(Part { corners, face: homes[k].0, home: homes[k].1, left: p.left });
-        }
-        self.replace(s, None);
-        self.replace(t, Some(new[1]));
-        self.replace(s, Some(new[0]));
-        self.altered.extend([p.face, q.face]);
-        true
-    }
-
-    /// Moves a new vertex inside one plane to the middle of its neighbours, if that makes its smallest angle
-    /// larger.
-    pub fn centre(&mut self, v: u32) -> bool {
-        let Some(k) = (v as usize).checked_sub(self.parted.n_old) else { return false };
-        if self.is_border(v) || !self.on_line(v).is_empty() {
-            return false;
-        }
-        let around = self.triangles_at(v).to_vec();
-        let parts = around.iter().filter_map(|&t| self.part(t).copied()).collect::<Vec<_>>();
-        let near = self.neighbours(v);
-        let least =
-            |strip: &Self| parts.iter().map(|p| strip.min_angle(p.corners)).fold(f64::INFINITY, f64::min);
-        let (before, old) = (least(self), self.parted.nodes[k]);
-        let homes = self.homes(&near);
-        let middle = near.iter().map(|&w| self.position(w)).sum::<DVec3>() / near.len().max(1) as f64;
-        // Back onto the surface.
-        let (_, h) = self.nearest(middle, &homes);
-        let Some(&(_, home)) = homes.get(h) else { return false };
-        let (_, weights) = closest(middle, self.home(home));
-        self.parted.nodes[k] = Node::within(self.vertices, home, weights);
-        let fits = least(self) > before
-            && parts.iter().all(|p| self.is_upright(p.corners, p.home) && self.is_near(p.corners, &homes));
-        if !fits {
-            self.parted.nodes[k] = old;
-        }
-        fits
-    }
-}
-
-/// Distance of a point from a triangle, and the weights of its corners there.
-pub(super) fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, [f64; 3]) {
-    let normal = (b - a).cross(c - a);
-    let squared = normal.length_squared();
-    if squared > 0.0 {
-        let inside = [
-            (c - b).cross(p - b).dot(normal),
-            (a - c).cross(p - c).dot(normal),
-            (b - a).cross(p - a).dot(normal),
-        ];
-        if inside.iter().all(|&x| x >= 0.0) {
-            return ((p - a).dot(normal).abs() / squared.sqrt(), inside.map(|x| x / squared));
-        }
-    }
-    let corners = [a, b, c];
-    let side = |k: usize| {
-        let (from, to) = (corners[k], corners[(k + 1) % 3]);
-        let along = to - from;
-        let t = ((p - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        let mut weights = [0.0; 3];
-        (weights[k], weights[(k + 1) % 3]) = (1.0 - t, t);
-        ((from + t * along).distance(p), weights)
-    };
-    let sides = [side(0), side(1), side(2)];
-    sides.into_iter().min_by(|x, y| x.0.total_cmp(&y.0)).unwrap_or((f64::INFINITY, [1.0, 0.0, 0.0]))
 }

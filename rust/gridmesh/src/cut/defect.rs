@@ -1,0 +1,62 @@
+//! How far the rebuilt faces along a cut are off the old ones.
+
+use glam::DVec3;
+use rstar::{AABB, PointDistance, RTree, RTreeObject};
+use rustc_hash::FxHashSet;
+
+use super::input::{Polygons, triangles};
+use super::nearness::closest;
+use super::strip::Strip;
+
+/// Largest distance of the changed triangles from the old surface.
+pub(super) fn defect(faces: Polygons<'_>, strip: &Strip<'_>) -> f64 {
+    let mut tree = None;
+    let mut most = 0.0f64;
+    let parts = strip.parts.iter().flatten();
+    for part in parts.filter(|p| strip.altered.contains(&p.face)) {
+        let homes = strip.homes(&part.corners).into_iter().map(|h| strip.home(h.1)).collect::<Vec<_>>();
+        let own = strip.home(part.home);
+        for p in strip.samples(part.corners) {
+            // Most are near the old triangles that are known to be around.
+            if closest(p, own).0 <= most || homes.iter().any(|&home| closest(p, home).0 <= most) {
+                continue;
+            }
+            let tree = tree.get_or_insert_with(|| old_faces(faces, strip));
+            most = most.max(tree.nearest_neighbor(&p.to_array()).map_or(0.0, |f| closest(p, f.0).0));
+        }
+    }
+    most
+}
+
+/// The triangles of all faces that the strip had or has.
+fn old_faces(faces: Polygons<'_>, strip: &Strip<'_>) -> RTree<Facet> {
+    let mut old = vec![];
+    let mut known = FxHashSet::default();
+    let mut altered = strip.altered.iter().copied().collect::<Vec<_>>();
+    altered.sort_unstable();
+    for f in strip.parts.iter().flatten().map(|p| p.face).chain(altered) {
+        if known.insert(f) {
+            triangles(strip.vertices, faces.face(f as usize), |t| old.push(Facet(strip.home(t))));
+        }
+    }
+    RTree::bulk_load(old)
+}
+
+/// An old triangle.
+struct Facet([DVec3; 3]);
+
+impl RTreeObject for Facet {
+    type Envelope = AABB<[f64; 3]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        let [a, b, c] = self.0;
+        AABB::from_corners(a.min(b).min(c).to_array(), a.max(b).max(c).to_array())
+    }
+}
+
+impl PointDistance for Facet {
+    fn distance_2(&self, point: &[f64; 3]) -> f64 {
+        let off = closest(DVec3::from_array(*point), self.0).0;
+        off * off
+    }
+}
