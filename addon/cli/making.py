@@ -11,7 +11,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import api, cutline, cutting, strokes
+from .. import api, cutline, cutsweep, cutting, strokes
 from ..api import Body
 from ..cutobject import Caps, Target
 from ..operators import cut as cut_operator
@@ -132,7 +132,7 @@ def cut(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: 
     """Cut every mesh along the stroke. Those that it does not meet stay as they are."""
     found, notes = loading.meshes(source, pattern, scripts=scripts, weld=options.get("weld"))
     points, cyclic, direction = _line(options)
-    cutting.require_finite(points)
+    cutsweep.require_finite(points)
     sweep, _ = cutline.sweep_of(options.get("direction", direction).upper(), points, None)
     keep, together = options.get("keep", "both"), options.get("together", False)
     smooth, cap = options.get("smooth", "flat"), options.get("cap", True)
@@ -141,7 +141,7 @@ def cut(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: 
     pieces, missed = 0, []
     for ob in found:
         target = Target(ob)
-        stroke = cutting.checked(
+        stroke = cutsweep.checked(
             points - target.origin, cyclic=cyclic, sweep=sweep, close_gaps=options.get("close_gaps", 0.1)
         )
         try:
@@ -156,7 +156,7 @@ def cut(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: 
                 gap=options.get("gap", 0.0),
                 smooth=smooth,
             )
-        except cutting.CutError as error:
+        except cutsweep.CutError as error:
             missed.append(f"'{ob.name}': {error}")
             objects.append(ob)
             continue

@@ -1,6 +1,6 @@
 //! Divides a mesh along a swept stroke and closes both pieces with grid patches.
 //!
-//! [`cut`] does it all. The stroke and the surface that it sweeps are a [`sheet::Sheet`]; `locate` finds the
+//! [`cut`] does it all. The stroke and the surface that it sweeps are a `sheet::Sheet`; `locate` finds the
 //! faces it meets, `cross` where it meets their edges, `split` divides them, `rim` makes the edges along
 //! the cut even, `loops` and `regions` find what is to be capped, `cap` and `bridge` cap it, `pieces` puts the pieces
 //! together.
@@ -123,8 +123,12 @@ const TOLERANCES: [Tolerance; 3] = [
     Tolerance { vertex: 1e-9, node: 1e-11, length: 0.0 },
 ];
 
-/// With an edge length, the cut is drawn through vertices that are nearer than this part of it.
+/// With an edge length, the cut may be drawn through vertices that are nearer than this part of it, where triangles
+/// beside it would be thin otherwise.
 const THROUGH: f64 = 0.3;
+
+/// So often the cut is drawn anew, through vertices that stood in the way of good triangles.
+const REDRAWN: usize = 4;
 
 /// With an edge length, a line that touches itself in a vertex is moved aside by this part of it.
 const ASIDE: f64 = 0.02;
@@ -175,12 +179,9 @@ fn divide_with(
 ) -> Result<Cut> {
     let mut tally = Tally::new();
     let since = Instant::now();
-    let (sheet, mut parted) = part(vertices, faces, sheet, coarse, &mut tally, progress.part(0.0, 0.4))?;
+    let (sheet, parted) =
+        part(vertices, faces, sheet, options.edge_length, coarse, &mut tally, progress.part(0.0, 0.4))?;
     progress.report(0.4)?;
-    if let Some(length) = options.edge_length {
-        rim::even_out(vertices, faces, &mut parted, length, &mut tally);
-        tally.stage("rim");
-    }
     let loops = loops::trace(faces, &parted, &sheet);
     tally.report.open_lines = loops.open;
     tally.report.loops = loops.closed.len();
@@ -208,12 +209,13 @@ fn divide_with(
     Ok(Cut { pieces, report: tally.report })
 }
 
-/// Divides the faces; if rounding stands in the way, with finer tolerances and with the stroke moved by
+/// Divides the faces, evenly along the cut with an edge length; if rounding stands in the way, with finer tolerances and with the stroke moved by
 /// the least bit that matters, which is counted.
 fn part(
     vertices: &[DVec3],
     faces: Polygons<'_>,
     sheet: Sheet,
+    edge_length: Option<f64>,
     coarse: Option<Tolerance>,
     tally: &mut Tally,
     progress: Progress<'_>,
@@ -227,11 +229,12 @@ fn part(
         tally.stage("search");
         progress.report(0.5)?;
         for tolerance in coarse.into_iter().chain(TOLERANCES) {
-            let mut released = FxHashSet::default();
+            let (mut wanted, mut released) = (FxHashSet::default(), FxHashSet::default());
+            let mut redrawn = 0;
             for _ in 0..RELEASES {
-                let crossed = edges.named(vertices, tolerance, &released);
+                let crossed = edges.named(vertices, tolerance, &wanted, &released);
                 match split::split(vertices, faces, &sheet, &met, crossed, tolerance) {
-                    Ok(parted) => {
+                    Ok(mut parted) => {
                         if tolerance.length > 0.0 {
                             let before = released.len();
                             released.extend(parted.touching());
@@ -243,6 +246,17 @@ fn part(
                         }
                         tally.stage("faces");
                         tally.report.cut_faces = parted.cut_faces;
+                        if let Some(length) = edge_length {
+                            let in_the_way =
+                                rim::even_out(vertices, faces, &mut parted, length, tolerance.length, tally);
+                            tally.stage("rim");
+                            let before = wanted.len();
+                            wanted.extend(in_the_way.into_iter().filter(|v| !released.contains(v)));
+                            redrawn += 1;
+                            if redrawn <= REDRAWN && wanted.len() > before {
+                                continue;
+                            }
+                        }
                         return Ok((sheet, parted));
                     }
                     Err((Error::StrokeMisses, _)) if tolerance.length == 0.0 => {

@@ -62,6 +62,9 @@ pub(super) struct Crossed<'a> {
     pub nodes: Vec<Node>,
 }
 
+/// The part of the reach at which any vertex takes a crossing.
+const SLIGHT: f64 = 0.1;
+
 pub(super) fn cross(
     vertices: &[DVec3],
     faces: Polygons<'_>,
@@ -92,8 +95,15 @@ pub(super) fn cross(
 }
 
 impl Edges {
-    /// Makes vertices of the crossings: those near an end of their edge become that end, unless it is `released`.
-    pub fn named(&self, vertices: &[DVec3], tolerance: Tolerance, released: &FxHashSet<u32>) -> Crossed<'_> {
+    /// Makes vertices of the crossings: those near an end of their edge become that end, from farther away if it
+    /// is `wanted`, unless it is `released`.
+    pub fn named(
+        &self,
+        vertices: &[DVec3],
+        tolerance: Tolerance,
+        wanted: &FxHashSet<u32>,
+        released: &FxHashSet<u32>,
+    ) -> Crossed<'_> {
         let mut crossed = Crossed {
             triangles: &self.triangles,
             edges: FxHashMap::default(),
@@ -103,9 +113,14 @@ impl Edges {
         for (k, (&(a, b), hits)) in self.keys.iter().zip(&mut crossed.hits).enumerate() {
             crossed.edges.insert((a, b), k as u32);
             let length = vertices[a as usize].distance(vertices[b as usize]);
-            let wide = (tolerance.length / length.max(f64::MIN_POSITIVE)).min(0.45).max(tolerance.vertex);
-            let [near_a, near_b] =
-                [a, b].map(|v| if released.contains(&v) { tolerance.vertex } else { wide });
+            let [near_a, near_b] = [a, b].map(|v| {
+                let reach = match v {
+                    v if released.contains(&v) => 0.0,
+                    v if wanted.contains(&v) => tolerance.length,
+                    _ => SLIGHT * tolerance.length,
+                };
+                (reach / length.max(f64::MIN_POSITIVE)).min(0.45).max(tolerance.vertex)
+            });
             let mut last: Option<(f64, u32)> = None;
             for hit in hits {
                 hit.node = if hit.t <= near_a {

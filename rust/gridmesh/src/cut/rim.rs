@@ -25,13 +25,19 @@ const SMALL: f64 = 0.42;
 /// Rounds of collapsing, flipping and splitting.
 const ROUNDS: usize = 8;
 
+/// Angles below this are reason enough to draw the cut through a vertex.
+const POOR: f64 = 0.26;
+
+/// Evens out the line and the faces along it; the old vertices within `reach` of the line that stay at thin
+/// triangles beside it, in order.
 pub(super) fn even_out(
     vertices: &[DVec3],
     faces: Polygons<'_>,
     parted: &mut Parted,
     length: f64,
+    reach: f64,
     tally: &mut Tally,
-) {
+) -> Vec<u32> {
     let parts = gather(vertices, faces, parted);
     let old = std::mem::take(&mut parted.parts);
     let own = old.iter().map(|p| p.face).collect::<FxHashSet<_>>();
@@ -47,12 +53,37 @@ pub(super) fn even_out(
         }
     }
     tally.report.defect = defect(faces, &strip);
+    let in_the_way = in_the_way(&strip, reach);
     let Strip { parts, altered, .. } = strip;
     let parts = parts.into_iter().flatten();
     for &f in &altered {
         parted.divided[f as usize] = true;
     }
     parted.parts = parts.filter(|p| parted.divided[p.face as usize] || own.contains(&p.face)).collect();
+    in_the_way
+}
+
+fn in_the_way(strip: &Strip<'_>, reach: f64) -> Vec<u32> {
+    let is_old = |v: u32| (v as usize) < strip.parted.n_old && strip.on_line(v).is_empty();
+    let is_near = |v: u32, u: u32| {
+        let beside = strip.on_line(u).iter();
+        beside.into_iter().any(|&w| {
+            let (p, q) = (strip.position(u), strip.position(w));
+            closest(strip.position(v), [p, q, q]).0 < reach
+        })
+    };
+    let poor = strip.parts.iter().flatten().filter(|part| strip.min_angle(part.corners) < POOR);
+    let mut found: Vec<u32> = poor
+        .flat_map(|part| {
+            let [a, b, c] = part.corners;
+            [(a, b, c), (b, c, a), (c, a, b)]
+        })
+        .filter(|&(v, a, b)| is_old(v) && (is_near(v, a) || is_near(v, b)))
+        .map(|(v, ..)| v)
+        .collect();
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// Triangles of the faces that the cut meets, and of those around them.
