@@ -1,6 +1,9 @@
 """From the zip to a body: installing, strokes, the redo panel, menus, presets, long work, another language."""
 
+import json
 import os
+import subprocess
+import tempfile
 import time
 from pathlib import Path
 
@@ -217,6 +220,32 @@ def long_work():
     assert not mesh_objects(), "undo left the body"
 
 
+def batch():
+    """Drawings become bodies by the command line, and are opened here."""
+    yield from fresh()
+    folder = Path(tempfile.mkdtemp())
+    with (folder / "jobs.jsonl").open("w") as jobs:
+        for k in range(6):
+            t = np.linspace(0, 2 * np.pi, 90, endpoint=False)
+            r = 0.8 + 0.2 * np.cos((k + 2) * t)
+            points = np.stack([r * np.cos(t), r * np.sin(t)], axis=1).tolist()
+            (folder / f"{k}.json").write_text(json.dumps({"points": points}))
+            job = {"id": f"body {k}", "op": "strokes", "in": f"{k}.json", "out": f"{k}.ply"}
+            print(json.dumps({**job, "params": {"triangles": 600}}), file=jobs)
+    words = ["--background", "--command", "gridmesh", "batch", str(folder / "jobs.jsonl")]
+    done = subprocess.run([bpy.app.binary_path, *words], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    for k in range(6):
+        bpy.ops.wm.ply_import(filepath=str(folder / f"{k}.ply"))
+        ob = bpy.context.object
+        ob.location = (2.1 * (k % 3) - 2.1, 0, 1.1 - 2.2 * (k // 3))
+        ob.rotation_euler.x = np.pi / 2
+        ob.name = f"body {k}"
+    assert len(mesh_objects()) == 6
+    stage.view.spaces.active.overlay.show_wireframes = True
+    yield from stage.picture("batch")
+
+
 def german():
     """Sidebar, redo panel and live body in German, if this Blender has languages: nothing is cut off."""
     if not bpy.app.build_options.international:
@@ -247,4 +276,4 @@ def german():
         view.language = language
 
 
-SCENES = (install, first_body, redo_panel, update, menus, sprites, long_work, german)
+SCENES = (install, first_body, redo_panel, update, menus, sprites, long_work, batch, german)
