@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec2Swizzles};
 use robust::{Coord, Coord3D, orient2d, orient3d};
+use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
 
 type Boxed<const N: usize> = GeomWithData<Rectangle<[f64; N]>, u32>;
 
@@ -141,11 +141,6 @@ pub(crate) fn crossing_edges(positions: &[DVec2], loops: &[Range<u32>]) -> Vec<u
         let n = contour.len() as u32;
         edges.extend((0..n).map(|k| [contour.start + k, contour.start + (k + 1) % n]));
     }
-    let boxes = edges.iter().enumerate().map(|(index, edge)| {
-        let [a, b] = edge.map(at);
-        Boxed::<2>::new(Rectangle::from_corners(a.min(b).into(), a.max(b).into()), index as u32)
-    });
-    let tree = RTree::bulk_load(boxes.collect());
     let meet = |[i, j]: [u32; 2], [k, l]: [u32; 2]| {
         let (a, b, c, d) = (at(i), at(j), at(k), at(l));
         if j == k || i == l {
@@ -155,14 +150,28 @@ pub(crate) fn crossing_edges(positions: &[DVec2], loops: &[Range<u32>]) -> Vec<u
         }
         segments_meet(a, b, c, d)
     };
+    // A sweep along the longer side of the drawing: few edges stand over one place.
+    let (low, high) = positions
+        .iter()
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+    let is_wide = high.x - low.x >= high.y - low.y;
+    let turned = |p: DVec2| if is_wide { p } else { p.yx() };
+    let mut spans: Vec<(DVec2, DVec2, u32)> = (0u32..)
+        .zip(&edges)
+        .map(|(index, edge)| {
+            let [a, b] = edge.map(|v| turned(at(v)));
+            (a.min(b), a.max(b), index)
+        })
+        .collect();
+    spans.sort_by(|p, q| p.0.x.total_cmp(&q.0.x).then(p.2.cmp(&q.2)));
     let mut found = vec![];
-    for (index, &edge) in edges.iter().enumerate() {
-        let [a, b] = edge.map(at);
-        let envelope = AABB::from_corners(a.min(b).into(), a.max(b).into());
-        for other in tree.locate_in_envelope_intersecting(&envelope).filter(|o| o.data > index as u32) {
-            let other = edges[other.data as usize];
-            if meet(edge, other) {
-                found.extend([edge[0], other[0]]);
+    for (k, &(low, high, i)) in spans.iter().enumerate() {
+        for &(other_low, other_high, j) in spans[k + 1..].iter().take_while(|other| other.0.x <= high.x) {
+            if other_low.y <= high.y && low.y <= other_high.y {
+                let (one, other) = (edges[i as usize], edges[j as usize]);
+                if meet(one, other) {
+                    found.extend([one[0], other[0]]);
+                }
             }
         }
     }
