@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::band::Band;
 use super::check::first_inverted;
 use super::energy::{Energy, Power, Regularised, det};
 use super::sweep::{Active, Motion};
@@ -11,35 +12,69 @@ use crate::progress::Progress;
 /// Triangles of less than this share of the equilateral triangle's area count as tangled.
 const TANGLED: f64 = 1e-3;
 
-impl Motion<'_> {
-    /// Vertices of tangled triangles, and the least `det` of all triangles.
-    fn tangled(&self) -> (Vec<u32>, f64) {
-        let (mut vertices, mut least) = (Vec::new(), f64::INFINITY);
-        for &t in &self.band.triangles {
-            let [a, b, c] = t.map(|v| self.band.positions[v as usize]);
-            let d = det(b - a, c - a);
-            // A NaN is tangled too.
-            if !matches!(d.partial_cmp(&TANGLED), Some(std::cmp::Ordering::Greater)) {
-                vertices.extend(t);
-            }
-            least = least.min(d);
+/// Triangles that are inverted or nearly so.
+#[derive(Default)]
+struct Tangled {
+    /// Their corners.
+    vertices: Vec<u32>,
+    /// The least `det` of a triangle, at most 0.
+    least: f64,
+}
+
+impl Tangled {
+    fn look_at(&mut self, band: &Band, triangle: [u32; 3]) {
+        // Seen from its first vertex, so that it is the same from whichever it is looked at.
+        let first = (0..3).min_by_key(|&k| triangle[k]).unwrap_or(0);
+        let [a, b, c] = [0, 1, 2].map(|k| band.positions[triangle[(first + k) % 3] as usize]);
+        let d = det(b - a, c - a);
+        // A NaN is tangled too.
+        if !matches!(d.partial_cmp(&TANGLED), Some(std::cmp::Ordering::Greater)) {
+            self.vertices.extend(triangle);
         }
-        (vertices, least)
+        self.least = self.least.min(d);
+    }
+}
+
+impl Motion<'_> {
+    /// The tangled ones of all triangles.
+    fn tangled(&self) -> Tangled {
+        let mut found = Tangled::default();
+        for &t in &self.band.triangles {
+            found.look_at(&self.band, t);
+        }
+        found
+    }
+
+    /// The tangled triangles at some vertices.
+    fn tangled_at(&self, vertices: &Active) -> Tangled {
+        let mut found = Tangled::default();
+        for v in vertices.iter() {
+            for pair in self.band.around(v as usize).windows(2) {
+                // Once, from the first of its vertices that is among them.
+                if !pair.iter().any(|&w| w < v && vertices.has(w)) {
+                    found.look_at(&self.band, [v, pair[0], pair[1]]);
+                }
+            }
+        }
+        found
     }
 
     /// Sweeps around the tangled triangles until there is none; false if some stay inverted.
     pub fn untangle(&mut self, sweeps: usize, done: &mut usize, progress: Progress<'_>) -> Result<bool> {
+        let mut tangled = self.tangled();
         for sweep in 0..sweeps {
-            let (vertices, least) = self.tangled();
+            let Tangled { vertices, least } = tangled;
             if vertices.is_empty() {
                 return Ok(true);
             }
             progress.report(sweep as f64 / sweeps as f64)?;
             *done += 1;
-            let eps = (0.04 + least.min(0.0).powi(2)).sqrt();
+            let eps = (0.04 + least * least).sqrt();
             let rings = if sweep < 8 { 1 } else { 2 };
-            let mut active = Active::near(&self.band, vertices, rings);
-            self.sweep(&Regularised { eps }, &mut active, f64::INFINITY);
+            let moved = Active::near(&self.band, vertices, rings);
+            self.sweep(&Regularised { eps }, &mut moved.clone(), f64::INFINITY);
+            // Nothing else has changed, and the tangled triangles are among these.
+            tangled = self.tangled_at(&moved);
         }
         // Where the drawing is thinner than a thousandth of an edge, thin triangles are right.
         Ok(first_inverted(&self.band.positions, &self.band.triangles, DVec2::ZERO).is_none())
@@ -49,7 +84,7 @@ impl Motion<'_> {
     /// vertices bunch; with `release`, those that are pinned become free first. Returns the
     /// vertices released.
     pub fn spread_tangled(&mut self, reach: usize, release: bool) -> Vec<u32> {
-        let (vertices, _) = self.tangled();
+        let Tangled { vertices, .. } = self.tangled();
         let n_rim = self.band.n_rim as u32;
         let mut rim: Vec<u32> = vertices
             .into_iter()

@@ -18,6 +18,7 @@ pub(super) struct Motion<'a> {
 }
 
 /// Vertices that are worth a visit.
+#[derive(Clone)]
 pub(super) struct Active(Vec<bool>);
 
 impl Active {
@@ -33,6 +34,11 @@ impl Active {
         if let Some(active) = self.0.get_mut(vertex as usize) {
             *active = true;
         }
+    }
+
+    /// The active vertices, ascending.
+    pub fn iter(&self) -> impl Iterator<Item = u32> {
+        (0..).zip(&self.0).filter(|(_, active)| **active).map(|(v, _)| v)
     }
 
     pub fn has(&self, vertex: u32) -> bool {
