@@ -37,7 +37,7 @@ impl Front {
                 }
             }
         }
-        let height = field.value.iter().map(|f| f.sqrt()).collect();
+        let height = (0..field.value.len()).map(|v| field.at_vertex(v).0.sqrt()).collect();
         Front { flat: field.vertices.to_vec(), height, place, first, shortened: 0 }
     }
 
@@ -144,8 +144,12 @@ fn slide(front: &mut Front, guide: &Guide<'_>, share: f64) {
     let first = front.first;
     let target = (first..front.flat.len())
         .map(|v| {
-            let height = front.height[v] + share * (goal[v] - front.height[v]);
             let (mut point, mut place) = (front.flat[v], front.place[v - first]);
+            let height = match field.section {
+                None => front.height[v],
+                Some(_) => field.plain(point, place).0.sqrt(),
+            };
+            let height = height + share * (goal[v] - height);
             if let Some(crease) = &crease[v] {
                 let away = point - crease.corner;
                 let onto = crease.corner + crease.inward * away.dot(crease.inward);
@@ -155,7 +159,7 @@ fn slide(front: &mut Front, guide: &Guide<'_>, share: f64) {
                 }
             }
             for _ in 0..2 {
-                let (value, gradient) = field.at(point, place);
+                let (value, gradient) = field.plain(point, place);
                 let direction = match &crease[v] {
                     Some(crease) => crease.corner - point,
                     None => -gradient,
