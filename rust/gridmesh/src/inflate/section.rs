@@ -1,5 +1,7 @@
 //! The curve that reshapes a body's heights.
 
+use std::f64::consts::FRAC_PI_2;
+
 use glam::DVec2;
 
 use crate::error::{Error, Result};
@@ -85,6 +87,29 @@ impl Section {
         let t = (value.sqrt() / self.top).min(1.0);
         let (ratio, slope) = self.curve.at(t);
         (value * ratio * ratio, gradient * (ratio * slope))
+    }
+
+    /// The height, of a sphere of this radius, that lies as far along the reshaped section, of all its length
+    /// from the silhouette to the top, as `height` lies along the sphere's.
+    pub fn even(&self, height: f64, radius: f64) -> f64 {
+        const STEPS: usize = 48;
+        if radius.is_nan() || radius <= 0.0 {
+            return height;
+        }
+        let step = FRAC_PI_2 / STEPS as f64;
+        let length = |k: usize| {
+            let (sin, cos) = ((k as f64 + 0.5) * step).sin_cos();
+            let (_, slope) = self.curve.at((sin * radius / self.top).min(1.0));
+            sin.hypot(slope * cos)
+        };
+        let mut along = [0.0; STEPS + 1];
+        for k in 0..STEPS {
+            along[k + 1] = along[k] + length(k);
+        }
+        let wanted = (height / radius).min(1.0).asin() / FRAC_PI_2 * along[STEPS];
+        let k = along.partition_point(|&a| a < wanted).clamp(1, STEPS) - 1;
+        let angle = step * (k as f64 + (wanted - along[k]) / (along[k + 1] - along[k]));
+        radius * angle.sin()
     }
 }
 
