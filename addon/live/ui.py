@@ -11,7 +11,7 @@ from bpy.props import EnumProperty
 from .. import profilecurve
 from ..strokes import selected
 from ..translations import CONTEXT
-from . import engine
+from . import engine, watch
 from .solve import ALGORITHM
 
 
@@ -147,6 +147,7 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
             layout.operator(OBJECT_OT_gridmesh_adopt.bl_idname)
         layout.prop(live, "source")
         live.draw_shape_options(layout)
+        watch.watch()
         layout.prop(live, "pen")
         live.draw_sketch_options(layout)
         layout.operator(OBJECT_OT_gridmesh_freeze.bl_idname, icon="FREEZE")
