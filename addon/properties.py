@@ -255,5 +255,11 @@ class CurveOption(ShapeOptions):
         return options
 
     def draw_curve(self, layout: bpy.types.UILayout) -> None:
-        """Draw which curve is taken."""
+        """Draw which curve is taken, and where it can be edited: redoing takes back what is changed beside options."""
         layout.prop(self, "curve")
+        if self.curve == "NONE":
+            return
+        if getattr(self, "follow", True):
+            layout.label(text="Edit the curve in the sidebar, Live Body", icon="INFO")
+        else:
+            layout.label(text="Follow the Stroke, to edit the curve", icon="INFO")

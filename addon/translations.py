@@ -247,6 +247,8 @@ GERMAN = {
         "Kurve, die das Profil umformt; die eines lebenden Körpers wird in dessen Leiste an der Seite bearbeitet"
     ),
     "Curve to start from": "Kurve, mit der begonnen wird",
+    "Edit the curve in the sidebar, Live Body": "Die Kurve bearbeiten: Seitenleiste, Lebender Körper",
+    "Follow the Stroke, to edit the curve": "Dem Strich folgen, um die Kurve zu bearbeiten",
     "Flat at the rim, with a point in the middle": "Flach am Rand, mit einer Spitze in der Mitte",
     "Give the selected bodies a curve that reshapes their profile, from rim to top; edit it below": (
         "Den ausgewählten Körpern eine Kurve geben, die ihr Profil vom Rand bis oben umformt; sie wird darunter bearbeitet"

@@ -135,6 +135,8 @@ def options(cls, **changed):
         {},
         {"result": "1 body: 4 triangles, 3 ms"},
         {"shape": "SHEET"},
+        {"curve": "RING"},
+        {"curve": "RING", "follow": True},
         {"use_sides": True, "angle_mode": "FIXED", "resolution": "EDGE_LENGTH"},
     ],
 )
