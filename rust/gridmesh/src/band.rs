@@ -163,11 +163,11 @@ impl Scan {
                     && node.point == point
                     && node.last + 1 >= at
                 {
+                    // Without a branch: which one is nearer is hard to predict.
+                    let is_nearer = squared < node.distance;
                     node.last = at;
-                    if squared < node.distance {
-                        node.distance = squared;
-                        node.parameter = f64::from(at) + t;
-                    }
+                    node.parameter = if is_nearer { f64::from(at) + t } else { node.parameter };
+                    node.distance = if is_nearer { squared } else { node.distance };
                     return;
                 }
                 window.slots[slot] = nodes.len() as u32;

@@ -199,8 +199,10 @@ impl ClosedCurve {
 
     /// `s` reduced to one turn, from 0 to the length.
     pub fn wrap(&self, s: f64) -> f64 {
-        let s = s.rem_euclid(self.length());
-        if s < self.length() { s } else { 0.0 }
+        let length = self.length();
+        // The remainder is a slow library call.
+        let s = if s >= 0.0 && s < length { s } else { s.rem_euclid(length) };
+        if s < length { s } else { 0.0 }
     }
 
     /// The segment on which arc length `s` (of any turn) lies, and the parameter on it, 0 to 1.
@@ -221,6 +223,19 @@ impl ClosedCurve {
     pub fn point_at(&self, s: f64) -> DVec2 {
         let (segment, t) = self.locate(s);
         self.point_on(segment, t)
+    }
+
+    /// Likewise, searching ahead from a segment, which is updated.
+    fn point_from(&self, s: f64, segment: &mut usize) -> DVec2 {
+        let s = self.wrap(s);
+        if s < self.arc[*segment] {
+            *segment = 0;
+        }
+        while self.arc[*segment + 1] <= s {
+            *segment += 1;
+        }
+        let (from, to) = (self.arc[*segment], self.arc[*segment + 1]);
+        self.point_on(*segment, ((s - from) / (to - from)).clamp(0.0, 1.0))
     }
 
     /// Arc length of `s` measured from the input's first point, in the curve's direction.
@@ -246,11 +261,12 @@ impl ClosedCurve {
     /// the shape at that scale, not of how densely it was sampled (the pointwise curvature of
     /// section IV-C, integrated).
     pub fn turning(&self, window: f64) -> Vec<f64> {
+        let (mut back, mut ahead) = (self.locate(self.arc[0] - window).0, 0);
         (0..self.points.len())
             .map(|i| {
                 let p = self.points[i];
-                let before = p - self.point_at(self.arc[i] - window);
-                let after = self.point_at(self.arc[i] + window) - p;
+                let before = p - self.point_from(self.arc[i] - window, &mut back);
+                let after = self.point_from(self.arc[i] + window, &mut ahead) - p;
                 before.perp_dot(after).atan2(before.dot(after))
             })
             .collect()

@@ -16,14 +16,7 @@ const BEYOND: [f64; 7] = [0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.6];
 ///
 /// `limit` as for [`pockets`](crate::pockets::pockets), `h` the length of an edge. True if any vertex
 /// moved.
-pub(crate) fn expel(
-    pockets: &Pockets,
-    vertices: &mut [DVec2],
-    triangles: &[[u32; 3]],
-    limit: f64,
-    h: f64,
-) -> bool {
-    let fans = Fans::new(vertices.len(), triangles);
+pub(crate) fn expel(pockets: &Pockets, vertices: &mut [DVec2], fans: &Fans<'_>, limit: f64, h: f64) -> bool {
     let mut moved = false;
     for &(v, inlet) in &pockets.inside {
         let at = vertices[v];
@@ -82,7 +75,7 @@ mod tests {
         let inlet = vec![rim[1], MIDDLE - DVec2::new(0.0, 0.2), rim[2]];
         let pockets = Pockets { inlets: vec![inlet.clone()], occupied: vec![], inside: vec![(6, 0)] };
         assert!(depth_in(&inlet, vertices[6]).is_some_and(|depth| depth > 0.05));
-        assert!(expel(&pockets, &mut vertices, &triangles, 0.05, 1.0));
+        assert!(expel(&pockets, &mut vertices, &Fans::new(7, &triangles), 0.05, 1.0));
         assert!(depth_in(&inlet, vertices[6]).is_none_or(|depth| depth <= 0.05), "{}", vertices[6]);
         for t in triangles {
             assert!(sharpness(t.map(|v| vertices[v as usize])) < 1.0 / LEAST_ANGLE.tan());
@@ -98,7 +91,7 @@ mod tests {
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
         let inlet = vec![rim[1], MIDDLE + DVec2::new(2.0, -3.0), MIDDLE - DVec2::new(2.0, 3.0), rim[2]];
         let pockets = Pockets { inlets: vec![inlet], occupied: vec![], inside: vec![(6, 0)] };
-        assert!(!expel(&pockets, &mut vertices, &triangles, 0.05, 1.0));
+        assert!(!expel(&pockets, &mut vertices, &Fans::new(7, &triangles), 0.05, 1.0));
         assert_eq!(vertices[6], MIDDLE);
     }
 }

@@ -12,7 +12,7 @@ use crate::mapping::{Corner, corners, snap};
 use crate::options::SketchOptions;
 use crate::outline::{Obstacle, Outline};
 use crate::patch::{Loop, Patch};
-use crate::pockets::pockets;
+use crate::pockets::{Fans, pockets};
 use crate::progress::Progress;
 use crate::relax::{Contour, RelaxOptions, Relaxation, Rim, first_inverted, settle_corners};
 
@@ -106,6 +106,7 @@ pub(crate) fn place(
     let mut obstacle =
         Obstacle { reason: "a part of the drawing is lost".to_owned(), at: contours[0].points()[0] };
     let mut held: Vec<(usize, f64)> = Vec::new();
+    let mut fans = Fans::new(lattice_positions.len(), &region.triangles);
     for round in 0..ROUNDS {
         let progress = progress.part(round as f64 / ROUNDS as f64, (round + 1) as f64 / ROUNDS as f64);
         if options.relax {
@@ -135,15 +136,15 @@ pub(crate) fn place(
             }
             continue;
         }
-        let mut pockets_now = pockets(&beside, &vertices, &region.triangles, &arcs, INLET * h);
+        let mut pockets_now = pockets(&beside, &vertices, &mut fans, &arcs, INLET * h);
         let occupied = std::mem::take(&mut pockets_now.occupied);
         let mut bridged_inlets = occupied.len();
         if !occupied.is_empty() && options.relax {
             let mut expelled = vertices.clone();
-            if expel(&pockets_now, &mut expelled, &region.triangles, INLET * h, h)
+            if expel(&pockets_now, &mut expelled, &fans, INLET * h, h)
                 && first_inverted(&expelled, &region.triangles, lattice.origin).is_none()
             {
-                let left = pockets(&beside, &expelled, &region.triangles, &arcs, INLET * h);
+                let left = pockets(&beside, &expelled, &mut fans, &arcs, INLET * h);
                 if left.occupied.len() < bridged_inlets {
                     bridged_inlets = left.occupied.len();
                     vertices = expelled;

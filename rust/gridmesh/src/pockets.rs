@@ -1,5 +1,7 @@
 //! Interior vertices that lie outside the drawing: in inlets that the boundary bridges.
 
+use std::cell::OnceCell;
+
 use glam::DVec2;
 
 use crate::contours::encloses;
@@ -24,16 +26,15 @@ pub(crate) struct Pockets {
 /// The inlets that boundary edges bridge by more than `limit`, and the mesh vertices in them.
 ///
 /// A vertex counts if it lies between the edge and the stretch of drawing beside it, by more than
-/// `limit` off the drawing. `vertices` are numbered loop by loop, then the interior; `arcs` are the
+/// `limit` off the drawing. `fans` are those of the triangles. `vertices` are numbered loop by loop, then the interior; `arcs` are the
 /// loops' arc lengths, unwrapped. Linear.
 pub(crate) fn pockets(
     beside: &[Vec<Beside>],
     vertices: &[DVec2],
-    triangles: &[[u32; 3]],
+    fans: &mut Fans<'_>,
     arcs: &[Vec<f64>],
     limit: f64,
 ) -> Pockets {
-    let mut fans: Option<Fans<'_>> = None;
     let n_boundary: usize = arcs.iter().map(Vec::len).sum();
     let mut found = Pockets::default();
     let mut start = 0;
@@ -56,7 +57,7 @@ pub(crate) fn pockets(
                 continue;
             }
             let mut depth = 0.0f64;
-            for &v in fans.get_or_insert_with(|| Fans::new(vertices.len(), triangles)).around(ends, RINGS) {
+            for &v in fans.around(ends, RINGS) {
                 let v = v as usize;
                 if v >= n_boundary
                     && let Some(off) = depth_in(&pocket, vertices[v]).filter(|&off| off > limit)
@@ -94,19 +95,24 @@ pub(crate) fn distance_to(line: &[DVec2], p: DVec2) -> f64 {
     line.windows(2).map(|w| nearest_on_segment(p, w[0], w[1]).1).fold(f64::INFINITY, f64::min).sqrt()
 }
 
-/// The triangles at each vertex.
+/// The triangles at each vertex, found when first asked for.
 pub(crate) struct Fans<'a> {
     triangles: &'a [[u32; 3]],
-    starts: Vec<u32>,
-    items: Vec<u32>,
+    index: OnceCell<Index>,
     /// The search in which a vertex was found last.
     seen: Vec<u32>,
     searches: u32,
     found: Vec<u32>,
 }
 
-impl<'a> Fans<'a> {
-    pub(crate) fn new(n_vertices: usize, triangles: &'a [[u32; 3]]) -> Self {
+/// The triangles at each vertex: `items[starts[v]..starts[v + 1]]`.
+struct Index {
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Index {
+    fn new(n_vertices: usize, triangles: &[[u32; 3]]) -> Self {
         let mut starts = vec![0u32; n_vertices + 1];
         for &v in triangles.iter().flatten() {
             starts[v as usize + 1] += 1;
@@ -122,13 +128,23 @@ impl<'a> Fans<'a> {
                 next[v as usize] += 1;
             }
         }
-        Self { triangles, starts, items, seen: vec![0; n_vertices], searches: 0, found: Vec::new() }
+        Self { starts, items }
+    }
+
+    fn at(&self, v: usize) -> &[u32] {
+        &self.items[self.starts[v] as usize..self.starts[v + 1] as usize]
+    }
+}
+
+impl<'a> Fans<'a> {
+    pub(crate) fn new(n_vertices: usize, triangles: &'a [[u32; 3]]) -> Self {
+        Self { triangles, index: OnceCell::new(), seen: vec![0; n_vertices], searches: 0, found: Vec::new() }
     }
 
     /// The triangles at a vertex, each beginning with it.
     pub(crate) fn at(&self, v: usize) -> impl Iterator<Item = [u32; 3]> {
-        let items = &self.items[self.starts[v] as usize..self.starts[v + 1] as usize];
-        items.iter().map(move |&t| {
+        let index = self.index.get_or_init(|| Index::new(self.seen.len(), self.triangles));
+        index.at(v).iter().map(move |&t| {
             let mut triangle = self.triangles[t as usize];
             let first = triangle.iter().position(|&w| w as usize == v).unwrap_or(0);
             triangle.rotate_left(first);
@@ -138,6 +154,7 @@ impl<'a> Fans<'a> {
 
     /// The vertices within `rings` edges of any of `seeds`.
     fn around(&mut self, seeds: [usize; 2], rings: usize) -> &[u32] {
+        let index = self.index.get_or_init(|| Index::new(self.seen.len(), self.triangles));
         self.searches += 1;
         self.found.clear();
         self.found.extend(seeds.map(|v| v as u32));
@@ -149,7 +166,7 @@ impl<'a> Fans<'a> {
             let to = self.found.len();
             for i in from..to {
                 let v = self.found[i] as usize;
-                for &t in &self.items[self.starts[v] as usize..self.starts[v + 1] as usize] {
+                for &t in index.at(v) {
                     for w in self.triangles[t as usize] {
                         if std::mem::replace(&mut self.seen[w as usize], self.searches) != self.searches {
                             self.found.push(w);
@@ -182,7 +199,13 @@ mod tests {
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
         let contours = [contour];
         let search = |vertices: &[DVec2]| {
-            pockets(&beside(&contours, vertices, &arcs), vertices, &triangles, &arcs, 0.1)
+            pockets(
+                &beside(&contours, vertices, &arcs),
+                vertices,
+                &mut Fans::new(vertices.len(), &triangles),
+                &arcs,
+                0.1,
+            )
         };
         let Pockets { inlets, occupied: found, inside } = search(&vertices);
         assert_eq!(inlets.len(), 1);

@@ -102,10 +102,10 @@ pub fn relax(
     progress: Progress<'_>,
 ) -> Result<RelaxReport> {
     let mut relaxation = Relaxation::new(triangles, positions, contours, rims, options)?;
-    let report = relaxation.run(progress)?;
+    relaxation.run(progress)?;
     positions.copy_from_slice(&relaxation.positions);
     relaxation.store(rims);
-    Ok(report)
+    Ok(relaxation.report())
 }
 
 /// A placement that can be continued: see [`relax`], which makes one and runs it.
@@ -115,6 +115,8 @@ pub struct Relaxation<'a> {
     options: RelaxOptions,
     motion: Motion<'a>,
     rings: usize,
+    /// What was done so far, not judged.
+    done: RelaxReport,
     /// Where the vertices are, in lattice units.
     pub positions: Vec<DVec2>,
 }
@@ -139,22 +141,23 @@ impl<'a> Relaxation<'a> {
         let band = movable(triangles, lattice_positions, slide.len(), options.rings)?;
         let motion = Motion { band, slide, sliding: options.slide, stiffness: options.stiffness };
         let positions = lattice_positions.to_vec();
-        Ok(Relaxation { triangles, options: options.clone(), motion, rings: options.rings, positions })
+        let done = RelaxReport::default();
+        Ok(Relaxation { triangles, options: options.clone(), motion, rings: options.rings, done, positions })
     }
 
     /// Places all vertices, from the lattice on.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
-    pub fn run(&mut self, progress: Progress<'_>) -> Result<RelaxReport> {
+    pub fn run(&mut self, progress: Progress<'_>) -> Result<()> {
         self.motion.place_boundary(3);
-        let mut report = RelaxReport::default();
         let tolerance = self.options.tolerance;
-        if self.ladder(&mut report, progress.part(0.0, 0.4))? {
-            report.sweeps += self.motion.improve(tolerance, progress.part(0.4, 0.8))?;
-            self.finish(&[], &mut report, progress.part(0.8, 1.0))?;
+        if self.ladder(progress.part(0.0, 0.4))? {
+            self.done.sweeps += self.motion.improve(tolerance, progress.part(0.4, 0.8))?;
+            self.finish(&[], progress.part(0.8, 1.0))?;
         }
-        Ok(self.conclude(report))
+        self.write();
+        Ok(())
     }
 
     /// Holds boundary vertices, given by number and arc position between their neighbours', and
@@ -162,7 +165,7 @@ impl<'a> Relaxation<'a> {
     ///
     /// # Errors
     /// [`Error::Cancelled`].
-    pub fn hold(&mut self, vertices: &[(usize, f64)], progress: Progress<'_>) -> Result<RelaxReport> {
+    pub fn hold(&mut self, vertices: &[(usize, f64)], progress: Progress<'_>) -> Result<()> {
         const REACH: usize = 3;
         for &(v, s) in vertices {
             self.motion.slide.hold(v, s);
@@ -173,13 +176,13 @@ impl<'a> Relaxation<'a> {
             }
         }
         self.motion.place_boundary(3);
-        let mut report = RelaxReport::default();
-        if self.ladder(&mut report, progress.part(0.0, 0.4))? {
+        if self.ladder(progress.part(0.0, 0.4))? {
             let around: Vec<u32> = vertices.iter().map(|&(v, _)| v as u32).collect();
-            report.sweeps += self.motion.mend(&around, self.options.tolerance, progress.part(0.4, 0.8))?;
-            self.finish(&around, &mut report, progress.part(0.8, 1.0))?;
+            self.done.sweeps += self.motion.mend(&around, self.options.tolerance, progress.part(0.4, 0.8))?;
+            self.finish(&around, progress.part(0.8, 1.0))?;
         }
-        Ok(self.conclude(report))
+        self.write();
+        Ok(())
     }
 
     /// Copies arc positions and pins back.
@@ -187,29 +190,30 @@ impl<'a> Relaxation<'a> {
         self.motion.slide.store(rims);
     }
 
-    /// `around` is empty for the whole patch.
-    fn finish(&mut self, around: &[u32], report: &mut RelaxReport, progress: Progress<'_>) -> Result<()> {
-        let tolerance = self.options.tolerance;
-        report.sweeps += self.motion.sharpen(around, tolerance, progress.part(0.0, 0.5))?;
-        report.released.extend(self.motion.release_starved(tolerance, progress.part(0.5, 1.0))?);
+    /// What was done, and whether the placement is valid. Linear.
+    pub fn report(&self) -> RelaxReport {
+        let mut report = self.done.clone();
         report.released.sort_unstable();
-        Ok(())
-    }
-
-    fn conclude(&mut self, mut report: RelaxReport) -> RelaxReport {
         report.rings = self.rings;
         report.min_angle = self.motion.least_angle();
         // The rest of the patch is the lattice itself, whose triangles are as they should be.
         let inverted = first_inverted(&self.motion.band.positions, &self.motion.band.triangles, DVec2::ZERO);
-        self.write();
         if inverted.is_some() {
             report.inverted = first_inverted(&self.positions, self.triangles, DVec2::ZERO);
         }
         report
     }
 
+    /// `around` is empty for the whole patch.
+    fn finish(&mut self, around: &[u32], progress: Progress<'_>) -> Result<()> {
+        let tolerance = self.options.tolerance;
+        self.done.sweeps += self.motion.sharpen(around, tolerance, progress.part(0.0, 0.5))?;
+        self.done.released.extend(self.motion.release_starved(tolerance, progress.part(0.5, 1.0))?);
+        Ok(())
+    }
+
     /// Untangles with ever stronger means; false if triangles stay inverted.
-    fn ladder(&mut self, report: &mut RelaxReport, progress: Progress<'_>) -> Result<bool> {
+    fn ladder(&mut self, progress: Progress<'_>) -> Result<bool> {
         struct Step {
             spread: usize,
             release: bool,
@@ -233,10 +237,10 @@ impl<'a> Relaxation<'a> {
                 self.rings = step.rings;
             }
             if self.motion.sliding && step.spread > 0 {
-                report.released.extend(self.motion.spread_tangled(step.spread, step.release));
+                self.done.released.extend(self.motion.spread_tangled(step.spread, step.release));
             }
             let part = progress.part(i as f64 / n, (i + 1) as f64 / n);
-            if self.motion.untangle(step.sweeps, &mut report.untangling, part)? {
+            if self.motion.untangle(step.sweeps, &mut self.done.untangling, part)? {
                 return Ok(true);
             }
         }

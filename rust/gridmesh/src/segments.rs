@@ -38,21 +38,25 @@ impl SegmentGrid {
         let rows = (size.y / cell) as usize + 1;
         let mut grid =
             Self { origin: low, cell, columns, rows, starts: vec![0; columns * rows + 1], items: Vec::new() };
-        for segment in segments {
-            grid.walk(segment, |cell, starts| starts[cell + 1] += 1);
-        }
-        for i in 1..grid.starts.len() {
-            grid.starts[i] += grid.starts[i - 1];
-        }
-        let mut items = vec![0; grid.starts[columns * rows] as usize];
-        let mut next = grid.starts.clone();
+        let mut entries: Vec<(u32, u32)> = Vec::with_capacity(3 * segments.len());
         for (i, segment) in segments.iter().enumerate() {
-            grid.walk(segment, |cell, _| {
-                items[next[cell] as usize] = i as u32;
-                next[cell] += 1;
-            });
+            grid.walk(segment, |cell| entries.push((cell as u32, i as u32)));
         }
-        grid.items = items;
+        // Counting sort: first where the items of each cell end, then, filled from the back, where they begin.
+        for &(cell, _) in &entries {
+            grid.starts[cell as usize] += 1;
+        }
+        let mut end = 0;
+        for start in &mut grid.starts {
+            end += *start;
+            *start = end;
+        }
+        grid.items = vec![0; entries.len()];
+        for &(cell, item) in entries.iter().rev() {
+            let start = &mut grid.starts[cell as usize];
+            *start -= 1;
+            grid.items[*start as usize] = item;
+        }
         grid
     }
 
@@ -65,21 +69,27 @@ impl SegmentGrid {
     }
 
     /// Calls `visit` for each cell that a segment touches (and now and then one beside it).
-    fn walk(&mut self, [a, b]: &[DVec2; 2], mut visit: impl FnMut(usize, &mut [u32])) {
+    fn walk(&self, [a, b]: &[DVec2; 2], mut visit: impl FnMut(usize)) {
         let (a, b) = if a.y <= b.y { (*a, *b) } else { (*b, *a) };
         let pad = 1e-9 * self.cell;
+        let (rows, left, right) = (self.row(a.y - pad)..=self.row(b.y + pad), a.x.min(b.x), a.x.max(b.x));
+        if rows.start() == rows.end() {
+            let first = rows.start() * self.columns;
+            (self.column(left - pad)..=self.column(right + pad)).for_each(|column| visit(first + column));
+            return;
+        }
         let slope = if b.y > a.y { (b.x - a.x) / (b.y - a.y) } else { 0.0 };
-        for row in self.row(a.y - pad)..=self.row(b.y + pad) {
+        for row in rows {
             let low = (self.origin.y + row as f64 * self.cell - pad).max(a.y);
             let high = (self.origin.y + (row + 1) as f64 * self.cell + pad).min(b.y);
             let (x0, x1) = if b.y > a.y {
-                let at = |y: f64| (a.x + (y - a.y) * slope).clamp(a.x.min(b.x), a.x.max(b.x));
+                let at = |y: f64| (a.x + (y - a.y) * slope).clamp(left, right);
                 (at(low), at(high))
             } else {
                 (a.x, b.x)
             };
             for column in self.column(x0.min(x1) - pad)..=self.column(x0.max(x1) + pad) {
-                visit(row * self.columns + column, &mut self.starts);
+                visit(row * self.columns + column);
             }
         }
     }

@@ -13,7 +13,7 @@ use crate::options::SketchOptions;
 use crate::outline::{Obstacle, Outline};
 use crate::patch::{Loop, Patch};
 use crate::place::{INLET, Placed, STRAY, min_angle, nearest_drawn};
-use crate::pockets::pockets;
+use crate::pockets::{Fans, pockets};
 use crate::reflection::Reflection;
 use crate::relax::first_inverted;
 use crate::symmetry::{Pairing, Symmetry};
@@ -116,7 +116,8 @@ impl Both<'_> {
         if farthest > STRAY * h {
             return None;
         }
-        let found = pockets(&beside, &vertices, &patch.triangles, &arcs, INLET * h);
+        let found =
+            pockets(&beside, &vertices, &mut Fans::new(vertices.len(), &patch.triangles), &arcs, INLET * h);
         let crossing = if options.relax { crossings(&beside, &vertices, &arcs).len() } else { 0 };
         let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
         let triangles = patch.triangles.clone();

@@ -89,9 +89,14 @@ impl Job<'_> {
     /// Of the six angles of one lattice that which turns with the drawing: the search breaks ties by
     /// lattice direction, and shifts are not the same in all six frames.
     fn turned_with_drawing(&self, angle: f64) -> f64 {
-        let out = |point: &&DVec2| point.distance_squared(self.centre);
-        let farthest = self.contours[0].points().iter().max_by(|a, b| out(a).total_cmp(&out(b)));
-        let ahead = farthest.map_or(0.0, |point| (*point - self.centre).to_angle());
+        let mut farthest = DVec2::ZERO;
+        for &point in self.contours[0].points() {
+            let out = point - self.centre;
+            if out.length_squared() >= farthest.length_squared() {
+                farthest = out;
+            }
+        }
+        let ahead = farthest.to_angle();
         ahead + (angle - ahead).rem_euclid(FRAC_PI_3)
     }
 }

@@ -45,6 +45,10 @@ impl Levels {
 /// one), but turns are few and small numbers: sorting them takes no time. And they are even, since a
 /// closed path ends in the direction it began with.
 pub(super) fn fewest_turns(graph: &Graph, known: u32) -> u32 {
+    // A closed path turns by six in all.
+    if known <= 6 {
+        return known;
+    }
     let limit = known - u32::from(known < NONE);
     let n = graph.n_nodes() as u32;
     let starts = graph.starts();
