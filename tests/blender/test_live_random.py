@@ -78,7 +78,7 @@ def check():
 
 
 def test_random_edits(tmp_path):
-    random = np.random.default_rng(3)
+    random = np.random.default_rng(5)
     path = str(tmp_path / "random.blend")
     bpy.ops.ed.undo_push(message="base")
     draw(bean() * 2)
