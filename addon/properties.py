@@ -10,6 +10,8 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
+from . import profilecurve
+
 
 class SketchOptions:
     """How an outline is meshed. Mixed into operators."""
@@ -196,12 +198,16 @@ class ShapeOptions:
             options["depth"] = self.depth
         return options
 
+    def draw_curve(self, layout: bpy.types.UILayout) -> None:
+        """Draw what reshapes the profile, below it."""
+
     def draw_shape_options(self, layout: bpy.types.UILayout) -> None:
         """Draw the shape and, for a body, its profile and depth."""
         layout.prop(self, "shape")
         if self.shape == "SHEET":
             return
         layout.prop(self, "profile")
+        self.draw_curve(layout)
         column = layout.column()
         column.prop(self, "use_sides")
         if self.use_sides:
@@ -209,3 +215,51 @@ class ShapeOptions:
             column.prop(self, "depth_back")
         else:
             column.prop(self, "depth")
+
+
+class CurveOption(ShapeOptions):
+    """The shape, and a curve that reshapes its profile. Mixed into operators, which cannot hold a curve themselves."""
+
+    curve: EnumProperty(
+        name="Curve",
+        description="Curve that reshapes the profile; that of a live body is edited in its panel in the sidebar",
+        items=[
+            ("NONE", "None", "The profile as it is; a live body that is updated keeps the curve it has"),
+            ("PLATEAU", "Plateau", "Steep at the rim, level on top"),
+            ("POINTED", "Pointed", "Flat at the rim, with a point in the middle"),
+            ("RING", "Ring", "Highest around a hollow in the middle"),
+            ("HAT", "Hat", "A dome with a brim"),
+            ("ACTIVE", "Active Body", "As the curve of the active live body; none if that has none"),
+        ],
+        default="NONE",
+    )
+    _points: Any = None
+
+    def resolve_curve(self, context: bpy.types.Context) -> None:
+        """Find out which curve is meant, before another object becomes the active one."""
+        if self.curve == "ACTIVE":
+            self._points = profilecurve.points(context.view_layer.objects.active)
+        else:
+            self._points = profilecurve.SHAPES.get(self.curve)
+
+    def curve_points(self) -> Any:
+        """Points of the curve that was found; None without one."""
+        return self._points
+
+    def body_options(self) -> dict[str, Any] | None:
+        """Keyword arguments of `gridmesh.inflate`; None for a flat sheet."""
+        options = super().body_options()
+        values = profilecurve.values_of(self._points) if self._points is not None else None
+        if options is not None and values is not None:
+            options["curve"] = list(values)
+        return options
+
+    def draw_curve(self, layout: bpy.types.UILayout) -> None:
+        """Draw which curve is taken, and where it can be edited: redoing takes back what is changed beside options."""
+        layout.prop(self, "curve")
+        if self.curve == "NONE":
+            return
+        if getattr(self, "follow", True):
+            layout.label(text="Edit the curve in the sidebar, Live Body", icon="INFO")
+        else:
+            layout.label(text="Follow the Stroke, to edit the curve", icon="INFO")

@@ -233,6 +233,38 @@ GERMAN = {
     "X Axis": "X-Achse",
     "Y Axis": "Y-Achse",
     "Z Axis": "Z-Achse",
+    # The curve of the profile
+    "A dome with a brim": "Eine Kuppel mit Krempe",
+    "A straight line, which leaves the profile as it is": "Eine Gerade, die das Profil lässt, wie es ist",
+    "Active Body": "Aktiver Körper",
+    "Add Profile Curve": "Profilkurve hinzufügen",
+    "As It Is": "Wie es ist",
+    "As the curve of the active live body; none if that has none": (
+        "Wie die Kurve des aktiven lebenden Körpers; keine, wenn der keine hat"
+    ),
+    "Curve": "Kurve",
+    "Curve that reshapes the profile; that of a live body is edited in its panel in the sidebar": (
+        "Kurve, die das Profil umformt; die eines lebenden Körpers wird in dessen Leiste an der Seite bearbeitet"
+    ),
+    "Curve to start from": "Kurve, mit der begonnen wird",
+    "Edit the curve in the sidebar, Live Body": "Die Kurve bearbeiten: Seitenleiste, Lebender Körper",
+    "Follow the Stroke, to edit the curve": "Dem Strich folgen, um die Kurve zu bearbeiten",
+    "Flat at the rim, with a point in the middle": "Flach am Rand, mit einer Spitze in der Mitte",
+    "Give the selected bodies a curve that reshapes their profile, from rim to top; edit it below": (
+        "Den ausgewählten Körpern eine Kurve geben, die ihr Profil vom Rand bis oben umformt; sie wird darunter bearbeitet"
+    ),
+    "Hat": "Hut",
+    "Highest around a hollow in the middle": "Am höchsten um eine Mulde in der Mitte",
+    "None": "Keine",
+    "Plateau": "Plateau",
+    "Pointed": "Spitz",
+    "Profile Curve": "Profilkurve",
+    "Ring": "Ring",
+    "Steep at the rim, level on top": "Steil am Rand, oben eben",
+    "Take the curve away": "Die Kurve wegnehmen",
+    "The profile as it is; a live body that is updated keeps the curve it has": (
+        "Das Profil, wie es ist; ein lebender Körper, der aktualisiert wird, behält seine Kurve"
+    ),
     # Cutting
     "Along a line drawn in the viewport": "Entlang einer Linie, die im Fenster gezeichnet wird",
     "Along a stroke of a selected grease pencil or curve object": (

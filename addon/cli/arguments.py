@@ -75,8 +75,17 @@ def _add(verb: argparse.ArgumentParser, name: str, param: params.Param) -> None:
         verb.add_argument(option, choices=param.choices, help=text)
     elif param.kind == "stroke":
         verb.add_argument(option, type=_stroke, required=True, metavar="FILE|OBJECT|POINTS", help=text)
+    elif param.kind == "numbers":
+        verb.add_argument(option, type=_numbers, metavar="N,N,...", help=text)
     else:
         verb.add_argument(option, type=int if param.kind == "count" else float, metavar="N", help=text)
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(number) for number in text.split(",")]
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"no numbers between commas: {text!r}") from error
 
 
 def _stroke(text: str) -> Any:

@@ -18,7 +18,7 @@ class Param:
     """One parameter. Whether a value suits a drawing is told when the item runs, not here."""
 
     kind: str
-    """"number", "count" (a whole number from 0), "switch", "choice" or "stroke"."""
+    """"number", "numbers" (a list), "count" (a whole number from 0), "switch", "choice" or "stroke"."""
     help: str
     choices: tuple[str, ...] = ()
     least: float = -math.inf
@@ -34,6 +34,9 @@ class Param:
         elif self.kind == "stroke":
             good = (isinstance(value, str) and bool(value) and "\0" not in value) or _is_line(value)
             allowed = "a file, the name of an object, or a list of points"
+        elif self.kind == "numbers":
+            good = isinstance(value, list) and len(value) >= 2 and all(map(_is_number, value))
+            allowed = "a list of two finite numbers or more"
         elif self.kind == "count":
             good, allowed = isinstance(value, int) and number and value >= 0, "a whole number from 0"
         else:
@@ -59,6 +62,9 @@ SKETCH = {
 BODY = {
     "depth": Param("number", "how thick bodies are"),
     "profile": Param("choice", "shape of the section", ("round", "even", "flat", "peak")),
+    "curve": Param(
+        "numbers", "heights from rim to top, evenly spaced, that reshape the section; the first is 0"
+    ),
 }
 
 _WELD = Param(
@@ -124,10 +130,11 @@ def _is_line(value: Any) -> bool:
         return False
     dimensions = {len(point) if isinstance(point, list) else 0 for point in value}
     numbers = (number for point in value if isinstance(point, list) for number in point)
-    return dimensions in ({2}, {3}) and all(
-        isinstance(number, int | float) and not isinstance(number, bool) and math.isfinite(number)
-        for number in numbers
-    )
+    return dimensions in ({2}, {3}) and all(map(_is_number, numbers))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _shortened(value: Any) -> str:

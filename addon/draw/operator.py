@@ -17,7 +17,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 from ..native import NativeError, native
 from ..operators.messages import counted
 from ..outlines import Plane
-from ..properties import ShapeOptions, SketchOptions
+from ..properties import CurveOption, SketchOptions
 from . import drawing, planes
 from .gesture import Gesture, pack, unpack
 from .preview import Preview
@@ -28,7 +28,7 @@ timing: list[float] = []
 """Seconds that the last mouse moves took, newest last."""
 
 
-class OBJECT_OT_gridmesh_draw(SketchOptions, ShapeOptions, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_draw(SketchOptions, CurveOption, bpy.types.Operator):  # noqa: N801
     """Draw the outline of a body; across a body's outline to extend or trim it, with Shift to make a hole"""  # noqa: D400
 
     bl_idname = "object.gridmesh_draw"
@@ -135,6 +135,7 @@ class OBJECT_OT_gridmesh_draw(SketchOptions, ShapeOptions, bpy.types.Operator): 
         except ValueError as error:
             self.report({"ERROR"}, f"The stroke cannot be read: {error}")
             return {"CANCELLED"}
+        self.resolve_curve(context)
         matrix = np.array(self.matrix, float).reshape(4, 4)
         plane = Plane(matrix[:3, 3], matrix[:3, :3].T)
         under = bpy.data.objects.get(self.under) if self.under else None
@@ -188,6 +189,7 @@ class GridMeshDrawTool(bpy.types.WorkSpaceTool):
         layout.prop(options, "plane")
         layout.prop(options, "triangles")
         layout.prop(options, "profile")
+        layout.prop(options, "curve")
         layout.prop(options, "depth")
         layout.prop(options, "pen")
 

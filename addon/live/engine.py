@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import meshes, strokes
+from .. import meshes, profilecurve, strokes
 from ..api import Body
 from ..native import NativeError
 from ..outlines import Plane, Sketch, Stroke
@@ -76,6 +76,9 @@ def link(ob: bpy.types.Object, stroke: Stroke, source: bpy.types.Object, maker: 
     live.linked, live.source, live.algorithm = True, source, ALGORITHM
     live.layer, live.stroke, live.count = stroke.layer, stroke.index, stroke.count
     live.copy_options(maker)
+    points = maker.curve_points()
+    if points is not None:
+        profilecurve.put(ob, points)
     live.digest = ""
     live.enabled = follow
 
@@ -83,6 +86,7 @@ def link(ob: bpy.types.Object, stroke: Stroke, source: bpy.types.Object, maker: 
 def freeze(ob: bpy.types.Object) -> None:
     """Make a plain mesh of a body: it knows nothing of its stroke any more."""
     ob.property_unset("gridmesh_live")
+    profilecurve.remove(ob)
     if meshes.LINK in ob:
         del ob[meshes.LINK]
     _states.pop(ob.session_uid, None)

@@ -13,8 +13,18 @@ from bpy.props import (
     StringProperty,
 )
 
+from .. import profilecurve
 from ..properties import ShapeOptions, SketchOptions
 from ..strokes import SOURCE_TYPES
+
+SHAPE_ICONS = {
+    "ROUND": "LINCURVE",
+    "PLATEAU": "SPHERECURVE",
+    "POINTED": "SHARPCURVE",
+    "RING": "INVERSESQUARECURVE",
+    "HAT": "SMOOTHCURVE",
+}
+"""Pictures of the curves to start from."""
 
 
 def _changed(live: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
@@ -68,6 +78,32 @@ class GridMeshLive(SketchOptions, ShapeOptions, bpy.types.PropertyGroup):
     """Edge length, angle and origin in the plane."""
     problem: StringProperty(options={"HIDDEN"})
     """Why the body does not follow now."""
+
+    def curve_points(self) -> Any:
+        """Points of the body's curve; None without one."""
+        return profilecurve.points(self.id_data)
+
+    def body_options(self) -> dict[str, Any] | None:
+        """Keyword arguments of `gridmesh.inflate`; None for a flat sheet."""
+        options = super().body_options()
+        values = profilecurve.values(self.id_data)
+        if options is not None and values is not None:
+            options["curve"] = values
+        return options
+
+    def draw_curve(self, layout: bpy.types.UILayout) -> None:
+        """Draw the curve itself, and what it can start from."""
+        found = profilecurve.holder(self.id_data)
+        idname = "object.gridmesh_curve"
+        if found is None:
+            layout.operator(idname, text="Add Profile Curve", icon="NORMALIZE_FCURVES").shape = "ROUND"
+            return
+        box = layout.column(align=True)
+        row = box.row(align=True)
+        for shape, icon in SHAPE_ICONS.items():
+            row.operator(idname, text="", icon=icon).shape = shape
+        row.operator(idname, text="", icon="X").shape = "NONE"
+        box.template_curve_mapping(found, "map_curve")
 
     def copy_options(self, operator: Any) -> None:
         """Take over the options of an operator that made the body."""

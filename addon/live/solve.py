@@ -103,9 +103,7 @@ def solve(
         options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     try:
-        patch = gridmesh.mesh_sketch(
-            sketch.outline, holes, progress=Patience(0.5 if lattice is None else 0.01), **options
-        )
+        patch = _patch(gridmesh, sketch.outline, holes, Patience(0.5 if lattice is None else 0.01), options)
         if body_options is None:
             surface = gridmesh.flat(patch)
         else:
@@ -121,6 +119,21 @@ def solve(
         report={**patch.report, **surface.report},
     )
     return body, Lattice(sketch.plane, patch.edge_length, patch.angle, np.array(patch.origin))
+
+
+_last: list[Any] = []
+"""The drawing and the options that were meshed last, and the patch."""
+
+
+def _patch(
+    gridmesh: Any, outline: np.ndarray, holes: list[np.ndarray], patience: Patience, options: dict[str, Any]
+) -> Any:
+    """Return the patch of a drawing; at once where only the shape of the body was changed since the last one."""
+    key = (outline.tobytes(), [hole.tobytes() for hole in holes], repr(options))
+    if not _last or _last[0] != key:
+        patch = gridmesh.mesh_sketch(outline, holes, progress=patience, **options)
+        _last[:] = key, patch
+    return _last[1]
 
 
 def moved(sketch: Sketch, plane: Plane) -> Sketch:

@@ -3,10 +3,15 @@
 
 from __future__ import annotations
 
-import bpy
+from typing import Any
 
+import bpy
+from bpy.props import EnumProperty
+
+from .. import profilecurve
 from ..strokes import selected
-from . import engine
+from ..translations import CONTEXT
+from . import engine, watch
 from .solve import ALGORITHM
 
 
@@ -62,6 +67,53 @@ class OBJECT_OT_gridmesh_adopt(_OnBodies, bpy.types.Operator):  # noqa: N801
         return {"FINISHED"}
 
 
+class OBJECT_OT_gridmesh_curve(_OnBodies, bpy.types.Operator):  # noqa: N801
+    """Give the selected bodies a curve that reshapes their profile, from rim to top; edit it below"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_curve"
+    bl_label = "Profile Curve"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    shape: EnumProperty(
+        name="Shape",
+        description="Curve to start from",
+        items=[
+            ("ROUND", "As It Is", "A straight line, which leaves the profile as it is"),
+            ("PLATEAU", "Plateau", "Steep at the rim, level on top"),
+            ("POINTED", "Pointed", "Flat at the rim, with a point in the middle"),
+            ("RING", "Ring", "Highest around a hollow in the middle"),
+            ("HAT", "Hat", "A dome with a brim"),
+            ("NONE", "None", "Take the curve away"),
+        ],
+        default="ROUND",
+    )
+
+    @classmethod
+    def description(cls, _context: bpy.types.Context, properties: Any) -> str:
+        """Say what the button does that is pointed at."""
+        item = properties.bl_rna.properties["shape"].enum_items[properties.shape]
+        return bpy.app.translations.pgettext_tip(item.description, CONTEXT)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Change the curves; those that follow are made anew, also in background: it was asked for."""
+        problems = []
+        for ob in _chosen(context):
+            if not ob.is_editable:
+                problems.append(f"'{ob.name}': it is linked from another file")
+                continue
+            if self.shape == "NONE":
+                profilecurve.remove(ob)
+            else:
+                profilecurve.put(ob, profilecurve.SHAPES[self.shape])
+            if ob.gridmesh_live.enabled:
+                engine.remake(ob)
+            if ob.gridmesh_live.problem:
+                problems.append(f"'{ob.name}': {ob.gridmesh_live.problem}")
+        if problems:
+            self.report({"WARNING"}, "\n".join(problems[:3]))
+        return {"FINISHED"}
+
+
 class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
     """The body's own options; a change is followed at once."""
 
@@ -95,9 +147,15 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
             layout.operator(OBJECT_OT_gridmesh_adopt.bl_idname)
         layout.prop(live, "source")
         live.draw_shape_options(layout)
+        watch.watch()
         layout.prop(live, "pen")
         live.draw_sketch_options(layout)
         layout.operator(OBJECT_OT_gridmesh_freeze.bl_idname, icon="FREEZE")
 
 
-classes = (OBJECT_OT_gridmesh_freeze, OBJECT_OT_gridmesh_adopt, VIEW3D_PT_gridmesh_live)
+classes = (
+    OBJECT_OT_gridmesh_freeze,
+    OBJECT_OT_gridmesh_adopt,
+    OBJECT_OT_gridmesh_curve,
+    VIEW3D_PT_gridmesh_live,
+)

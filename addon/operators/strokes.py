@@ -8,10 +8,10 @@ from time import perf_counter
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
-from .. import api, meshes, outlines, strokes
+from .. import api, meshes, outlines, profilecurve, strokes
 from ..live import engine
 from ..progress import Pointer
-from ..properties import ShapeOptions, SketchOptions
+from ..properties import CurveOption, SketchOptions
 from .messages import counted, listed
 from .waiting import Waiting
 
@@ -19,7 +19,7 @@ LONG = 50_000
 """Flat triangles; with more, which take a second or so, the work can be watched and stopped."""
 
 
-class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, ShapeOptions, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.types.Operator):  # noqa: N801
     """Make a smooth body with a clean triangle mesh from each closed stroke"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_from_strokes"
@@ -114,6 +114,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, ShapeOptions, bpy.
             api.native()
         except api.NativeError as error:
             return self._refuse(str(error))
+        self.resolve_curve(context)
         reading = self._read(context)
         failures = list(reading.failures)
         if not reading.strokes:
@@ -191,6 +192,8 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, ShapeOptions, bpy.
             if source is not None and (self.follow or engine.is_linked(ob)):
                 follow = self.follow or ob.gridmesh_live.enabled
                 engine.link(ob, body.sketch.stroke, source, self, follow=follow)
+                if self.curve_points() is None and profilecurve.holder(ob) is not None:
+                    engine.remake(ob)  # with the curve that it has
 
     def _read(self, context: bpy.types.Context) -> strokes.Reading:
         if self.source == "ANNOTATIONS":

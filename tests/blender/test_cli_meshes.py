@@ -258,23 +258,25 @@ def test_bodies_written_as_blend_can_be_read_again(tmp_path):
 
 def test_the_command_lines_of_one_operation_are_those_of_a_batch(tmp_path):
     shapes = [SHAPES / f"{name}.json" for name in ("bean", "star")]
-    ran = run(
-        "strokes", *shapes, "-o", tmp_path / "a" / "{name}.ply", "--triangles", "200", "--profile", "even"
-    )
+    words = ["--triangles", "200", "--profile", "even", "--curve", "0,0.6,0.9,1"]
+    ran = run("strokes", *shapes, "-o", tmp_path / "a" / "{name}.ply", *words)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     items = [
         {
             "id": path.stem,
             "op": "strokes",
             "in": str(path),
-            "params": {"triangles": 200, "profile": "even"},
+            "params": {"triangles": 200, "profile": "even", "curve": [0, 0.6, 0.9, 1]},
             "out": f"b/{path.stem}.ply",
         }
         for path in shapes
     ]
     assert batch(write_jobs(tmp_path, items)).returncode == 0
+    plain = run("strokes", *shapes, "-o", tmp_path / "c" / "{name}.ply", *words[:4])
+    assert plain.returncode == 0, plain.stdout + plain.stderr
     for path in shapes:
         name = f"{path.stem}.ply"
+        assert (tmp_path / "a" / name).read_bytes() != (tmp_path / "c" / name).read_bytes()
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
@@ -288,6 +290,9 @@ def test_the_command_lines_of_one_operation_are_those_of_a_batch(tmp_path):
         (["fill", "a.txt", "-o", "b.ply"], "a.txt"),
         (["fill", "a.ply"], "--out"),
         (["strokes", "a.json", "-o", "a.ply", "--close-gaps", "2"], "from 0 to 1"),
+        (["strokes", "a.json", "-o", "a.ply", "--curve", "0,x"], "no numbers"),
+        (["strokes", "a.json", "-o", "a.ply", "--curve", "0"], "two finite numbers"),
+        (["strokes", "a.json", "-o", "a.ply", "--curve", "0,nan"], "two finite numbers"),
     ],
 )
 def test_bad_command_lines_say_what_is_wrong(words, said):

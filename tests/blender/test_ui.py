@@ -8,6 +8,7 @@ from drawings import activate, circle, grease_pencil, run_one
 from holes import cylinder, edit
 
 from addon import ui
+from addon.live import ui as live_ui
 from addon.operators.fill import MESH_OT_gridmesh_fill
 from addon.operators.strokes import OBJECT_OT_gridmesh_from_strokes
 
@@ -56,6 +57,10 @@ class Layout:
         check_icon(icon)
         assert hasattr(bpy.types, idname)
         self.drawn.append(idname)
+
+    def template_curve_mapping(self, owner, name):
+        assert hasattr(owner, name)
+        self.drawn.append(name)
 
     def prop(self, owner, name):
         assert hasattr(owner, name)
@@ -114,7 +119,7 @@ def options(cls, **changed):
     for option in rna.properties:
         if option.identifier != "rna_type":
             setattr(own, option.identifier, getattr(option, "default", None))
-    for name in ("draw_shape_options", "draw_sketch_options"):
+    for name in ("draw_shape_options", "draw_curve", "draw_sketch_options"):
         if hasattr(cls, name):
             setattr(own, name, getattr(cls, name).__get__(own))
     for name, value in changed.items():
@@ -130,6 +135,8 @@ def options(cls, **changed):
         {},
         {"result": "1 body: 4 triangles, 3 ms"},
         {"shape": "SHEET"},
+        {"curve": "RING"},
+        {"curve": "RING", "follow": True},
         {"use_sides": True, "angle_mode": "FIXED", "resolution": "EDGE_LENGTH"},
     ],
 )
@@ -137,6 +144,22 @@ def test_redo_panel_of_strokes(changed):
     drawn = options(OBJECT_OT_gridmesh_from_strokes, **changed)
     assert {"shape", "boundary", "use_holes", "collection"} <= set(drawn)
     assert ("edge_length" in drawn) == ("resolution" in changed)
+
+
+def live_panel():
+    layout = Layout()
+    live_ui.VIEW3D_PT_gridmesh_live.draw(types.SimpleNamespace(layout=layout), bpy.context)
+    return layout.drawn
+
+
+def test_panel_of_a_live_body():
+    grease_pencil([circle()])
+    run_one(follow=True)
+    assert live_panel().count("object.gridmesh_curve") == 1
+    bpy.ops.object.gridmesh_curve(shape="RING")
+    drawn = live_panel()
+    assert drawn.count("object.gridmesh_curve") == 6
+    assert "map_curve" in drawn
 
 
 def test_redo_panel_of_fill():

@@ -206,12 +206,29 @@ def test_only_patches_make_surfaces(call, value):
         ("back", [1.0, 2.0]),
         ("back", [1.0, 1.0, 1.0, np.nan]),
         ("corner_angle", np.nan),
+        ("curve", []),
+        ("curve", [0.0]),
+        ("curve", [0.5, 1.0]),
+        ("curve", [0.0, -1.0]),
+        ("curve", [0.0, 0.0]),
+        ("curve", [0.0, np.nan, 1.0]),
+        ("curve", [0.0, np.inf]),
+        ("curve", [0.0, 1e300]),
     ],
 )
 def test_values_that_inflate_does_not_allow(option, value):
     patch = gridmesh.mesh_sketch(SQUARE, triangles=100)
     message = refused("invalid_option", gridmesh.inflate, patch, **{option: value})
     assert option in message
+
+
+def test_a_curve_is_a_sequence_of_numbers():
+    patch = gridmesh.mesh_sketch(SQUARE, triangles=100)
+    refused("invalid_shape", gridmesh.inflate, patch, curve=[[0.0, 1.0]])
+    refused("invalid_shape", gridmesh.inflate, patch, curve=0.5)
+    for curve in ("round", ["a", "b"], [0j, 1j]):
+        with pytest.raises(TypeError, match="curve"):
+            gridmesh.inflate(patch, curve=curve)
 
 
 def test_an_error_knows_its_kind_even_if_made_by_others():

@@ -4,7 +4,11 @@ import gridmesh
 import numpy as np
 import pytest
 from checks import check_array, check_body, check_mirrored
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from sketches import DRAWINGS, SHAPES, circle
+
+BEAN = gridmesh.mesh_sketch(SHAPES["bean"]["points"], triangles=400)
 
 
 @pytest.fixture(scope="module", params=[*DRAWINGS, "bean", "trefoil", "arrow", "circle"])
@@ -79,6 +83,54 @@ def test_the_same_patch_gives_the_same_bytes():
     patch = gridmesh.mesh_sketch(DRAWINGS["frog"]["points"], triangles=2000)
     bodies = [gridmesh.inflate(patch) for _ in range(3)]
     assert len({body.vertices.tobytes() + body.uv.tobytes() for body in bodies}) == 1
+
+
+RING = [0, 0.3, 0.6, 0.85, 1, 0.8, 0.5]
+
+
+@pytest.mark.parametrize("curve", [[0, 1], [0.0, 0.25, 0.5, 0.75, 1.0], np.linspace(0, 1, 50)])
+def test_a_straight_curve_changes_nothing(curve):
+    patch = gridmesh.mesh_sketch(DRAWINGS["frog"]["points"], triangles=1000)
+    assert (
+        gridmesh.inflate(patch, curve=curve).vertices.tobytes() == gridmesh.inflate(patch).vertices.tobytes()
+    )
+
+
+def test_a_curve_reshapes_the_section(patch):
+    body = gridmesh.inflate(patch, curve=RING)
+    check_body(body, patch)
+    check_mirrored(body, patch)
+    assert body.report["embedded"]
+    top = gridmesh.inflate(patch).vertices[:, 2].max()
+    assert body.vertices[:, 2].max() == pytest.approx(top, rel=0.02)
+    middle = body.vertices[np.hypot(*(body.vertices[:, :2] - highest_point(patch)).T).argmin()]
+    assert abs(middle[2]) == pytest.approx(0.5 * top, rel=0.05)
+
+
+def highest_point(patch):
+    vertices = gridmesh.inflate(patch).vertices
+    return vertices[vertices[:, 2].argmax(), :2]
+
+
+def test_curves_go_through_map_sketches():
+    outline = SHAPES["bean"]["points"]
+    (mapped,) = gridmesh.map_sketches([outline], triangles=500, curve=RING)
+    single = gridmesh.inflate(gridmesh.mesh_sketch(outline, triangles=500), curve=np.array(RING))
+    assert mapped.vertices.tobytes() == single.vertices.tobytes()
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.lists(st.floats(1e-6, 10), min_size=1, max_size=20),
+    st.sampled_from(["round", "even", "flat", "peak"]),
+    st.floats(0.05, 5),
+)
+def test_any_curve_gives_an_embedded_body(values, profile, depth):
+    body = gridmesh.inflate(BEAN, curve=[0.0, *values], profile=profile, depth=depth)
+    check_body(body, BEAN)
+    assert body.report["embedded"] or body.report["self_intersections"] == 0
+    again = gridmesh.inflate(BEAN, curve=np.array([0.0, *values]), profile=profile, depth=depth)
+    assert again.vertices.tobytes() == body.vertices.tobytes()
 
 
 def test_arrays_are_shared_and_read_only():

@@ -4,7 +4,20 @@ from time import perf_counter, process_time
 
 import bpy
 import numpy as np
-from setting import begin, bodies, extent, fresh, modules, outlines, ring, select, stage, stroke, tool
+from setting import (
+    begin,
+    bodies,
+    extent,
+    fresh,
+    modules,
+    outlines,
+    ring,
+    select,
+    stage,
+    stroke,
+    tool,
+    turn_view,
+)
 
 
 def edited(source, point, *, proportional=0.0):
@@ -146,6 +159,77 @@ def live_panel():
     assert len(bodies()) == 1, "undo does not thaw it"
 
 
+def live_curve():
+    """The profile curve of a body: a shape to start from by a click, then a point of it is dragged, and undone."""
+    yield from begin()
+    x, y = stage.middle()
+    yield from stroke(ring((x - 110, y), 150, 60, wobble=0.2))
+    turn_view()
+    yield from stage.open_sidebar()
+    body = bodies()[0]
+    yield from stage.press_button("UI", "gridmesh_curve")
+    curves = modules("profilecurve")
+    assert curves.points(body) == curves.SHAPES["ROUND"], "the button adds no curve"
+    yield from press_shape("RING")
+    assert len(curves.points(body)) == len(curves.SHAPES["RING"]), "the button of the ring does nothing"
+    yield from stage.picture("live_curve_1_ring")
+    row = yield from press_shape("PLATEAU")
+    start = curves.points(body)
+    before, digest = heights(body), body.gridmesh_live.digest
+    assert digest, "it is not made in full"
+    own = modules("live.engine").timing
+    own.clear()
+    at = on_curve(row, *start[1][:2])
+    yield from stage.move(*at)
+    yield from stage.press("LEFTMOUSE", "PRESS")
+    seen = []
+    for k in range(1, 13):
+        yield from stage.move(at[0] + k, at[1] - 4 * k)
+        seen.append(body.gridmesh_live.digest)
+    yield from stage.press("LEFTMOUSE", "RELEASE")
+    yield 0.5
+    assert curves.points(body)[1] != start[1], "the point was not dragged"
+    assert len(set(seen)) > 3, "the body did not follow while the point was dragged"
+    print(
+        f"NUMBERS curve: {len(body.data.polygons)} triangles, {len(own)} updates, "
+        f"least {1000 * min(own):.1f} ms, median {1000 * np.median(own):.1f} ms"
+    )
+    assert abs(heights(body) - before).max() > 0.01
+    yield from stage.picture("live_curve")
+    yield from stage.move(x, y)
+    yield from stage.key("Z", ctrl=True)
+    yield 1.0
+    (body,) = bodies()
+    assert curves.points(body) == start, "undo does not take the drag back"
+    assert abs(heights(body) - before).max() == 0, "undo left the body behind"
+
+
+def heights(body):
+    """Heights of a body's vertices."""
+    points = np.empty(len(body.data.vertices) * 3, np.float32)
+    body.data.vertices.foreach_get("co", points)
+    return points.reshape(-1, 3)[:, 2]
+
+
+def on_curve(row, x, y):
+    """Where a point of the unit square is on the window; row : height of the buttons above the curve."""
+    at = stage.region("UI")
+    return at.x + 8 + 237 * x, row - 203 + 168 * y
+
+
+def press_shape(shape):
+    """Click one of the buttons in the row above the curve."""
+    row = yield from stage.buttons("UI", "gridmesh_curve")
+    at = stage.region("UI")
+    for x in range(at.x + 6, at.x + at.width - 20, 9):
+        yield from stage.move(x, row[0][1] - 6)
+        if f"'{shape}'" in stage.asked("UI"):
+            yield from stage.click(x, row[0][1] - 6)
+            yield 0.8
+            return row[0][1]
+    raise AssertionError(f"no button for {shape}")
+
+
 def live_timing():
     """One point of a stroke of 500 moves to and fro: how long a body of 5000 triangles takes."""
     yield from fresh()
@@ -234,4 +318,4 @@ def quality():
         manager.gridmesh_quality = False
 
 
-SCENES = (live_edit, live_sculpt, live_move, live_panel, live_timing, quality)
+SCENES = (live_edit, live_sculpt, live_move, live_panel, live_curve, live_timing, quality)

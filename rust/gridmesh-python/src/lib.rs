@@ -212,6 +212,11 @@ fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 /// profile : {"round", "even", "flat", "peak"}
 ///     Cross section of the body. "round": a circle becomes a sphere, a long limb of half width w is about
 ///     1.41 w high; "even": the limb is about w high; "flat": a plateau with a rounded rim; "peak": a tent.
+/// curve : (k,) array, optional
+///     Reshapes the profile, k >= 2: values at evenly spaced arguments from 0 to 1 of a smooth curve c. Where the
+///     profile has the height h, and `top` is its largest height, the body has top c(h / top). The first value
+///     is 0, the others positive, from 1e-6 to 1e6; falling ones make rings and dents. Between values that rise
+///     the curve rises. None, or evenly rising to 1: the profile as it is.
 /// front, back : float or (n,) array, optional
 ///     Depth of each side, one number or one per point of the outline; None: `depth`.
 /// corner_angle : float
@@ -248,7 +253,7 @@ fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 #[pyfunction]
 #[pyo3(
     signature = (patch, *, progress = None, **options),
-    text_signature = "(patch, *, depth=1.0, profile='round', front=None, back=None, corner_angle=0.6981317007977318, progress=None)"
+    text_signature = "(patch, *, depth=1.0, profile='round', curve=None, front=None, back=None, corner_angle=0.6981317007977318, progress=None)"
 )]
 fn inflate(
     py: Python<'_>,

@@ -82,6 +82,10 @@ pub fn set_inflate(options: &mut InflateOptions, name: &str, value: &Bound<'_, P
             ];
             options.profile = argument("'round', 'even', 'flat' or 'peak'").word(&words)?;
         }
+        "curve" => {
+            let it = argument("numbers, the first 0 and the others positive, or None");
+            options.curve = it.optional(|it| it.numbers())?;
+        }
         "front" => options.front = argument(side).optional(depths)?,
         "back" => options.back = argument(side).optional(depths)?,
         "corner_angle" => options.corner_angle = argument("a number of radians from 0 to pi").float()?,

@@ -6,6 +6,7 @@ mod height;
 mod inlets;
 mod laplace;
 mod polish;
+mod section;
 mod side;
 mod spread;
 mod topology;
@@ -24,6 +25,7 @@ use field::Field;
 use height::{Flat, bends, squared_height};
 use inlets::Inlets;
 use laplace::Pattern;
+use section::Section;
 pub use side::Side;
 use spread::{Front, Guide, spread};
 use topology::Topology;
@@ -55,6 +57,10 @@ pub struct InflateOptions {
     pub front: Option<Side>,
     /// Depth of the back, in place of `depth`.
     pub back: Option<Side>,
+    /// Reshapes the profile: values at evenly spaced arguments from 0 to 1 of a curve `c`. With `h` the
+    /// height that the profile gives somewhere and `top` the largest of the body it becomes
+    /// `top c(h / top)`. The first value is 0, the others positive; they may fall, for rings and dents.
+    pub curve: Option<Vec<f64>>,
     /// Turning angle in radians from which on a drawn corner stays a corner; below it the stroke
     /// is taken for a coarsely drawn smooth one and the body is rounded there.
     pub corner_angle: f64,
@@ -67,6 +73,7 @@ impl Default for InflateOptions {
             profile: Profile::Round,
             front: None,
             back: None,
+            curve: None,
             corner_angle: 40f64.to_radians(),
         }
     }
@@ -127,13 +134,15 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
     let scales = side::scales(&flat, options)?;
     let depth = scales.largest_mean();
     let squared = depth * depth;
-    let field = Field {
+    let mut field = Field {
         vertices: &vertices,
         triangles: &patch.triangles,
         topology: &topology,
         value: height.value.iter().map(|f| f * squared).collect(),
         gradient: height.gradient.iter().map(|g| *g * squared).collect(),
+        section: None,
     };
+    field.section = Section::new(options.curve.as_deref(), field.highest());
     clock.stage("height");
     progress.report(0.4)?;
 

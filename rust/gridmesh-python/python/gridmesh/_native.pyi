@@ -51,6 +51,7 @@ class _Options(TypedDict, total=False):
     relax: bool
     depth: float
     profile: Literal["round", "even", "flat", "peak"]
+    curve: npt.ArrayLike | None
     front: _Side
     back: _Side
 
@@ -144,6 +145,7 @@ def inflate(
     *,
     depth: float = 1.0,
     profile: Literal["round", "even", "flat", "peak"] = "round",
+    curve: npt.ArrayLike | None = None,
     front: _Side = None,
     back: _Side = None,
     corner_angle: float = 0.6981317007977318,

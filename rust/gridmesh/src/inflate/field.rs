@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::section::Section;
 use super::topology::{NONE, Topology};
 
 /// The squared height over the flat patch: values and gradients at its vertices, between them a
@@ -15,6 +16,8 @@ pub(crate) struct Field<'a> {
     pub topology: &'a Topology,
     pub value: Vec<f64>,
     pub gradient: Vec<DVec2>,
+    /// What reshapes the heights of this field to those of the body, if anything.
+    pub section: Option<Section>,
 }
 
 /// A place in the flat patch: a triangle and barycentric coordinates in it.
@@ -54,11 +57,46 @@ impl Field<'_> {
         None
     }
 
-    /// Value and gradient at `point`, which lies at `place`.
+    /// Squared height of the body and its gradient at `point`, which lies at `place`.
+    pub fn at(&self, point: DVec2, place: Place) -> (f64, DVec2) {
+        let (value, gradient) = self.plain(point, place);
+        self.reshaped(value, gradient)
+    }
+
+    /// Squared height of the body and its gradient at vertex `v`.
+    pub fn at_vertex(&self, v: usize) -> (f64, DVec2) {
+        self.reshaped(self.value[v], self.gradient[v])
+    }
+
+    fn reshaped(&self, value: f64, gradient: DVec2) -> (f64, DVec2) {
+        self.section.as_ref().map_or((value, gradient), |section| section.of(value, gradient))
+    }
+
+    /// The largest value, sought between vertices too: a mesh need not have one where the body is highest.
+    pub fn highest(&self) -> f64 {
+        const STEPS: u32 = 8;
+        let n = self.value.len();
+        let top = (0..n).fold(0, |best, v| if self.value[v] > self.value[best] { v } else { best });
+        let mut highest = self.value[top];
+        for (t, corners) in self.triangles.iter().enumerate().filter(|(_, c)| c.contains(&(top as u32))) {
+            let [a, b, c] = corners.map(|v| self.vertices[v as usize]);
+            for i in 0..=STEPS {
+                for j in 0..=STEPS - i {
+                    let weights = [i, j, STEPS - i - j].map(|k| f64::from(k) / f64::from(STEPS));
+                    let place = Place { triangle: t as u32, weights };
+                    let point = a * weights[0] + b * weights[1] + c * weights[2];
+                    highest = highest.max(self.plain(point, place).0);
+                }
+            }
+        }
+        highest
+    }
+
+    /// Value and gradient of the field, before anything reshapes it, at `point`, which lies at `place`.
     ///
     /// The value is kept above a quarter of the linear interpolant, so that it is positive inside
     /// wherever the vertex values are.
-    pub fn at(&self, point: DVec2, place: Place) -> (f64, DVec2) {
+    pub fn plain(&self, point: DVec2, place: Place) -> (f64, DVec2) {
         let corners = self.triangles[place.triangle as usize];
         let [a, b, c] = corners.map(|v| self.vertices[v as usize]);
         let doubled = (b - a).perp_dot(c - a);
@@ -120,6 +158,7 @@ mod tests {
             topology: &topology,
             value: vertices.map(f).to_vec(),
             gradient: vertices.map(slope).to_vec(),
+            section: None,
         };
         let point = DVec2::new(1.9, 1.5);
         let place = field.locate(point, 0).unwrap();

@@ -40,7 +40,7 @@ pub(crate) fn rim_flatness(field: &Field<'_>, loops: &[Loop], first: usize) -> V
                 field.vertices[start + (k + 1) % n],
             );
             let along = 2.0 * (p - a).angle_to(b - p).abs() / (p.distance(a) + p.distance(b));
-            let across_radius = 0.5 * field.gradient[v].length();
+            let across_radius = 0.5 * field.at_vertex(v).1.length();
             flatness[v] = 1.25 + 1.5 * (1.0 - along * across_radius).max(0.0);
         }
     }

@@ -2,6 +2,7 @@
 
 use super::InflateOptions;
 use super::height::Flat;
+use super::section;
 use crate::error::{Error, Result};
 
 /// Depth of one side of a body.
@@ -48,6 +49,9 @@ impl InflateOptions {
             if let Some(&value) = values.iter().find(|v| !(**v >= 0.0 && v.is_finite())) {
                 return refuse(name, value, "finite numbers, 0 or more");
             }
+        }
+        if let Some(values) = &self.curve {
+            section::check(values)?;
         }
         let empty = |side: &Option<Side>| match side {
             None => false,

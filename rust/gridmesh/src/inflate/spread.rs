@@ -37,7 +37,7 @@ impl Front {
                 }
             }
         }
-        let height = field.value.iter().map(|f| f.sqrt()).collect();
+        let height = (0..field.value.len()).map(|v| field.at_vertex(v).0.sqrt()).collect();
         Front { flat: field.vertices.to_vec(), height, place, first, shortened: 0 }
     }
 
@@ -129,13 +129,15 @@ pub(crate) fn spread(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_
 /// of `f`: so read it needs no circle, and at the silhouette of any drawing the height becomes the
 /// distance from it. A limb is stretched across only; there vertices move less.
 ///
-/// A body deeper than a sphere has the heights of the sphere, scaled.
+/// A body deeper than a sphere has the heights of the sphere, scaled. Heights are those before a curve
+/// reshapes them; where it makes walls, vertices come from all over the section.
 fn unrolled(field: &Field<'_>, v: usize, limb: f64, depth: f64) -> f64 {
     let value = field.value[v];
     let half = 0.25 * field.gradient[v].length_squared() / depth.max(1.0).powi(2);
     let t = half / (value + half);
     let k = 2.0 - 1.7 * limb;
-    (value * (1.0 - t) / (1.0 + k * t + (3.0 - k) * t * t)).sqrt()
+    let height = (value * (1.0 - t) / (1.0 + k * t + (3.0 - k) * t * t)).sqrt();
+    field.section.as_ref().map_or(height, |section| section.even(height, (value + half).sqrt()))
 }
 
 /// Slides every vertex down the slope by `share` of the way from its height to `goal`.
@@ -144,8 +146,12 @@ fn slide(front: &mut Front, guide: &Guide<'_>, share: f64) {
     let first = front.first;
     let target = (first..front.flat.len())
         .map(|v| {
-            let height = front.height[v] + share * (goal[v] - front.height[v]);
             let (mut point, mut place) = (front.flat[v], front.place[v - first]);
+            let height = match field.section {
+                None => front.height[v],
+                Some(_) => field.plain(point, place).0.sqrt(),
+            };
+            let height = height + share * (goal[v] - height);
             if let Some(crease) = &crease[v] {
                 let away = point - crease.corner;
                 let onto = crease.corner + crease.inward * away.dot(crease.inward);
@@ -155,7 +161,7 @@ fn slide(front: &mut Front, guide: &Guide<'_>, share: f64) {
                 }
             }
             for _ in 0..2 {
-                let (value, gradient) = field.at(point, place);
+                let (value, gradient) = field.plain(point, place);
                 let direction = match &crease[v] {
                     Some(crease) => crease.corner - point,
                     None => -gradient,
