@@ -30,6 +30,8 @@ pub(super) struct Strip<'a> {
     spacing: f64,
     /// The cut's edges, by vertex.
     line: FxHashMap<u32, Vec<u32>>,
+    /// The old triangles at each old vertex.
+    old: FxHashMap<u32, Vec<(u32, [u32; 3])>>,
     /// Counts changes; and for each vertex, the last one of its triangles.
     clock: u32,
     changed: FxHashMap<u32, u32>,
@@ -75,6 +77,13 @@ impl<'a> Strip<'a> {
             line.entry(a).or_default().push(b);
             line.entry(b).or_default().push(a);
         }
+        let mut old: FxHashMap<u32, Vec<(u32, [u32; 3])>> = FxHashMap::default();
+        let mut homes = parts.iter().map(|p| (p.face, p.home)).collect::<Vec<_>>();
+        homes.sort_unstable();
+        homes.dedup();
+        for (face, home) in homes {
+            home.iter().for_each(|&v| old.entry(v).or_default().push((face, home)));
+        }
         let parts = parts.into_iter().map(Some).collect();
         Strip {
             vertices,
@@ -87,6 +96,7 @@ impl<'a> Strip<'a> {
             tolerance: TOLERANCE * length,
             spacing: SPACING * length,
             line,
+            old,
             clock: 0,
             changed: FxHashMap::default(),
             tried: Default::default(),
@@ -204,7 +214,29 @@ impl<'a> Strip<'a> {
     pub fn is_near(&self, corners: [u32; 3], home: [u32; 3], homes: &[(u32, [u32; 3])]) -> bool {
         let own = self.home(home);
         let near = |p: DVec3, old: [DVec3; 3]| closest(p, old).0 <= self.tolerance;
-        self.samples(corners).all(|p| near(p, own) || homes.iter().any(|h| near(p, self.home(h.1))))
+        self.samples(corners)
+            .all(|p| near(p, own) || homes.iter().any(|h| near(p, self.home(h.1))) || self.is_on_old(p, home))
+    }
+
+    /// True if a point is near an old triangle that is found by going from neighbour to neighbour, ever nearer.
+    fn is_on_old(&self, p: DVec3, home: [u32; 3]) -> bool {
+        let (mut at, mut off) = (home, closest(p, self.home(home)).0);
+        loop {
+            let mut nearer = None;
+            for &(_, old) in at.iter().filter_map(|v| self.old.get(v)).flatten() {
+                let d = closest(p, self.home(old)).0;
+                if d <= self.tolerance {
+                    return true;
+                }
+                if d < off {
+                    (off, nearer) = (d, Some(old));
+                }
+            }
+            match nearer {
+                Some(old) => at = old,
+                None => return false,
+            }
+        }
     }
 
     pub fn replace(&mut self, t: u32, part: Option<Part>) {
