@@ -199,6 +199,24 @@ impl<'a> Strip<'a> {
         homes
     }
 
+    /// The old triangle nearest to a point, going from the nearest of these to its neighbours.
+    pub fn home_of(&self, p: DVec3, homes: &[(u32, [u32; 3])]) -> Option<(u32, [u32; 3])> {
+        let (mut off, k) = self.nearest(p, homes);
+        let mut at = *homes.get(k)?;
+        loop {
+            let before = at;
+            for &old in before.1.iter().filter_map(|v| self.old.get(v)).flatten() {
+                let d = closest(p, self.home(old.1)).0;
+                if d < off {
+                    (off, at) = (d, old);
+                }
+            }
+            if at == before {
+                return Some(at);
+            }
+        }
+    }
+
     /// Distance of a point from the nearest of these old triangles, and which it is.
     pub fn nearest(&self, p: DVec3, homes: &[(u32, [u32; 3])]) -> (f64, usize) {
         let off = homes.iter().map(|h| closest(p, self.home(h.1)).0).enumerate();
@@ -329,8 +347,8 @@ impl<'a> Strip<'a> {
             let Some(part) = self.part(t) else { return false };
             let corners = part.corners.map(|w| if w == u { v } else { w });
             let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
-            let (_, k) = self.nearest(centre, &homes);
-            let part = Part { corners, face: homes[k].0, home: homes[k].1, ..*part };
+            let Some((face, home)) = self.home_of(centre, &homes) else { return false };
+            let part = Part { corners, face, home, ..*part };
             if self.min_angle(corners) < least
                 || !self.is_upright(corners, part.home)
                 || !self.is_near(corners, part.home, &homes)
