@@ -25,6 +25,9 @@ const SMALL: f64 = 0.42;
 /// Rounds of collapsing, flipping and splitting.
 const ROUNDS: usize = 8;
 
+/// Vertices of the line may go for better angles while its edges stay shorter than this, in edge lengths.
+const LONGEST: f64 = 1.5;
+
 /// Angles below this are reason enough to draw the cut through a vertex.
 const POOR: f64 = 0.26;
 
@@ -210,17 +213,19 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
         edges.sort_by(|x, y| y.0.total_cmp(&x.0).then((x.1, x.2).cmp(&(y.1, y.2))));
         let mut done = edges.iter().any(|&(_, a, b)| strip.flip(a, b));
         if !done {
-            // The shortest edge goes, if that leaves better angles than there were.
-            let (short, a, b) = edges[2];
-            done = short < 0.75 * length
-                && [(a, b), (b, a)].into_iter().any(|(u, v)| {
-                    if kept.contains(&u) {
+            // An edge goes, the shortest if it may, if that leaves better angles than there were.
+            done = edges.iter().rev().any(|&(short, a, b)| {
+                [(a, b), (b, a)].into_iter().any(|(u, v)| {
+                    if short > 0.75 * length && least > POOR
+                        || (kept.contains(&u) && !strip.may_go(u, v, LONGEST * length))
+                    {
                         return false;
                     }
                     let worst = strip.triangles_at(u).iter().filter_map(|&t| strip.part(t));
                     let worst = worst.map(|p| strip.min_angle(p.corners)).fold(f64::INFINITY, f64::min);
                     strip.collapse(u, v, worst.max(1e-3) * 1.05)
-                });
+                })
+            });
         }
         if !done && round + 2 < ROUNDS {
             // The longest edge is halved if it is much longer than the others should be.

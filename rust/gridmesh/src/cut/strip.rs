@@ -320,6 +320,14 @@ impl<'a> Strip<'a> {
         Some(m)
     }
 
+    /// True if the line's edge stays shorter than `longest` when `u` moves into `v`.
+    pub fn may_go(&self, u: u32, v: u32, longest: f64) -> bool {
+        match *self.on_line(u) {
+            [a, b] if a == v || b == v => self.position(a).distance(self.position(b)) < longest,
+            _ => false,
+        }
+    }
+
     /// Moves `u` into its neighbour `v`, if the triangles around allow it; they must then have angles of `least`.
     pub fn collapse(&mut self, u: u32, v: u32, least: f64) -> bool {
         let line = self.on_line(u).to_vec();
