@@ -23,6 +23,7 @@ mod report;
 mod reshape;
 mod rim;
 mod sheet;
+mod slide;
 mod sources;
 mod spacing;
 mod split;

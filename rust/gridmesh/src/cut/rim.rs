@@ -13,6 +13,7 @@ use super::input::{Polygons, triangles};
 use super::nearness::closest;
 use super::parted::{Part, Parted};
 use super::report::Tally;
+use super::slide::Course;
 use super::spacing::resample;
 use super::strip::{Strip, Trial};
 
@@ -27,6 +28,13 @@ const ROUNDS: usize = 8;
 
 /// Vertices of the line may go for better angles while its edges stay shorter than this, in edge lengths.
 const LONGEST: f64 = 1.5;
+
+/// Vertices of the line slide where angles are below this.
+const SLIDE: f64 = 0.3;
+
+/// The line's edges stay between these when vertices slide, in edge lengths.
+const SHORT: f64 = 0.6;
+const LONG: f64 = 1.4;
 
 /// Angles below this are reason enough to draw the cut through a vertex.
 const POOR: f64 = 0.26;
@@ -45,12 +53,13 @@ pub(super) fn even_out(
     let old = std::mem::take(&mut parted.parts);
     let own = old.iter().map(|p| p.face).collect::<FxHashSet<_>>();
     let mut strip = Strip::new(vertices, parted, parts, length);
-    let kept = resample(&mut strip, length);
+    let (kept, mut course) = resample(&mut strip, length);
     for round in 0..ROUNDS {
         let mut changes = thin_out(&mut strip, &kept);
         changes += clear_beside(&mut strip, BESIDE * length);
         changes += thin_out(&mut strip, &kept);
         changes += improve(&mut strip, &kept, length, round);
+        changes += slide(&mut strip, &mut course, length);
         if changes == 0 {
             break;
         }
@@ -217,6 +226,7 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
             done = edges.iter().rev().any(|&(short, a, b)| {
                 [(a, b), (b, a)].into_iter().any(|(u, v)| {
                     if short > 0.75 * length && least > POOR
+                        || short > length
                         || (kept.contains(&u) && !strip.may_go(u, v, LONGEST * length))
                     {
                         return false;
@@ -256,6 +266,27 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
             changes += 1;
         } else {
             strip.give_up(v, Trial::Centre);
+        }
+    }
+    changes
+}
+
+/// Slides vertices of the line at thin triangles along it.
+fn slide(strip: &mut Strip<'_>, course: &mut Course, length: f64) -> usize {
+    let mut on = strip.parted.cut.keys().flat_map(|&(a, b)| [a, b]).collect::<Vec<_>>();
+    on.sort_unstable();
+    on.dedup();
+    let mut changes = 0;
+    for v in on {
+        if strip.is_hopeless(v, Trial::Slide) {
+            continue;
+        }
+        let own = strip.triangles_at(v).iter().filter_map(|&t| strip.part(t));
+        let is_thin = own.map(|p| strip.min_angle(p.corners)).any(|angle| angle < SLIDE);
+        if is_thin && course.slide(strip, v, SHORT * length, LONG * length) {
+            changes += 1;
+        } else {
+            strip.give_up(v, Trial::Slide);
         }
     }
     changes

@@ -36,7 +36,7 @@ pub(super) struct Strip<'a> {
     clock: u32,
     changed: FxHashMap<u32, u32>,
     /// For each vertex, when each edit was last tried in vain.
-    tried: [FxHashMap<u32, u32>; 3],
+    tried: [FxHashMap<u32, u32>; 4],
 }
 
 /// An edit that is tried again and again.
@@ -45,6 +45,7 @@ pub(super) enum Trial {
     Thin,
     Clear,
     Centre,
+    Slide,
 }
 
 /// How far the new faces may be off the old ones, in edge lengths; less than what is promised, for it is
