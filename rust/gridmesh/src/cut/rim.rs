@@ -37,7 +37,7 @@ const SHORT: f64 = 0.6;
 const LONG: f64 = 1.4;
 
 /// Angles below this are reason enough to draw the cut through a vertex.
-const POOR: f64 = 0.26;
+const POOR: f64 = 0.19;
 
 /// Evens out the line and the faces along it; the old vertices within `reach` of the line that stay at thin
 /// triangles beside it, in order.
