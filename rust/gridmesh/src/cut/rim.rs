@@ -39,8 +39,8 @@ const LONG: f64 = 1.4;
 /// Angles below this are reason enough to draw the cut through a vertex.
 const POOR: f64 = 0.19;
 
-/// Evens out the line and the faces along it; the old vertices within `reach` of the line that stay at thin
-/// triangles beside it, in order.
+/// Evens out the line and the faces along it. `again` is shown the old vertices within `reach` of the line that stay
+/// at thin triangles beside it, in order; if it wants the line drawn anew, it is not brought to an end: false.
 pub(super) fn even_out(
     vertices: &[DVec3],
     faces: Polygons<'_>,
@@ -48,7 +48,8 @@ pub(super) fn even_out(
     length: f64,
     reach: f64,
     tally: &mut Tally,
-) -> Vec<u32> {
+    again: impl FnOnce(Vec<u32>) -> bool,
+) -> bool {
     let parts = gather(vertices, faces, parted);
     let old = std::mem::take(&mut parted.parts);
     let own = old.iter().map(|p| p.face).collect::<FxHashSet<_>>();
@@ -64,15 +65,17 @@ pub(super) fn even_out(
             break;
         }
     }
+    if again(in_the_way(&strip, reach)) {
+        return false;
+    }
     tally.report.defect = defect(faces, &strip);
-    let in_the_way = in_the_way(&strip, reach);
     let Strip { parts, altered, .. } = strip;
     let parts = parts.into_iter().flatten();
     for &f in &altered {
         parted.divided[f as usize] = true;
     }
     parted.parts = parts.filter(|p| parted.divided[p.face as usize] || own.contains(&p.face)).collect();
-    in_the_way
+    true
 }
 
 fn in_the_way(strip: &Strip<'_>, reach: f64) -> Vec<u32> {
