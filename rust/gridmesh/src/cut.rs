@@ -23,6 +23,7 @@ mod report;
 mod reshape;
 mod rim;
 mod sheet;
+mod slide;
 mod sources;
 mod spacing;
 mod split;
@@ -247,13 +248,23 @@ fn part(
                         tally.stage("faces");
                         tally.report.cut_faces = parted.cut_faces;
                         if let Some(length) = edge_length {
-                            let in_the_way =
-                                rim::even_out(vertices, faces, &mut parted, length, tolerance.length, tally);
-                            tally.stage("rim");
-                            let before = wanted.len();
-                            wanted.extend(in_the_way.into_iter().filter(|v| !released.contains(v)));
                             redrawn += 1;
-                            if redrawn <= REDRAWN && wanted.len() > before {
+                            let again = |in_the_way: Vec<u32>| {
+                                let before = wanted.len();
+                                wanted.extend(in_the_way.into_iter().filter(|v| !released.contains(v)));
+                                redrawn <= REDRAWN && wanted.len() > before
+                            };
+                            let done = rim::even_out(
+                                vertices,
+                                faces,
+                                &mut parted,
+                                length,
+                                tolerance.length,
+                                tally,
+                                again,
+                            );
+                            tally.stage("rim");
+                            if !done {
                                 continue;
                             }
                         }

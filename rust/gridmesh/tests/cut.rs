@@ -436,6 +436,92 @@ fn ten_times_across() {
     }
 }
 
+/// A landscape of whole heights over a flat ground, closed.
+fn landscape(heights: &[[i32; 6]; 6]) -> Mesh {
+    let n = 5u32;
+    let at = |i: u32, j: u32| i * (n + 1) + j;
+    let all = (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j)));
+    let mut vertices: Vec<DVec3> = all
+        .map(|(i, j)| DVec3::new(f64::from(i), f64::from(j), f64::from(heights[i as usize][j as usize])))
+        .collect();
+    let cells = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+    let mut faces: Vec<[u32; 3]> = cells
+        .flat_map(|(i, j)| {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect();
+    let border: Vec<u32> = (0..n)
+        .map(|i| at(i, 0))
+        .chain((0..n).map(|j| at(n, j)))
+        .chain((0..n).map(|i| at(n - i, n)))
+        .chain((0..n).map(|j| at(0, n - j)))
+        .collect();
+    let ground = vertices.len() as u32;
+    let below = border.iter().map(|&v| vertices[v as usize].with_z(-2.0)).collect::<Vec<_>>();
+    vertices.extend(below);
+    let count = border.len() as u32;
+    vertices.push(DVec3::new(2.5, 2.5, -2.0));
+    for k in 0..count {
+        let next = (k + 1) % count;
+        let (a, b, x, y) = (border[k as usize], border[next as usize], ground + k, ground + next);
+        faces.extend([[b, a, x], [b, x, y], [y, x, ground + count]]);
+    }
+    let offsets = (0..=faces.len() as u32).map(|f| 3 * f).collect();
+    Mesh(vertices, faces.into_iter().flatten().collect(), offsets)
+}
+
+#[test]
+fn a_line_that_touches_itself_in_vertices_is_moved_aside_or_refused() {
+    // The level 0 runs through saddles, in which more lines meet than can be told apart.
+    let mesh = landscape(&[
+        [-1, -1, -1, -1, -1, -1],
+        [-1, 1, 1, 1, -1, -1],
+        [-1, 1, -1, -1, 1, -1],
+        [-1, 1, 1, 0, 1, -1],
+        [-1, -1, -1, -1, -1, -1],
+        [-1, -1, -1, -1, -1, -1],
+    ]);
+    let stroke = [DVec3::new(0.0, -3.0, 0.0), DVec3::new(0.0, 8.0, 0.0)];
+    let along = CutOptions::new(Sweep::Along(DVec3::X));
+    for length in [0.3, 1.0] {
+        let cut = mesh.cut(&stroke, &CutOptions { edge_length: Some(length), ..along.clone() }).unwrap();
+        assert!(cut.report.repeated >= 2, "{:?}", cut.report);
+        assert_closed(&cut);
+        assert_mirrored(&cut);
+        let piece = &cut.pieces[0];
+        for &v in piece.cap_loops.iter().flatten() {
+            let off = piece.vertices[v as usize].z.abs();
+            assert!(off > 0.0 && off < 0.03 * length, "{off}");
+        }
+    }
+    // Exactly where it was drawn there is no cut with caps, and none is made half.
+    let refused = mesh.cut(&stroke, &along);
+    assert_eq!(refused.err().map_or("none", |e| e.kind()), "cut_failed");
+}
+
+#[test]
+fn the_rim_has_no_thin_triangles_and_stays_where_it_was_drawn() {
+    let mesh = torus(60, 30);
+    let length = 0.17;
+    for (slope, shift) in [(0.0, 0.31), (0.15, 0.9), (0.4, -0.2), (-0.7, 1.7), (1.3, 0.05)] {
+        let y = |x: f64| slope * x + shift;
+        let stroke = line(&[(-5.0, y(-5.0)), (5.0, y(5.0))]);
+        let cut = mesh.cut(&stroke, &CutOptions { edge_length: Some(length), ..down() }).unwrap();
+        assert_closed(&cut);
+        assert_mirrored(&cut);
+        assert!(cut.report.rim_min_angle.to_degrees() > 8.0, "{}", cut.report.rim_min_angle.to_degrees());
+        assert!(cut.report.defect <= 0.05 * length);
+        let piece = &cut.pieces[0];
+        let rim = piece.cap_loops.iter().flatten().map(|&v| piece.vertices[v as usize]);
+        let mut off: Vec<f64> = rim.map(|p| (p.y - y(p.x)).abs() / (1.0 + slope * slope).sqrt()).collect();
+        off.sort_by(f64::total_cmp);
+        // Drawn through a vertex beside it here and there, else where it was drawn.
+        assert!(off[off.len() - 1] <= 0.3 * length, "{off:?}");
+        assert!(off[off.len() * 3 / 4] <= 0.01 * length, "{off:?}");
+    }
+}
+
 #[test]
 fn what_cannot_be_cut_is_refused_by_name() {
     let kind = |stroke: &[DVec3], options: &CutOptions| {

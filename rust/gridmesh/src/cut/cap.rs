@@ -33,6 +33,9 @@ pub(super) struct Caps {
 /// Polygons with more vertices are tried at fewer lattice angles.
 const LARGE: usize = 300;
 
+/// Badness up to which a lattice patch of theirs is taken.
+const ENOUGH: f64 = 2.0;
+
 /// Polygons filled between two reports of progress.
 const BATCH: usize = 16;
 
@@ -199,6 +202,8 @@ impl Capper<'_> {
         let mut options = FlatOptions { single, ..FlatOptions::default() };
         if n > LARGE {
             (options.angles, options.placed) = (3, 1);
+            // Graded patches take longer than all else, and are hardly better.
+            options.enough = ENOUGH;
         }
         fill_flat(&flat, &vec![4; n], &taken, &options, progress)
     }
@@ -231,8 +236,11 @@ impl Capper<'_> {
         }
         for t in &patch.triangles {
             let mut t = t.map(name);
-            for k in 0..3 {
-                self.edges.insert(key(t[k], t[(k + 1) % 3]));
+            // Others ask for edges between vertices that they know.
+            for (a, b) in
+                [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].into_iter().filter(|e| e.0.max(e.1) < base)
+            {
+                self.edges.insert(key(a, b));
             }
             if inverted {
                 t.swap(1, 2);
@@ -309,8 +317,9 @@ impl Capper<'_> {
             if left {
                 t.swap(1, 2);
             }
-            for k in 0..3 {
-                let (a, b) = (t[k], t[(k + 1) % 3]);
+            for (a, b) in
+                [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].into_iter().filter(|e| e.0.max(e.1) < base)
+            {
                 self.edges.insert((a.min(b), a.max(b)));
             }
             self.caps.triangles.push(t);
@@ -321,15 +330,21 @@ impl Capper<'_> {
     /// Refuses caps that do not close what they should: each edge has two cap triangles, or one and is of the
     /// cut.
     fn prove(&self) -> Result<()> {
-        let mut found = FxHashSet::default();
-        let edges = || self.caps.triangles.iter().flat_map(|t| (0..3).map(|k| (t[k], t[(k + 1) % 3])));
-        let twice = edges().filter(|&e| !found.insert(e)).last();
-        let is_cut = |a: u32, b: u32| self.parted.cut.contains_key(&(a.min(b), a.max(b)));
-        let open = edges().find(|&(a, b)| found.contains(&(b, a)) == is_cut(a, b));
-        match twice.or(open) {
+        // Each edge once for each triangle, with its direction last.
+        let key = |a: u32, b: u32| (u64::from(a.min(b)) << 32 | u64::from(a.max(b)), a < b);
+        let triangles = self.caps.triangles.par_iter().with_min_len(4096);
+        let edges = triangles.flat_map_iter(|t| (0..3).map(move |k| key(t[k], t[(k + 1) % 3])));
+        let mut edges: Vec<(u64, bool)> = edges.collect();
+        edges.par_sort_unstable();
+        let is_right = |group: &[(u64, bool)]| {
+            let ends = ((group[0].0 >> 32) as u32, group[0].0 as u32);
+            let is_cut = self.parted.cut.contains_key(&ends);
+            if is_cut { group.len() == 1 } else { group.len() == 2 && group[0].1 != group[1].1 }
+        };
+        match edges.chunk_by(|a, b| a.0 == b.0).find(|group| !is_right(group)) {
             None => Ok(()),
-            Some((v, _)) => {
-                let at = self.source(v).position;
+            Some(group) => {
+                let at = self.source((group[0].0 >> 32) as u32).position;
                 Err(Error::CutFailed { reason: "cut lines touch each other", at: at.into() })
             }
         }
@@ -342,14 +357,20 @@ impl Capper<'_> {
             None => self.parted.position(self.vertices, v),
         };
         let mut valence = vec![0u32; self.caps.vertices.len()];
+        // Sums of equal stretches, added up in their order.
+        const STRETCH: usize = 8192;
+        let sum = |triangles: &[[u32; 3]]| {
+            let shapes = triangles.iter().map(|t| shape(t.map(position)));
+            shapes.fold((f64::INFINITY, 0.0), |(least, sum), (angle, ratio)| (angle.min(least), sum + ratio))
+        };
+        let sums: Vec<(f64, f64)> = self.caps.triangles.par_chunks(STRETCH).map(sum).collect();
         let mut ratios = 0.0;
-        for t in &self.caps.triangles {
-            let (angle, ratio) = shape(t.map(position));
+        for (angle, ratio) in sums {
             report.cap_min_angle = report.cap_min_angle.min(angle);
             ratios += ratio;
-            for v in t.iter().filter_map(|v| v.checked_sub(self.first)) {
-                valence[v as usize] += 1;
-            }
+        }
+        for v in self.caps.triangles.iter().flatten().filter_map(|v| v.checked_sub(self.first)) {
+            valence[v as usize] += 1;
         }
         report.cap_triangles = self.caps.triangles.len();
         report.cap_vertices = valence.len();

@@ -5,7 +5,7 @@ use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use rustc_hash::FxHashSet;
 
 use super::input::{Polygons, triangles};
-use super::nearness::closest;
+use super::nearness::{closest, within};
 use super::strip::Strip;
 
 /// Largest distance of the changed triangles from the old surface.
@@ -14,15 +14,18 @@ pub(super) fn defect(faces: Polygons<'_>, strip: &Strip<'_>) -> f64 {
     let mut most = 0.0f64;
     let parts = strip.parts.iter().flatten();
     for part in parts.filter(|p| strip.altered.contains(&p.face)) {
-        let homes = strip.homes(&part.corners).into_iter().map(|h| strip.home(h.1)).collect::<Vec<_>>();
+        // The distance from something convex is greatest at corners.
         let own = strip.home(part.home);
+        if part.corners.iter().all(|&v| within(strip.position(v), own, most).is_some()) {
+            continue;
+        }
         for p in strip.samples(part.corners) {
-            // Most are near the old triangles that are known to be around.
-            if closest(p, own).0 <= most || homes.iter().any(|&home| closest(p, home).0 <= most) {
-                continue;
+            let mut off = strip.distance(p, part.home, most);
+            if off > most.max(strip.tolerance) {
+                let tree = tree.get_or_insert_with(|| old_faces(faces, strip));
+                off = tree.nearest_neighbor(&p.to_array()).map_or(0.0, |f| closest(p, f.0).0);
             }
-            let tree = tree.get_or_insert_with(|| old_faces(faces, strip));
-            most = most.max(tree.nearest_neighbor(&p.to_array()).map_or(0.0, |f| closest(p, f.0).0));
+            most = most.max(off);
         }
     }
     most

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 /// Points of a triangle where its distance from others is taken: a lattice with at least six steps to an edge, and
-/// steps no longer than `spacing` while that makes no more than 24.
+/// steps no longer than `spacing` while that makes no more than 24. The middles of the edges come first, corners
+/// not at all.
 pub(super) fn samples([a, b, c]: [DVec3; 3], spacing: f64) -> impl Iterator<Item = DVec3> {
     let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt();
     let n = (longest / spacing).ceil().clamp(6.0, 24.0) as u32;
@@ -11,7 +12,20 @@ pub(super) fn samples([a, b, c]: [DVec3; 3], spacing: f64) -> impl Iterator<Item
         let [u, v, w] = [i, j, n - i - j].map(|k| f64::from(k) / f64::from(n));
         (i.max(j).max(n - i - j) < n).then(|| u * a + v * b + w * c)
     };
-    (0..=n).flat_map(move |i| (0..=n - i).filter_map(move |j| at(i, j)))
+    let middles = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+    middles.into_iter().chain((0..=n).flat_map(move |i| (0..=n - i).filter_map(move |j| at(i, j))))
+}
+
+/// Distance of a point from a triangle, if that is at most `reach`.
+pub(super) fn within(p: DVec3, triangle: [DVec3; 3], reach: f64) -> Option<f64> {
+    let [a, b, c] = triangle;
+    let normal = (b - a).cross(c - a);
+    // The plane is no farther than the triangle.
+    let off = (p - a).dot(normal);
+    if off * off > reach * reach * normal.length_squared() {
+        return None;
+    }
+    Some(closest(p, triangle).0).filter(|&off| off <= reach)
 }
 
 /// Distance of a point from a triangle, and the weights of its corners there.

@@ -34,11 +34,11 @@ impl Strip<'_> {
         let mut new = vec![];
         for corners in [x, y] {
             let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
-            let (_, k) = self.nearest(centre, &homes);
-            if !self.is_upright(corners, homes[k].1) || !self.is_near(corners, homes[k].1, &homes) {
+            let Some((face, home)) = self.home_of(centre, &homes) else { return false };
+            if !self.is_upright(corners, home) || !self.is_near(corners, home, &homes) {
                 return false;
             }
-            new.push(Part { corners, face: homes[k].0, home: homes[k].1, left: p.left });
+            new.push(Part { corners, face, home, left: p.left });
         }
         self.replace(s, None);
         self.replace(t, Some(new[1]));
@@ -63,8 +63,7 @@ impl Strip<'_> {
         let homes = self.homes(&near);
         let middle = near.iter().map(|&w| self.position(w)).sum::<DVec3>() / near.len().max(1) as f64;
         // Back onto the surface.
-        let (_, h) = self.nearest(middle, &homes);
-        let Some(&(_, home)) = homes.get(h) else { return false };
+        let Some((_, home)) = self.home_of(middle, &homes) else { return false };
         let (_, weights) = closest(middle, self.home(home));
         self.parted.nodes[k] = Node::within(self.vertices, home, weights);
         let fits = least(self) > before

@@ -13,6 +13,7 @@ use super::input::{Polygons, triangles};
 use super::nearness::closest;
 use super::parted::{Part, Parted};
 use super::report::Tally;
+use super::slide::Course;
 use super::spacing::resample;
 use super::strip::{Strip, Trial};
 
@@ -25,11 +26,21 @@ const SMALL: f64 = 0.42;
 /// Rounds of collapsing, flipping and splitting.
 const ROUNDS: usize = 8;
 
-/// Angles below this are reason enough to draw the cut through a vertex.
-const POOR: f64 = 0.26;
+/// Vertices of the line may go for better angles while its edges stay shorter than this, in edge lengths.
+const LONGEST: f64 = 1.5;
 
-/// Evens out the line and the faces along it; the old vertices within `reach` of the line that stay at thin
-/// triangles beside it, in order.
+/// Vertices of the line slide where angles are below this.
+const SLIDE: f64 = 0.3;
+
+/// The line's edges stay between these when vertices slide, in edge lengths.
+const SHORT: f64 = 0.6;
+const LONG: f64 = 1.4;
+
+/// Angles below this are reason enough to draw the cut through a vertex.
+const POOR: f64 = 0.19;
+
+/// Evens out the line and the faces along it. `again` is shown the old vertices within `reach` of the line that stay
+/// at thin triangles beside it, in order; if it wants the line drawn anew, it is not brought to an end: false.
 pub(super) fn even_out(
     vertices: &[DVec3],
     faces: Polygons<'_>,
@@ -37,30 +48,34 @@ pub(super) fn even_out(
     length: f64,
     reach: f64,
     tally: &mut Tally,
-) -> Vec<u32> {
+    again: impl FnOnce(Vec<u32>) -> bool,
+) -> bool {
     let parts = gather(vertices, faces, parted);
     let old = std::mem::take(&mut parted.parts);
     let own = old.iter().map(|p| p.face).collect::<FxHashSet<_>>();
     let mut strip = Strip::new(vertices, parted, parts, length);
-    let kept = resample(&mut strip, length);
+    let (kept, mut course) = resample(&mut strip, length);
     for round in 0..ROUNDS {
         let mut changes = thin_out(&mut strip, &kept);
         changes += clear_beside(&mut strip, BESIDE * length);
         changes += thin_out(&mut strip, &kept);
         changes += improve(&mut strip, &kept, length, round);
+        changes += slide(&mut strip, &mut course, length);
         if changes == 0 {
             break;
         }
     }
+    if again(in_the_way(&strip, reach)) {
+        return false;
+    }
     tally.report.defect = defect(faces, &strip);
-    let in_the_way = in_the_way(&strip, reach);
     let Strip { parts, altered, .. } = strip;
     let parts = parts.into_iter().flatten();
     for &f in &altered {
         parted.divided[f as usize] = true;
     }
     parted.parts = parts.filter(|p| parted.divided[p.face as usize] || own.contains(&p.face)).collect();
-    in_the_way
+    true
 }
 
 fn in_the_way(strip: &Strip<'_>, reach: f64) -> Vec<u32> {
@@ -210,17 +225,20 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
         edges.sort_by(|x, y| y.0.total_cmp(&x.0).then((x.1, x.2).cmp(&(y.1, y.2))));
         let mut done = edges.iter().any(|&(_, a, b)| strip.flip(a, b));
         if !done {
-            // The shortest edge goes, if that leaves better angles than there were.
-            let (short, a, b) = edges[2];
-            done = short < 0.75 * length
-                && [(a, b), (b, a)].into_iter().any(|(u, v)| {
-                    if kept.contains(&u) {
+            // An edge goes, the shortest if it may, if that leaves better angles than there were.
+            done = edges.iter().rev().any(|&(short, a, b)| {
+                [(a, b), (b, a)].into_iter().any(|(u, v)| {
+                    if short > 0.75 * length && least > POOR
+                        || short > length
+                        || (kept.contains(&u) && !strip.may_go(u, v, LONGEST * length))
+                    {
                         return false;
                     }
                     let worst = strip.triangles_at(u).iter().filter_map(|&t| strip.part(t));
                     let worst = worst.map(|p| strip.min_angle(p.corners)).fold(f64::INFINITY, f64::min);
                     strip.collapse(u, v, worst.max(1e-3) * 1.05)
-                });
+                })
+            });
         }
         if !done && round + 2 < ROUNDS {
             // The longest edge is halved if it is much longer than the others should be.
@@ -251,6 +269,27 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
             changes += 1;
         } else {
             strip.give_up(v, Trial::Centre);
+        }
+    }
+    changes
+}
+
+/// Slides vertices of the line at thin triangles along it.
+fn slide(strip: &mut Strip<'_>, course: &mut Course, length: f64) -> usize {
+    let mut on = strip.parted.cut.keys().flat_map(|&(a, b)| [a, b]).collect::<Vec<_>>();
+    on.sort_unstable();
+    on.dedup();
+    let mut changes = 0;
+    for v in on {
+        if strip.is_hopeless(v, Trial::Slide) {
+            continue;
+        }
+        let own = strip.triangles_at(v).iter().filter_map(|&t| strip.part(t));
+        let is_thin = own.map(|p| strip.min_angle(p.corners)).any(|angle| angle < SLIDE);
+        if is_thin && course.slide(strip, v, SHORT * length, LONG * length) {
+            changes += 1;
+        } else {
+            strip.give_up(v, Trial::Slide);
         }
     }
     changes

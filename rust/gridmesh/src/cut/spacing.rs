@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
+use super::slide::{Course, Curve};
 use super::strip::Strip;
 
 /// The line keeps its vertices where it turns by more.
@@ -18,8 +19,10 @@ struct Stretch {
     around: bool,
 }
 
-/// Puts vertices on the line at even distances; returns those that stay.
-pub(super) fn resample(strip: &mut Strip<'_>, length: f64) -> FxHashSet<u32> {
+/// Puts vertices on the line at even distances; returns those that stay,
+/// and the line as it was.
+pub(super) fn resample(strip: &mut Strip<'_>, length: f64) -> (FxHashSet<u32>, Course) {
+    let mut course = Course::default();
     let mut kept = FxHashSet::default();
     for stretch in stretches(strip, length) {
         let points = stretch.nodes.iter().map(|&v| strip.position(v)).collect::<Vec<_>>();
@@ -34,6 +37,11 @@ pub(super) fn resample(strip: &mut Strip<'_>, length: f64) -> FxHashSet<u32> {
         let old = stretch.nodes.iter().map(|&v| (v as usize) < strip.parted.n_old).collect::<Vec<_>>();
         let line = Line { arc: &arc, points: &points, normals: &normals, old: &old };
         let mut targets = line.spread(step, 0.8 * strip.tolerance);
+        let places = places(strip, &stretch.nodes);
+        let curve = course.add(Curve { arc: arc.clone(), points: points.clone(), places });
+        for (&v, &s) in stretch.nodes.iter().zip(&arc).skip(1).take(arc.len() - 2) {
+            course.put(v, curve, s);
+        }
         kept.insert(stretch.nodes[0]);
         kept.insert(stretch.nodes[stretch.nodes.len() - 1]);
         // From the end, so that the edges before stay as they are.
@@ -53,11 +61,23 @@ pub(super) fn resample(strip: &mut Strip<'_>, length: f64) -> FxHashSet<u32> {
             };
             if let Some(m) = strip.split(stretch.nodes[k - 1], end, share) {
                 kept.insert(m);
+                course.put(m, curve, s);
                 next = Some((k, m, t));
             }
         }
     }
-    kept
+    (kept, course)
+}
+
+/// Places of a stretch's vertices on the unrolled line, without jumps.
+fn places(strip: &Strip<'_>, nodes: &[u32]) -> Vec<f64> {
+    let mut places = vec![0.0];
+    for pair in nodes.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let [x, y] = strip.parted.cut.get(&(a.min(b), a.max(b))).copied().unwrap_or_default();
+        places.push(places[places.len() - 1] + if a < b { y - x } else { x - y });
+    }
+    places
 }
 
 /// A stretch of the line, measured.

@@ -8,7 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::cap::shape;
 use super::cross::Node;
-use super::nearness::{closest, samples};
+use super::nearness::{closest, samples, within};
 use super::parted::{Part, Parted};
 
 pub(super) struct Strip<'a> {
@@ -30,11 +30,13 @@ pub(super) struct Strip<'a> {
     spacing: f64,
     /// The cut's edges, by vertex.
     line: FxHashMap<u32, Vec<u32>>,
+    /// The old triangles at each old vertex.
+    old: FxHashMap<u32, Vec<(u32, [u32; 3])>>,
     /// Counts changes; and for each vertex, the last one of its triangles.
     clock: u32,
     changed: FxHashMap<u32, u32>,
     /// For each vertex, when each edit was last tried in vain.
-    tried: [FxHashMap<u32, u32>; 3],
+    tried: [FxHashMap<u32, u32>; 4],
 }
 
 /// An edit that is tried again and again.
@@ -43,6 +45,7 @@ pub(super) enum Trial {
     Thin,
     Clear,
     Centre,
+    Slide,
 }
 
 /// How far the new faces may be off the old ones, in edge lengths; less than what is promised, for it is
@@ -75,6 +78,13 @@ impl<'a> Strip<'a> {
             line.entry(a).or_default().push(b);
             line.entry(b).or_default().push(a);
         }
+        let mut old: FxHashMap<u32, Vec<(u32, [u32; 3])>> = FxHashMap::default();
+        let mut homes = parts.iter().map(|p| (p.face, p.home)).collect::<Vec<_>>();
+        homes.sort_unstable();
+        homes.dedup();
+        for (face, home) in homes {
+            home.iter().for_each(|&v| old.entry(v).or_default().push((face, home)));
+        }
         let parts = parts.into_iter().map(Some).collect();
         Strip {
             vertices,
@@ -87,6 +97,7 @@ impl<'a> Strip<'a> {
             tolerance: TOLERANCE * length,
             spacing: SPACING * length,
             line,
+            old,
             clock: 0,
             changed: FxHashMap::default(),
             tried: Default::default(),
@@ -189,10 +200,47 @@ impl<'a> Strip<'a> {
         homes
     }
 
-    /// Distance of a point from the nearest of these old triangles, and which it is.
-    pub fn nearest(&self, p: DVec3, homes: &[(u32, [u32; 3])]) -> (f64, usize) {
-        let off = homes.iter().map(|h| closest(p, self.home(h.1)).0).enumerate();
-        off.map(|(k, d)| (d, k)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, 0))
+    /// The old triangle nearest to a point, going from the nearest of these to its neighbours.
+    pub fn home_of(&self, p: DVec3, homes: &[(u32, [u32; 3])]) -> Option<(u32, [u32; 3])> {
+        let (mut off, mut found) = (f64::INFINITY, None);
+        for &home in homes {
+            if let Some(d) = within(p, self.home(home.1), off).filter(|&d| d < off || found.is_none()) {
+                (off, found) = (d, Some(home));
+            }
+        }
+        let mut at = found?;
+        loop {
+            let before = at;
+            for &old in before.1.iter().filter_map(|v| self.old.get(v)).flatten() {
+                if let Some(d) = within(p, self.home(old.1), off).filter(|&d| d < off) {
+                    (off, at) = (d, old);
+                }
+            }
+            if at == before {
+                return Some(at);
+            }
+        }
+    }
+
+    /// Distance of a point from the old triangles around the nearest that is found by going from neighbour to
+    /// neighbour: at least its distance from the old surface, and that itself once it is no more than `enough`.
+    pub fn distance(&self, p: DVec3, home: [u32; 3], enough: f64) -> f64 {
+        let (mut at, mut off) = (home, closest(p, self.home(home)).0);
+        loop {
+            let mut nearer = None;
+            for &(_, old) in at.iter().filter_map(|v| self.old.get(v)).flatten() {
+                if off <= enough {
+                    return off;
+                }
+                if let Some(d) = within(p, self.home(old), off).filter(|&d| d < off) {
+                    (off, nearer) = (d, Some(old));
+                }
+            }
+            match nearer {
+                Some(old) => at = old,
+                None => return off,
+            }
+        }
     }
 
     /// Points of a triangle where its distance from the old ones is taken.
@@ -202,9 +250,23 @@ impl<'a> Strip<'a> {
 
     /// True if the triangle stays near the old ones, of which `home` is the likeliest.
     pub fn is_near(&self, corners: [u32; 3], home: [u32; 3], homes: &[(u32, [u32; 3])]) -> bool {
+        let near = |p: DVec3, old: [DVec3; 3]| within(p, old, self.tolerance).is_some();
+        // The distance from something convex is no greater between the corners than at them.
         let own = self.home(home);
-        let near = |p: DVec3, old: [DVec3; 3]| closest(p, old).0 <= self.tolerance;
-        self.samples(corners).all(|p| near(p, own) || homes.iter().any(|h| near(p, self.home(h.1))))
+        if corners.iter().all(|&v| near(self.position(v), own)) {
+            return true;
+        }
+        let mut last = own;
+        self.samples(corners).all(|p| {
+            if near(p, last) || near(p, own) {
+                return true;
+            }
+            if let Some(old) = homes.iter().map(|h| self.home(h.1)).find(|&old| near(p, old)) {
+                last = old;
+                return true;
+            }
+            self.distance(p, home, self.tolerance) <= self.tolerance
+        })
     }
 
     pub fn replace(&mut self, t: u32, part: Option<Part>) {
@@ -242,8 +304,7 @@ impl<'a> Strip<'a> {
         }
         let position = self.position(a).lerp(self.position(b), t);
         let homes = self.homes(&[a, b]);
-        let (_, home) =
-            homes.get(self.nearest(position, &homes).1).copied().unwrap_or((first.face, first.home));
+        let (_, home) = self.home_of(position, &homes).unwrap_or((first.face, first.home));
         let (_, weights) = closest(position, self.home(home));
         let m = (self.parted.n_old + self.parted.nodes.len()) as u32;
         self.parted.nodes.push(Node { position, source: home, weights });
@@ -270,6 +331,14 @@ impl<'a> Strip<'a> {
         Some(m)
     }
 
+    /// True if the line's edge stays shorter than `longest` when `u` moves into `v`.
+    pub fn may_go(&self, u: u32, v: u32, longest: f64) -> bool {
+        match *self.on_line(u) {
+            [a, b] if a == v || b == v => self.position(a).distance(self.position(b)) < longest,
+            _ => false,
+        }
+    }
+
     /// Moves `u` into its neighbour `v`, if the triangles around allow it; they must then have angles of `least`.
     pub fn collapse(&mut self, u: u32, v: u32, least: f64) -> bool {
         let line = self.on_line(u).to_vec();
@@ -291,26 +360,29 @@ impl<'a> Strip<'a> {
             return false;
         }
         let all = self.triangles_at(u).to_vec();
+        let with_v = |corners: [u32; 3]| corners.map(|w| if w == u { v } else { w });
+        let stay = || all.iter().filter(|t| !shared.contains(t)).filter_map(|&t| self.part(t));
+        if least > 0.0 && stay().any(|part| self.min_angle(with_v(part.corners)) < least) {
+            return false;
+        }
+        let p = self.position(u);
+        let covers =
+            |part: &Part| within(p, with_v(part.corners).map(|w| self.position(w)), self.tolerance).is_some();
+        if !stay().any(covers) {
+            return false;
+        }
         let homes = self.homes(&near_u);
         let mut new = vec![];
         for &t in all.iter().filter(|t| !shared.contains(t)) {
             let Some(part) = self.part(t) else { return false };
-            let corners = part.corners.map(|w| if w == u { v } else { w });
+            let corners = with_v(part.corners);
             let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
-            let (_, k) = self.nearest(centre, &homes);
-            let part = Part { corners, face: homes[k].0, home: homes[k].1, ..*part };
-            if self.min_angle(corners) < least
-                || !self.is_upright(corners, part.home)
-                || !self.is_near(corners, part.home, &homes)
-            {
+            let Some((face, home)) = self.home_of(centre, &homes) else { return false };
+            let part = Part { corners, face, home, ..*part };
+            if !self.is_upright(corners, part.home) || !self.is_near(corners, part.home, &homes) {
                 return false;
             }
             new.push((t, part));
-        }
-        let p = self.position(u);
-        let off = new.iter().map(|(_, n)| closest(p, n.corners.map(|w| self.position(w))).0);
-        if off.fold(f64::INFINITY, f64::min) > self.tolerance {
-            return false;
         }
         for t in shared {
             self.replace(t, None);

@@ -52,6 +52,8 @@ pub(crate) struct FlatOptions {
     pub angles: usize,
     /// Of the paths found, how many are placed and measured.
     pub placed: usize,
+    /// Badness up to which no graded patch is tried.
+    pub enough: f64,
 }
 
 impl Default for FlatOptions {
@@ -64,6 +66,7 @@ impl Default for FlatOptions {
             reach: 2,
             angles: 6,
             placed: 2,
+            enough: GOOD,
         }
     }
 }
@@ -165,7 +168,8 @@ impl Contest<'_> {
             self.lattice(options, progress.part(0.0, 0.7))?;
         }
         let regular = |fill: &FlatFill| fill.quality.irregular == 0 && !fill.folded;
-        let settled = |(badness, fill): &(f64, FlatFill)| *badness <= GOOD || (self.even && regular(fill));
+        let settled =
+            |(badness, fill): &(f64, FlatFill)| *badness <= options.enough || (self.even && regular(fill));
         if n > 3 && !self.best.as_ref().is_some_and(settled) {
             match graded(self.points, self.wanted, self.taken, progress.part(0.7, 1.0)) {
                 Ok((interior, triangles)) => self.enter(interior, triangles, Method::Graded),
