@@ -17,6 +17,7 @@ from ..live.solve import TOO_THIN, Patience, reason_of
 from ..native import native
 from ..outlines import Plane, Sketch, project
 from .gesture import FEWEST, relation
+from .joining import absorb, adopt, join
 
 RADIUS = 0.005
 """Radius of the line at full pressure, in parts of the outline's size."""
@@ -92,9 +93,9 @@ def target(
     subtract: bool,
     under: bpy.types.Object | None,
 ) -> _Target | None:
-    """Find the body that a stroke changes, and how; the one whose outline it shares most points with."""
+    """Find the body that a stroke changes, and how: the one it begins in, or else has most points in."""
     depsgraph = context.evaluated_depsgraph_get()
-    best: tuple[int, _Target] | None = None
+    best: tuple[tuple[bool, int], _Target] | None = None
     for ob in engine.bodies():
         source = ob.gridmesh_live.source
         if not ob.visible_get() or source is None or source.type != "GREASEPENCIL":
@@ -115,9 +116,10 @@ def target(
         action = _action(how, sketch.outline, holes, stroke, subtract)
         if action is None:
             continue
-        shared = int(_inside(sketch.outline, holes, stroke).sum())
-        if best is None or shared > best[0]:
-            best = shared, _Target(ob, sketch, action, stroke)
+        inside = _inside(sketch.outline, holes, stroke)
+        rank = bool(inside[0]), int(inside.sum())
+        if best is None or rank > best[0]:
+            best = rank, _Target(ob, sketch, action, stroke)
     return None if best is None else best[1]
 
 
@@ -206,22 +208,28 @@ def _changed(
     parts = gridmesh.combine(sketch.outline, found.stroke, holes, how=how)
     if not parts:
         raise DrawError("nothing would be left; delete the body instead")
-    _try(gridmesh, parts, live)
     source = live.source
+    others = [
+        other for other in engine.bodies(source) if other != ob and other.gridmesh_live.layer == live.layer
+    ]
+    taken: list[tuple[bpy.types.Object, Sketch]] = []
+    if found.action == "extend":
+        parts, taken = join(gridmesh, parts[0], sketch.plane, others)
+    _try(gridmesh, parts, live)
     layer = next(layer for layer in source.data.layers if layer.name == live.layer)
     drawing = layer.current_frame().drawing
     rings = [ring for outline, inner in parts for ring in (outline, *inner)]
     starts = np.cumsum([0, *(1 + len(inner) for _, inner in parts)])[:-1]
-    radii = [_carried(ring, sketch, found.stroke, pressures) for ring in rings]
+    sketches = [sketch, *(one for _, one in taken)]
+    radii = [_carried(ring, sketches, found.stroke, pressures) for ring in rings]
     to_layer = np.linalg.inv(strokes.layer_to_world(source, layer))
     flat = [sketch.plane.world(np.column_stack([ring, np.zeros(len(ring))])) for ring in rings]
     flat = [points @ to_layer[:3, :3].T + to_layer[:3, 3] for points in flat]
-    gone = [sketch.stroke.index, *(hole.stroke.index for hole in sketch.holes)]
+    gone = [drawn.stroke.index for one in sketches for drawn in (one, *one.holes)]
     kept = [index for index in range(sketch.stroke.count) if index not in gone]
     follow = live.enabled
-    others = [
-        other for other in engine.bodies(source) if other != ob and other.gridmesh_live.layer == live.layer
-    ]
+    children = absorb([other for other, _ in taken])
+    others = [other for other in others if all(other != one for one, _ in taken)]
     _write(drawing, gone, flat, radii)
     count = len(kept) + len(rings)
     for other in others:
@@ -231,6 +239,7 @@ def _changed(
     live.stroke, live.count = len(kept), count
     context.view_layer.update()
     engine.remake(ob)
+    adopt(ob, children)
     bodies = [ob]
     if len(parts) > 1:
         wanted = [len(kept) + int(start) for start in starts[1:]]
@@ -264,9 +273,12 @@ def _try(gridmesh: Any, parts: list[Any], live: Any) -> None:
             raise DrawError(reason_of(error)) from error
 
 
-def _carried(ring: np.ndarray, sketch: Sketch, stroke: np.ndarray, pressures: np.ndarray) -> np.ndarray:
+def _carried(
+    ring: np.ndarray, sketches: list[Sketch], stroke: np.ndarray, pressures: np.ndarray
+) -> np.ndarray:
     """Radius (n,) at each point of a new outline: of the drawn point that is nearest, old or new."""
-    old = [sketch, *sketch.holes]
+    sketch = sketches[0]
+    old = [drawn for one in sketches for drawn in (one, *one.holes)]
     points = [sketch.plane.local(one.stroke.points)[:, :2] for one in old]
     fallback = RADIUS * sketch.size
     radii = [

@@ -77,12 +77,57 @@ def test_trimmed_apart_it_becomes_two():
     assert len({np.sign(world_vertices(body)[:, 0].mean()) for body in bodies}) == 2
 
 
-def test_a_hole_drawn_over_a_hole_keeps_others_of_the_drawing():
+def parted():
+    """A disk of radius 2, parted by a bar; the left and the right body."""
     draw(circle(100, 2))
     bar = [(x, -3) for x in np.linspace(-0.3, 0.3, 10)] + [(x, 3) for x in np.linspace(0.3, -0.3, 10)]
     draw(bar)
     engine.settle()
-    left, right = sorted(engine.bodies(), key=lambda ob: world_vertices(ob)[:, 0].mean())
+    return sorted(engine.bodies(), key=lambda ob: world_vertices(ob)[:, 0].mean())
+
+
+@pytest.mark.parametrize("start", [np.pi, 0])
+def test_a_bridge_joins_what_a_bar_has_parted(start):
+    left, right = parted()
+    child = bpy.data.objects.new("child", None)
+    bpy.context.collection.objects.link(child)
+    child.parent, child.location = (right if start else left), (3, 0, 0)  # of the body that goes
+    bpy.context.view_layer.update()
+    place = child.matrix_world.copy()
+    assert draw(circle(60, 1, start=start)) == {"FINISHED"}
+    engine.settle()
+    body = only_body()
+    check_body(body)
+    assert body.gridmesh_live.problem == ""
+    assert np.ptp(world_vertices(body)[:, 0]) == pytest.approx(4, abs=0.05)
+    assert child.parent == body
+    assert np.allclose(child.matrix_world, place)
+    assert all(mesh.users for mesh in bpy.data.meshes)
+    strokes = body.gridmesh_live.source.data.layers[0].current_frame().drawing.strokes
+    assert len(strokes) == body.gridmesh_live.count == 1
+
+
+def test_a_bridge_leaves_holes_that_it_does_not_cover():
+    parted()
+    draw(circle(40, 0.3, (1.1, 0)), subtract=True)
+    draw(circle(40, 0.3, (-1.1, 0)), subtract=True)
+    assert draw(circle(60, 0.5, start=np.pi)) == {"FINISHED"}
+    engine.settle()
+    check_body(only_body(), genus=2)
+
+
+def test_what_an_extension_does_not_reach_stays():
+    left, right = parted()
+    before = world_vertices(left)
+    assert draw(circle(40, 0.5, (2, 0), start=np.pi)) == {"FINISHED"}
+    engine.settle()
+    assert len(engine.bodies()) == 2
+    check_body(right)
+    assert np.array_equal(world_vertices(left), before)
+
+
+def test_a_hole_drawn_over_a_hole_keeps_others_of_the_drawing():
+    left, right = parted()
     before = world_vertices(left)
     assert draw(circle(40, 0.3, (1.1, 0)), subtract=True) == {"FINISHED"}
     engine.settle()
