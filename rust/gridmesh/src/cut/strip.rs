@@ -50,7 +50,7 @@ pub(super) enum Trial {
 
 /// How far the new faces may be off the old ones, in edge lengths; less than what is promised, for it is
 /// measured at points.
-const TOLERANCE: f64 = 0.045;
+const TOLERANCE: f64 = 0.042;
 
 /// How far apart these points are at most, in edge lengths.
 const SPACING: f64 = 0.5;
