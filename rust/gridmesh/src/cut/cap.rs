@@ -14,6 +14,7 @@ use super::options::{CutOptions, Keep};
 use super::parted::Parted;
 use super::regions::{self, Region, Spot};
 use super::report::Tally;
+use super::roll::Roll;
 use super::sheet::Sheet;
 use super::sources;
 use crate::error::{Error, Result};
@@ -389,32 +390,4 @@ pub(super) fn shape([a, b, c]: [DVec3; 3]) -> (f64, f64) {
     let double = (b - a).cross(c - a).length();
     let product = x * y * z * (x + y + z);
     (least, if product > 0.0 { 4.0 * double * double / product } else { 0.0 })
-}
-
-/// The unrolled sheet around a region: places and heights as points of the plane, without distortion.
-struct Roll {
-    /// For a sheet through an eye: the place in the middle.
-    middle: Option<f64>,
-}
-
-impl Roll {
-    fn new(sheet: &Sheet, polygon: &[Spot]) -> Self {
-        let low = polygon.iter().map(|s| s.at.x).fold(f64::INFINITY, f64::min);
-        let high = polygon.iter().map(|s| s.at.x).fold(f64::NEG_INFINITY, f64::max);
-        Roll { middle: sheet.view.central.then_some(0.5 * (low + high)) }
-    }
-
-    fn flatten(&self, at: DVec2) -> DVec2 {
-        match self.middle {
-            None => at,
-            Some(middle) => at.y * DVec2::new((at.x - middle).sin(), (at.x - middle).cos()),
-        }
-    }
-
-    fn unflatten(&self, p: DVec2) -> DVec2 {
-        match self.middle {
-            None => p,
-            Some(middle) => DVec2::new(middle + p.x.atan2(p.y), p.length()),
-        }
-    }
 }

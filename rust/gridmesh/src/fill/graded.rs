@@ -2,6 +2,7 @@
 //! near by, joined by a constrained Delaunay triangulation. Works for every simple polygon.
 
 use glam::DVec2;
+use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
@@ -155,16 +156,16 @@ impl SizeField {
         let fine = least.max(across * 1e-5).max(f64::MIN_POSITIVE);
         let levels = (4.0 * across / fine).log2().ceil().clamp(1.0, 24.0) as u32;
         let origin = low - DVec2::new(across, 0.5 * across);
-        let mut descent = Descent { field: self, low, high, origin, fine, found: Vec::new() };
+        let descent = Descent { field: self, low, high, origin, fine };
         let all: Vec<u32> = (0..polygon.len() as u32).collect();
-        descent.visit(Axial::default(), 1 << levels, 1, &all);
-        let mut found = descent.found;
+        let mut found = Vec::new();
+        descent.visit(Axial::default(), 1 << levels, 1, &all, &mut found);
         found.sort_unstable_by_key(|f| f.0);
         found.dedup_by_key(|f| f.0);
         let walls = Walls::new(polygon);
         let place = |p: Axial| origin + fine * Lattice::units(p);
         let clear = |(p, size): (Axial, f64)| (walls.depth(place(p)) > CLEARANCE * size).then(|| place(p));
-        let points = found.into_iter().filter_map(clear).collect();
+        let points = found.into_par_iter().with_min_len(256).filter_map(clear).collect();
         outside_lenses(points, polygon)
     }
 }
@@ -199,14 +200,16 @@ struct Descent<'a> {
     high: DVec2,
     origin: DVec2,
     fine: f64,
-    /// Corners of the triangles that are small enough, with the size wished there.
-    found: Vec<(Axial, f64)>,
 }
+
+/// With more edges near by, the quarters of a triangle are worth a thread each.
+const MANY: usize = 64;
 
 impl Descent<'_> {
     /// The triangle with a corner and edges of `edge` steps of the finest lattice, pointing up or
-    /// down (`up` = -1); `near` are the edges of the loop that may ask for the least size in it.
-    fn visit(&mut self, corner: Axial, edge: i32, up: i32, near: &[u32]) {
+    /// down (`up` = -1); `near` are the edges of the loop that may ask for the least size in it. Found are
+    /// corners of the triangles that are small enough, with the size wished there.
+    fn visit(&self, corner: Axial, edge: i32, up: i32, near: &[u32], found: &mut Vec<(Axial, f64)>) {
         let place = |p: Axial| self.origin + self.fine * Lattice::units(p);
         let (a, b) = (Axial::new(edge * up, 0), Axial::new(0, edge * up));
         let corners = [corner, corner + a, corner + b];
@@ -216,21 +219,28 @@ impl Descent<'_> {
         if (centre.clamp(self.low, self.high) - centre).length() > reach {
             return;
         }
-        let asked = |&e: &u32| self.field.asked(e, centre);
-        let wished = near.iter().map(asked).fold(f64::INFINITY, f64::min);
-        let near: Vec<u32> =
-            near.iter().copied().filter(|e| asked(e) <= wished + 2.0 * GROWTH * reach).collect();
+        let asked: Vec<f64> = near.iter().map(|&e| self.field.asked(e, centre)).collect();
+        let wished = asked.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = wished + 2.0 * GROWTH * reach;
+        let near: Vec<u32> = near.iter().zip(asked).filter(|&(_, size)| size <= most).map(|n| *n.0).collect();
         if edge == 1 || length <= 1.3 * wished {
             let size = |p| near.iter().map(|&e| self.field.asked(e, p)).fold(f64::INFINITY, f64::min);
             let sized = corners.map(|p| (p, size(place(p))));
-            self.found.extend(sized);
+            found.extend(sized);
             return;
         }
         let half = edge / 2;
         let (a, b) = (Axial::new(half * up, 0), Axial::new(0, half * up));
-        self.visit(corner, half, up, &near);
-        self.visit(corner + a, half, up, &near);
-        self.visit(corner + b, half, up, &near);
-        self.visit(corner + a + b, half, -up, &near);
+        let quarters = [(corner, up), (corner + a, up), (corner + b, up), (corner + a + b, -up)];
+        if near.len() > MANY {
+            let visited = quarters.into_par_iter().map(|(corner, up)| {
+                let mut own = Vec::new();
+                self.visit(corner, half, up, &near, &mut own);
+                own
+            });
+            visited.collect::<Vec<_>>().into_iter().for_each(|own| found.extend(own));
+        } else {
+            quarters.into_iter().for_each(|(corner, up)| self.visit(corner, half, up, &near, found));
+        }
     }
 }
