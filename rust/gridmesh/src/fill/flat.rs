@@ -4,6 +4,8 @@
 //! less of the loop's unevenness developed away, tiny patches, and graded ones where a lattice
 //! would be too distorted. What each got wrong is measured, and the best is returned with its name.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::DVec2;
 
 use super::develop::Loop;
@@ -104,7 +106,7 @@ pub(crate) struct FlatFill {
 pub(crate) fn fill_flat(
     polygon: &[DVec2],
     wanted: &[i32],
-    taken: &dyn Fn(usize, usize) -> bool,
+    taken: &(dyn Fn(usize, usize) -> bool + Sync),
     options: &FlatOptions,
     progress: Progress<'_>,
 ) -> Result<FlatFill> {
@@ -146,7 +148,7 @@ const GOOD: f64 = 1.0;
 struct Contest<'a> {
     points: &'a [DVec2],
     wanted: &'a [i32],
-    taken: &'a dyn Fn(usize, usize) -> bool,
+    taken: &'a (dyn Fn(usize, usize) -> bool + Sync),
     best: Option<(f64, FlatFill)>,
     candidates: usize,
     /// The loop's edges differ by half at most: the patch should be regular inside.
@@ -164,14 +166,26 @@ impl Contest<'_> {
             let (centre, triangles) = around_centre(self.points);
             self.settle_and_enter(vec![centre], triangles, Method::Centre, progress)?;
         }
-        if n >= 5 {
+        let (points, wanted, taken) = (self.points, self.wanted, self.taken);
+        let mut made = None;
+        if n > LARGE && !self.even {
+            // Often the lattice does not fit, and both take their time: side by side.
+            let needless = AtomicBool::new(false);
+            let is_needed = |_: f64| !needless.load(Ordering::Relaxed);
+            let lattice = || {
+                let placed = self.lattice(options, progress.part(0.0, 0.7));
+                needless.store(placed.is_err() || self.is_settled(options), Ordering::Relaxed);
+                placed
+            };
+            let (placed, found) =
+                rayon::join(lattice, || graded(points, wanted, taken, Progress::new(&is_needed)));
+            placed?;
+            made = Some(found);
+        } else if n >= 5 {
             self.lattice(options, progress.part(0.0, 0.7))?;
         }
-        let regular = |fill: &FlatFill| fill.quality.irregular == 0 && !fill.folded;
-        let settled =
-            |(badness, fill): &(f64, FlatFill)| *badness <= options.enough || (self.even && regular(fill));
-        if n > 3 && !self.best.as_ref().is_some_and(settled) {
-            match graded(self.points, self.wanted, self.taken, progress.part(0.7, 1.0)) {
+        if n > 3 && !self.is_settled(options) {
+            match made.unwrap_or_else(|| graded(points, wanted, taken, progress.part(0.7, 1.0))) {
                 Ok((interior, triangles)) => self.enter(interior, triangles, Method::Graded),
                 Err(Error::Solver { .. }) => {}
                 Err(error) => return Err(error),
@@ -192,6 +206,14 @@ impl Contest<'_> {
             self.enter(all.split_off(n), triangles, Method::Graded);
         }
         Ok(())
+    }
+
+    /// Whether the best patch so far needs no other beside it.
+    fn is_settled(&self, options: &FlatOptions) -> bool {
+        let regular = |fill: &FlatFill| fill.quality.irregular == 0 && !fill.folded;
+        let settled =
+            |(badness, fill): &(f64, FlatFill)| *badness <= options.enough || (self.even && regular(fill));
+        self.best.as_ref().is_some_and(settled)
     }
 
     /// Lattice patches: the cheapest paths over several angles, placed and measured.

@@ -8,7 +8,7 @@ fn none(_: usize, _: usize) -> bool {
     false
 }
 
-fn fill(polygon: &[DVec2], taken: &dyn Fn(usize, usize) -> bool) -> FlatFill {
+fn fill(polygon: &[DVec2], taken: &(dyn Fn(usize, usize) -> bool + Sync)) -> FlatFill {
     let wanted = vec![4; polygon.len()];
     match fill_flat(polygon, &wanted, taken, &FlatOptions::default(), Progress::NONE) {
         Ok(fill) => fill,

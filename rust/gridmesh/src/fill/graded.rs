@@ -29,6 +29,7 @@ pub(super) fn graded(
     let field = SizeField::new(polygon);
     let mut positions = polygon.to_vec();
     positions.extend(field.points(polygon));
+    progress.report(0.0)?;
     let mut triangles = triangulate(&positions, n)?;
     // An edge that the mesh has already is split, and whatever edges that brings.
     for _ in 0..16 {
@@ -43,6 +44,7 @@ pub(super) fn graded(
     }
     let mut settled = positions.clone();
     for _ in 0..3 {
+        progress.report(0.0)?;
         improve_valences(&settled, &mut triangles, wanted, taken);
         if let Some(rings) = Rings::new(&triangles, n, settled.len()) {
             if !untangle(&rings, &mut settled, 4, Progress::NONE)? {
