@@ -34,6 +34,14 @@ SHAPES: dict[str, Points] = {
 }
 """To start from."""
 
+ITEMS = (
+    ("PLATEAU", "Plateau", "Steep at the rim, level on top"),
+    ("POINTED", "Pointed", "Flat at the rim, with a point in the middle"),
+    ("RING", "Ring", "Highest around a hollow in the middle"),
+    ("HAT", "Hat", "A dome with a brim"),
+)
+"""Those that change the profile, as Blender's lists want them."""
+
 
 def holder(ob: bpy.types.Object) -> bpy.types.Modifier | None:
     """Return the modifier of a body whose curve is that of its profile; None if it has none."""

@@ -225,10 +225,7 @@ class CurveOption(ShapeOptions):
         description="Curve that reshapes the profile; that of a live body is edited in its panel in the sidebar",
         items=[
             ("NONE", "None", "The profile as it is; a live body that is updated keeps the curve it has"),
-            ("PLATEAU", "Plateau", "Steep at the rim, level on top"),
-            ("POINTED", "Pointed", "Flat at the rim, with a point in the middle"),
-            ("RING", "Ring", "Highest around a hollow in the middle"),
-            ("HAT", "Hat", "A dome with a brim"),
+            *profilecurve.ITEMS,
             ("ACTIVE", "Active Body", "As the curve of the active live body; none if that has none"),
         ],
         default="NONE",

@@ -113,24 +113,21 @@ def target(
         stroke = own.local(world)[:, :2]
         holes = [project(hole, own)[:, :2] for hole in sketch.holes]
         how = relation(sketch.outline, holes, stroke)
-        action = _action(how, sketch.outline, holes, stroke, subtract)
+        inside = _inside(sketch.outline, holes, stroke)
+        action = _action(how, begins_inside=bool(inside[0]), subtract=subtract)
         if action is None:
             continue
-        inside = _inside(sketch.outline, holes, stroke)
         rank = bool(inside[0]), int(inside.sum())
         if best is None or rank > best[0]:
             best = rank, _Target(ob, sketch, action, stroke)
     return None if best is None else best[1]
 
 
-def _action(
-    how: str, outline: np.ndarray, holes: list[np.ndarray], stroke: np.ndarray, subtract: bool
-) -> str | None:
+def _action(how: str, *, begins_inside: bool, subtract: bool) -> str | None:
     """What a stroke does to a drawing: one that begins inside extends it, one from outside trims it."""
     if how == "inside":
         return "hole" if subtract else None
     if how == "across":
-        begins_inside = bool(_inside(outline, holes, stroke[:1])[0])
         return "trim" if subtract or not begins_inside else "extend"
     return None
 

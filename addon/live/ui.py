@@ -79,10 +79,7 @@ class OBJECT_OT_gridmesh_curve(_OnBodies, bpy.types.Operator):  # noqa: N801
         description="Curve to start from",
         items=[
             ("ROUND", "As It Is", "A straight line, which leaves the profile as it is"),
-            ("PLATEAU", "Plateau", "Steep at the rim, level on top"),
-            ("POINTED", "Pointed", "Flat at the rim, with a point in the middle"),
-            ("RING", "Ring", "Highest around a hollow in the middle"),
-            ("HAT", "Hat", "A dome with a brim"),
+            *profilecurve.ITEMS,
             ("NONE", "None", "Take the curve away"),
         ],
         default="ROUND",
@@ -120,7 +117,7 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
     bl_label = "Live Body"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
-    bl_category = "GridMesh"
+    bl_category = watch.CATEGORY
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

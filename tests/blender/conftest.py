@@ -19,6 +19,7 @@ else:
     import bpy
 
     import addon
+    from addon.live import engine
 
     _status = 0
 
@@ -41,6 +42,14 @@ else:
     def scene():
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         return bpy.context.scene
+
+    @pytest.fixture
+    def awake(monkeypatch):
+        """Live bodies follow, though this is in the background, and nothing is known of others."""
+        monkeypatch.setattr(engine, "in_background", True)
+        engine._states.clear()
+        yield
+        engine._states.clear()
 
 
 def pytest_configure(config):

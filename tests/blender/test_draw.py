@@ -8,11 +8,7 @@ from drawings import bean, check_body, circle, fingerprint, world_vertices
 from addon.draw.gesture import Gesture, pack, relation, unpack
 from addon.live import engine
 
-
-@pytest.fixture(autouse=True)
-def awake(monkeypatch):
-    monkeypatch.setattr(engine, "in_background", True)
-    engine._states.clear()
+pytestmark = pytest.mark.usefixtures("awake")
 
 
 def draw(points, pressure=None, **options):

@@ -9,13 +9,7 @@ from drawings import activate, bean, check_body, circle, curve, grease_pencil, r
 
 from addon.live import engine
 
-
-@pytest.fixture(autouse=True)
-def awake(monkeypatch):
-    monkeypatch.setattr(engine, "in_background", True)
-    engine._states.clear()
-    yield
-    engine._states.clear()
+pytestmark = pytest.mark.usefixtures("awake")
 
 
 def redraw(ob, points):

@@ -8,13 +8,7 @@ from drawings import activate, bean, check_body, circle, grease_pencil, run_one,
 from addon import profilecurve
 from addon.live import engine
 
-
-@pytest.fixture(autouse=True)
-def awake(monkeypatch):
-    monkeypatch.setattr(engine, "in_background", True)
-    engine._states.clear()
-    yield
-    engine._states.clear()
+pytestmark = pytest.mark.usefixtures("awake")
 
 
 @pytest.fixture

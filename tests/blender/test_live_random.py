@@ -19,10 +19,7 @@ from addon.live.reading import sketch_of
 STEPS = int(os.environ.get("GRIDMESH_EDITS", "120"))
 
 
-@pytest.fixture(autouse=True)
-def awake(monkeypatch):
-    monkeypatch.setattr(engine, "in_background", True)
-    engine._states.clear()
+pytestmark = pytest.mark.usefixtures("awake")
 
 
 def draw(points, **options):

@@ -15,6 +15,7 @@ mod input;
 mod mesh;
 mod options;
 mod patch;
+mod regrid;
 mod reports;
 mod surface;
 mod watch;
@@ -441,14 +442,14 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<fill::Fill>()?;
     module.add_function(wrap_pyfunction!(fill::fill_hole, module)?)?;
     module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;
-    module.add_class::<fill::Regrid>()?;
-    module.add_function(wrap_pyfunction!(fill::regrid, module)?)?;
+    module.add_class::<regrid::Regrid>()?;
+    module.add_function(wrap_pyfunction!(regrid::regrid, module)?)?;
     module.add_class::<cut::Cut>()?;
     module.add_class::<cut::Piece>()?;
     module.add_function(wrap_pyfunction!(cut::cut, module)?)?;
     module.add_function(wrap_pyfunction!(patch::_patch, module)?)?;
     module.add_function(wrap_pyfunction!(surface::_surface, module)?)?;
     module.add_function(wrap_pyfunction!(fill::_fill, module)?)?;
-    module.add_function(wrap_pyfunction!(fill::_regrid, module)?)?;
+    module.add_function(wrap_pyfunction!(regrid::_regrid, module)?)?;
     Ok(())
 }

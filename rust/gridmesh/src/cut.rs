@@ -212,8 +212,8 @@ fn divide_with(
     Ok(Cut { pieces, report: tally.report })
 }
 
-/// Divides the faces, evenly along the cut with an edge length; if rounding stands in the way, with finer tolerances and with the stroke moved by
-/// the least bit that matters, which is counted.
+/// Divides the faces, evenly along the cut with an edge length; if rounding stands in the way, with finer tolerances
+/// and with the stroke moved by the least bit that matters, which is counted.
 fn part(
     vertices: &[DVec3],
     faces: Polygons<'_>,

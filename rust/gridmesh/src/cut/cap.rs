@@ -150,6 +150,11 @@ pub(super) fn close(
     Ok(capper.caps)
 }
 
+/// An edge, its lower vertex first.
+fn key(a: u32, b: u32) -> (u32, u32) {
+    (a.min(b), a.max(b))
+}
+
 impl Capper<'_> {
     /// Notes which edges and triangles between vertices of the cut exist.
     fn reserve(&mut self) {
@@ -192,7 +197,6 @@ impl Capper<'_> {
         let n = polygon.len();
         let roll = Roll::new(self.sheet, polygon);
         let flat = polygon.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
-        let key = |a: u32, b: u32| (a.min(b), a.max(b));
         let taken = |i: usize, j: usize| self.edges.contains(&key(polygon[i].node, polygon[j].node));
         let mut single = true;
         if let [a, b, c] = polygon {
@@ -223,7 +227,6 @@ impl Capper<'_> {
     fn roll_up(&mut self, polygon: &[Spot], patch: &FlatFill, inverted: bool) {
         let n = polygon.len();
         let roll = Roll::new(self.sheet, polygon);
-        let key = |a: u32, b: u32| (a.min(b), a.max(b));
         let base = self.first + self.caps.vertices.len() as u32;
         let name = |v: u32| polygon.get(v as usize).map_or(base + v.wrapping_sub(n as u32), |s| s.node);
         let mut flat = polygon.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
@@ -237,16 +240,10 @@ impl Capper<'_> {
         }
         for t in &patch.triangles {
             let mut t = t.map(name);
-            // Others ask for edges between vertices that they know.
-            for (a, b) in
-                [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].into_iter().filter(|e| e.0.max(e.1) < base)
-            {
-                self.edges.insert(key(a, b));
-            }
             if inverted {
                 t.swap(1, 2);
             }
-            self.caps.triangles.push(t);
+            self.push(t, base);
         }
     }
 
@@ -298,7 +295,7 @@ impl Capper<'_> {
             (0..3).any(|k| {
                 let (a, b) = (t[k], t[(k + 1) % 3]);
                 let (Some(&i), Some(&j)) = (place.get(&a), place.get(&b)) else { return false };
-                (i + 1) % n != j && (j + 1) % n != i && self.edges.contains(&(a.min(b), a.max(b)))
+                (i + 1) % n != j && (j + 1) % n != i && self.edges.contains(&key(a, b))
             })
         };
         if fill.triangles.iter().any(repeats) {
@@ -318,34 +315,36 @@ impl Capper<'_> {
             if left {
                 t.swap(1, 2);
             }
-            for (a, b) in
-                [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].into_iter().filter(|e| e.0.max(e.1) < base)
-            {
-                self.edges.insert((a.min(b), a.max(b)));
-            }
-            self.caps.triangles.push(t);
+            self.push(t, base);
         }
         Ok(true)
+    }
+
+    /// Adds a triangle of a patch whose own vertices begin with `base`; others ask only for edges between vertices
+    /// that they know.
+    fn push(&mut self, t: [u32; 3], base: u32) {
+        let edges = (0..3).map(|k| key(t[k], t[(k + 1) % 3]));
+        self.edges.extend(edges.filter(|edge| edge.1 < base));
+        self.caps.triangles.push(t);
     }
 
     /// Refuses caps that do not close what they should: each edge has two cap triangles, or one and is of the
     /// cut.
     fn prove(&self) -> Result<()> {
         // Each edge once for each triangle, with its direction last.
-        let key = |a: u32, b: u32| (u64::from(a.min(b)) << 32 | u64::from(a.max(b)), a < b);
+        let directed = |a: u32, b: u32| (key(a, b), a < b);
         let triangles = self.caps.triangles.par_iter().with_min_len(4096);
-        let edges = triangles.flat_map_iter(|t| (0..3).map(move |k| key(t[k], t[(k + 1) % 3])));
-        let mut edges: Vec<(u64, bool)> = edges.collect();
+        let edges = triangles.flat_map_iter(|t| (0..3).map(move |k| directed(t[k], t[(k + 1) % 3])));
+        let mut edges: Vec<((u32, u32), bool)> = edges.collect();
         edges.par_sort_unstable();
-        let is_right = |group: &[(u64, bool)]| {
-            let ends = ((group[0].0 >> 32) as u32, group[0].0 as u32);
-            let is_cut = self.parted.cut.contains_key(&ends);
+        let is_right = |group: &[((u32, u32), bool)]| {
+            let is_cut = self.parted.cut.contains_key(&group[0].0);
             if is_cut { group.len() == 1 } else { group.len() == 2 && group[0].1 != group[1].1 }
         };
         match edges.chunk_by(|a, b| a.0 == b.0).find(|group| !is_right(group)) {
             None => Ok(()),
             Some(group) => {
-                let at = self.source((group[0].0 >> 32) as u32).position;
+                let at = self.source(group[0].0.0).position;
                 Err(Error::CutFailed { reason: "cut lines touch each other", at: at.into() })
             }
         }
