@@ -1,6 +1,6 @@
 //! `fill_hole`, `fill_holes` and the Python class `Fill`.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use gridmesh::fill::{Fill as CoreFill, FillOptions, FillParts, FillReport, Smooth};
 use numpy::{
     AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods, PyReadonlyArray1,
@@ -214,7 +214,7 @@ pub struct Fill {
 }
 
 impl Fill {
-    fn new(py: Python<'_>, inner: CoreFill) -> PyResult<Self> {
+    pub(crate) fn new(py: Python<'_>, inner: CoreFill) -> PyResult<Self> {
         let report = report(py, &inner.report)?;
         Self::made(py, inner, report)
     }

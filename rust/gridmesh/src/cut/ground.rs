@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::nearness::{closest, within};
+use super::parted::Part;
 use super::strip::Strip;
 
 impl Strip<'_> {
@@ -23,39 +24,48 @@ impl Strip<'_> {
                 (off, found) = (d, Some(home));
             }
         }
-        let mut at = found?;
-        loop {
-            let before = at;
-            for &old in before.1.iter().filter_map(|v| self.old.get(v)).flatten() {
-                if let Some(d) = within(p, self.home(old.1), off).filter(|&d| d < off) {
-                    (off, at) = (d, old);
-                }
-            }
-            if at == before {
-                return Some(at);
-            }
-        }
+        let nearest = found?;
+        Some(self.walk(p, nearest.1, 0.0).1.unwrap_or(nearest))
     }
 
     /// Distance of a point from the old triangles around the nearest that is found by going from neighbour to
     /// neighbour: at least its distance from the old surface, and that itself once it is no more than `enough`.
     pub fn distance(&self, p: DVec3, home: [u32; 3], enough: f64) -> f64 {
-        let (mut at, mut off) = (home, closest(p, self.home(home)).0);
+        self.walk(p, home, enough).0
+    }
+
+    /// Goes to nearer and nearer neighbours until the distance is no more than `enough` or the least around; that
+    /// distance, and the old triangle if it is another one.
+    fn walk(&self, p: DVec3, home: [u32; 3], enough: f64) -> (f64, Option<(u32, [u32; 3])>) {
+        let (mut at, mut off, mut found) = (home, closest(p, self.home(home)).0, None);
         loop {
-            let mut nearer = None;
-            for &(_, old) in at.iter().filter_map(|v| self.old.get(v)).flatten() {
+            let before = found;
+            for &old in at.iter().filter_map(|v| self.old.get(v)).flatten() {
                 if off <= enough {
-                    return off;
+                    return (off, found);
                 }
-                if let Some(d) = within(p, self.home(old), off).filter(|&d| d < off) {
-                    (off, nearer) = (d, Some(old));
+                if let Some(d) = within(p, self.home(old.1), off).filter(|&d| d < off) {
+                    (off, found) = (d, Some(old));
                 }
             }
-            match nearer {
-                Some(old) => at = old,
-                None => return off,
+            match found {
+                Some((_, nearer)) if found != before => at = nearer,
+                _ => return (off, found),
             }
         }
+    }
+
+    /// A part with these corners in place of its own, of the face that it lies on now; none if it would lie too far
+    /// off the old surface, or upside down.
+    pub fn rehomed(&self, part: &Part, corners: [u32; 3], homes: &[(u32, [u32; 3])]) -> Option<Part> {
+        let centre = corners.map(|v| self.position(v)).iter().sum::<DVec3>() / 3.0;
+        let (face, home) = self.home_of(centre, homes)?;
+        (self.is_upright(corners, home) && self.is_near(corners, home, homes)).then_some(Part {
+            corners,
+            face,
+            home,
+            ..*part
+        })
     }
 
     /// True if the triangle stays near the old ones, of which `home` is the likeliest.

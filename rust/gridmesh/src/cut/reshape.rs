@@ -31,18 +31,12 @@ impl Strip<'_> {
             return false;
         }
         let homes = self.homes(&[a, b, c, d]);
-        let mut new = vec![];
-        for corners in [x, y] {
-            let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
-            let Some((face, home)) = self.home_of(centre, &homes) else { return false };
-            if !self.is_upright(corners, home) || !self.is_near(corners, home, &homes) {
-                return false;
-            }
-            new.push(Part { corners, face, home, left: p.left });
-        }
+        let (Some(x), Some(y)) = (self.rehomed(&p, x, &homes), self.rehomed(&p, y, &homes)) else {
+            return false;
+        };
         self.replace(s, None);
-        self.replace(t, Some(new[1]));
-        self.replace(s, Some(new[0]));
+        self.replace(t, Some(y));
+        self.replace(s, Some(x));
         self.altered.extend([p.face, q.face]);
         true
     }

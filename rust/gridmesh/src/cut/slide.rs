@@ -5,7 +5,6 @@ use rustc_hash::FxHashMap;
 
 use super::cross::Node;
 use super::nearness::closest;
-use super::parted::Part;
 use super::strip::Strip;
 
 /// The line as it was drawn, and where on it its vertices are.
@@ -91,19 +90,11 @@ impl Course {
             let Some((_, home)) = strip.home_of(at, &homes) else { continue };
             let (_, weights) = closest(at, strip.home(home));
             strip.parted.nodes[k] = Node { position: at, source: home, weights };
-            let mut moved = vec![];
-            for part in &parts {
-                let centre = part.corners.map(|w| strip.position(w)).iter().sum::<DVec3>() / 3.0;
-                let Some((face, home)) = strip.home_of(centre, &homes) else { break };
-                if !strip.is_upright(part.corners, home) || !strip.is_near(part.corners, home, &homes) {
-                    break;
-                }
-                moved.push(Part { face, home, ..*part });
-            }
-            if moved.len() < parts.len() {
+            let moved = parts.iter().map(|part| strip.rehomed(part, part.corners, &homes));
+            let Some(moved) = moved.collect::<Option<Vec<_>>>() else {
                 strip.parted.nodes[k] = old;
                 continue;
-            }
+            };
             let by = place - curve.at(s).1;
             for w in [a, b] {
                 if let Some([x, y]) = strip.parted.cut.get_mut(&(v.min(w), v.max(w))) {

@@ -302,13 +302,7 @@ impl<'a> Strip<'a> {
         let mut new = vec![];
         for &t in all.iter().filter(|t| !shared.contains(t)) {
             let Some(part) = self.part(t) else { return false };
-            let corners = with_v(part.corners);
-            let centre = corners.map(|w| self.position(w)).iter().sum::<DVec3>() / 3.0;
-            let Some((face, home)) = self.home_of(centre, &homes) else { return false };
-            let part = Part { corners, face, home, ..*part };
-            if !self.is_upright(corners, part.home) || !self.is_near(corners, part.home, &homes) {
-                return false;
-            }
+            let Some(part) = self.rehomed(part, with_v(part.corners), &homes) else { return false };
             new.push((t, part));
         }
         for t in shared {
