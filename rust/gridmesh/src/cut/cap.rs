@@ -209,6 +209,7 @@ impl Capper<'_> {
             (options.angles, options.placed) = (3, 1);
             // Graded patches take longer than all else, and are hardly better.
             options.enough = ENOUGH;
+            options.thin = true;
         }
         fill_flat(&flat, &vec![4; n], &taken, &options, progress)
     }

@@ -12,13 +12,13 @@ use super::develop::Loop;
 use super::exact::{Layers, TURN, Wishes, conflicts, route};
 use super::graded::graded;
 use super::grown::grown;
+use super::place;
 use super::quality::{Quality, measure};
-use super::settle::{Rings, even_out, extend, untangle};
 use super::small::{SMALL, around_centre, without_interior};
+use super::thin::{put_back, thinned};
 use crate::assemble::assemble;
 use crate::axial::Axial;
 use crate::error::{Error, Result};
-use crate::lattice::Lattice;
 use crate::options::BoundaryMethod;
 use crate::progress::Progress;
 
@@ -56,6 +56,8 @@ pub(crate) struct FlatOptions {
     pub placed: usize,
     /// Badness up to which no graded patch is tried.
     pub enough: f64,
+    /// Large uneven loops are first tried with a patch for some of their vertices only.
+    pub thin: bool,
 }
 
 impl Default for FlatOptions {
@@ -69,6 +71,7 @@ impl Default for FlatOptions {
             angles: 6,
             placed: 2,
             enough: GOOD,
+            thin: false,
         }
     }
 }
@@ -157,16 +160,23 @@ struct Contest<'a> {
 
 impl Contest<'_> {
     fn run(&mut self, options: &FlatOptions, progress: Progress<'_>) -> Result<()> {
-        let n = self.points.len();
+        let (points, wanted, taken) = (self.points, self.wanted, self.taken);
+        let n = points.len();
         let bare = n <= SMALL && (n > 3 || options.single);
-        if let Some(triangles) = bare.then(|| without_interior(self.points, self.taken)).flatten() {
+        if let Some(triangles) = bare.then(|| without_interior(points, taken)).flatten() {
             self.enter(Vec::new(), triangles, Method::NoInterior);
         }
         if n <= SMALL {
-            let (centre, triangles) = around_centre(self.points);
-            self.settle_and_enter(vec![centre], triangles, Method::Centre, progress)?;
+            let (centre, triangles) = around_centre(points);
+            let interior = place::settled(points, vec![centre], &triangles, progress)?;
+            self.enter(interior, triangles, Method::Centre);
         }
-        let (points, wanted, taken) = (self.points, self.wanted, self.taken);
+        if options.thin && n > LARGE && !self.even {
+            self.thinned(options, progress.part(0.0, 0.3))?;
+            if self.is_settled(options) {
+                return Ok(());
+            }
+        }
         let mut made = None;
         if n > LARGE && !self.even {
             // Often the lattice does not fit, and both take their time: side by side.
@@ -193,18 +203,28 @@ impl Contest<'_> {
         }
         if self.best.is_none() {
             // A loop that crosses itself: the triangles of a round loop with the same edges.
-            let round = round_loop(self.points);
-            let (interior, triangles) = graded(&round, self.wanted, self.taken, progress.part(0.7, 1.0))?;
-            let moved: Vec<DVec2> = self.points.iter().zip(&round).map(|(p, r)| *p - *r).collect();
-            let mut all = round;
-            all.extend(interior);
-            if let Some(rings) = Rings::new(&triangles, n, all.len()) {
-                extend(&rings, &mut all, &moved, 60);
-                all[..n].copy_from_slice(self.points);
-                untangle(&rings, &mut all, 30, progress)?;
-            }
-            self.enter(all.split_off(n), triangles, Method::Graded);
+            let round = place::round_loop(points);
+            let (interior, triangles) = graded(&round, wanted, taken, progress.part(0.7, 1.0))?;
+            let interior = place::carried_over(&round, interior, &triangles, points, progress)?;
+            self.enter(interior, triangles, Method::Graded);
         }
+        Ok(())
+    }
+
+    /// A patch for some of the vertices, with the others on its edges.
+    fn thinned(&mut self, options: &FlatOptions, progress: Progress<'_>) -> Result<()> {
+        let Some(kept) = thinned(self.points) else { return Ok(()) };
+        let points: Vec<DVec2> = kept.iter().map(|&k| self.points[k]).collect();
+        let wanted: Vec<i32> = kept.iter().map(|&k| self.wanted[k]).collect();
+        let taken = |i: usize, j: usize| (self.taken)(kept[i], kept[j]);
+        let options = FlatOptions { thin: false, ..options.clone() };
+        let patch = match fill_flat(&points, &wanted, &taken, &options, progress) {
+            Err(Error::NoPatch { .. } | Error::Solver { .. }) => return Ok(()),
+            patch => patch?,
+        };
+        let triangles = put_back(&patch.triangles, &kept, self.points.len());
+        let interior = place::settled_by_loop(self.points, patch.interior, &triangles, progress)?;
+        self.enter(interior, triangles, patch.method);
         Ok(())
     }
 
@@ -273,38 +293,10 @@ impl Contest<'_> {
 
     /// Triangles inside a path, mapped to the loop.
     fn place(&mut self, path: &[Axial], method: Method, progress: Progress<'_>) -> Result<()> {
-        let region = assemble(&[path.to_vec()]);
-        let n = self.points.len();
-        let mut positions: Vec<DVec2> = region.points.iter().map(|&p| Lattice::units(p)).collect();
-        let fit = Similarity::between(&positions[..n], self.points);
-        positions.iter_mut().for_each(|p| *p = fit.apply(*p));
-        let moved: Vec<DVec2> = self.points.iter().zip(&positions).map(|(p, q)| *p - *q).collect();
-        let Some(rings) = Rings::new(&region.triangles, n, positions.len()) else { return Ok(()) };
-        extend(&rings, &mut positions, &moved, 40);
-        positions[..n].copy_from_slice(self.points);
-        if untangle(&rings, &mut positions, 40, progress)? {
-            even_out(&rings, &mut positions, 12, 0.02, progress)?;
+        let patch = assemble(&[path.to_vec()]);
+        if let Some(interior) = place::off_lattice(self.points, &patch, progress)? {
+            self.enter(interior, patch.triangles, method);
         }
-        self.enter(positions.split_off(n), region.triangles, method);
-        Ok(())
-    }
-
-    fn settle_and_enter(
-        &mut self,
-        interior: Vec<DVec2>,
-        triangles: Vec<[u32; 3]>,
-        method: Method,
-        progress: Progress<'_>,
-    ) -> Result<()> {
-        let n = self.points.len();
-        let mut positions = self.points.to_vec();
-        positions.extend(interior);
-        if let Some(rings) = Rings::new(&triangles, n, positions.len())
-            && untangle(&rings, &mut positions, 40, progress)?
-        {
-            even_out(&rings, &mut positions, 12, 0.02, progress)?;
-        }
-        self.enter(positions.split_off(n), triangles, method);
         Ok(())
     }
 
@@ -354,48 +346,6 @@ fn turn_costs(
         })
     };
     (0..n).map(cost).collect()
-}
-
-/// Rotation, scale and shift.
-struct Similarity {
-    from: DVec2,
-    to: DVec2,
-    turn: DVec2,
-}
-
-impl Similarity {
-    /// The one that fits best, in least squares.
-    fn between(from: &[DVec2], to: &[DVec2]) -> Similarity {
-        let n = from.len() as f64;
-        let (a, b) = (from.iter().sum::<DVec2>() / n, to.iter().sum::<DVec2>() / n);
-        let (mut sum, mut size) = (DVec2::ZERO, 0.0);
-        for (p, q) in from.iter().zip(to) {
-            let (p, q) = (*p - a, *q - b);
-            sum += DVec2::new(p.dot(q), p.perp_dot(q));
-            size += p.length_squared();
-        }
-        Similarity { from: a, to: b, turn: sum / size }
-    }
-
-    fn apply(&self, p: DVec2) -> DVec2 {
-        self.to + self.turn.rotate(p - self.from)
-    }
-}
-
-/// A convex loop with about the same edge lengths.
-fn round_loop(points: &[DVec2]) -> Vec<DVec2> {
-    let n = points.len();
-    let lengths: Vec<f64> = (0..n).map(|k| points[k].distance(points[(k + 1) % n]).max(1e-6)).collect();
-    let length: f64 = lengths.iter().sum();
-    let mut at = 0.0;
-    lengths
-        .iter()
-        .map(|l| {
-            let angle = std::f64::consts::TAU * at / length;
-            at += l;
-            length / std::f64::consts::TAU * DVec2::from_angle(angle)
-        })
-        .collect()
 }
 
 #[cfg(test)]

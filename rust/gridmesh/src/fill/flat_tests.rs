@@ -135,3 +135,54 @@ fn bad_input_is_refused() {
     assert!(matches!(call(&[DVec2::ZERO, DVec2::X]), Err(Error::TooFewPoints { .. })));
     assert!(matches!(call(&[DVec2::ZERO, DVec2::X, DVec2::NAN]), Err(Error::NotFinite { point: 2, .. })));
 }
+
+/// A curved outline as a cut through a mesh leaves it: edges of every length up to one, in any order.
+fn crossed(n: usize, waves: f64, seed: u64) -> Vec<DVec2> {
+    let mut state = seed;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let steps: Vec<f64> = (0..n).map(|_| 0.002 + random()).collect();
+    let sum: f64 = steps.iter().sum();
+    let mut angle = 0.0;
+    let point = |step: &f64| {
+        angle += std::f64::consts::TAU * step / sum;
+        DVec2::from_angle(angle) * (1.0 + 0.1 * (waves * angle).sin())
+    };
+    steps.iter().map(point).collect()
+}
+
+#[test]
+fn a_loop_as_a_cut_leaves_it_gets_a_patch_as_coarse_as_its_long_edges() {
+    for (n, waves, seed) in [(301, 0.0, 1), (400, 3.0, 2), (640, 5.0, 3)] {
+        let polygon = crossed(n, waves, seed);
+        // Some edges across exist already.
+        let taken = |i: usize, j: usize| (i + j).is_multiple_of(5);
+        let fill = |thin| {
+            let options = FlatOptions { thin, enough: 2.0, angles: 3, placed: 1, ..FlatOptions::default() };
+            match fill_flat(&polygon, &vec![4; n], &taken, &options, Progress::NONE) {
+                Ok(fill) => fill,
+                Err(error) => panic!("{error}"),
+            }
+        };
+        let (thin, whole) = (fill(true), fill(false));
+        check(&polygon, &thin, &taken);
+        assert!(!thin.folded);
+        assert!(2 * thin.triangles.len() < whole.triangles.len(), "{n}: {}", thin.triangles.len());
+        assert!(thin.quality.mean_ratio > 0.92, "{n}: {}", thin.quality.mean_ratio);
+        assert!(10 * thin.quality.irregular < thin.quality.interior, "{n}: {:?}", thin.quality);
+    }
+}
+
+#[test]
+fn a_large_uneven_loop_gets_a_lattice() {
+    let polygon = crossed(900, 3.0, 4);
+    let options = FlatOptions { angles: 3, placed: 1, ..FlatOptions::default() };
+    let fill = match fill_flat(&polygon, &[4; 900], &none, &options, Progress::NONE) {
+        Ok(fill) => fill,
+        Err(error) => panic!("{error}"),
+    };
+    check(&polygon, &fill, &none);
+    assert_eq!((fill.method, fill.quality.irregular, fill.folded), (Method::Optimal, 0, false));
+}

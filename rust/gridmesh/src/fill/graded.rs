@@ -50,7 +50,7 @@ pub(super) fn graded(
             if !untangle(&rings, &mut settled, 4, Progress::NONE)? {
                 break;
             }
-            even_out(&rings, &mut settled, 8, 0.02, progress)?;
+            even_out(&rings, &mut settled, vec![true; rings.len()], 8, 0.02, progress)?;
         }
     }
     Ok((settled.split_off(n), triangles))

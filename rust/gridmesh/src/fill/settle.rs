@@ -57,7 +57,7 @@ impl Rings {
         Some(rings)
     }
 
-    fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.start.len() - 1
     }
 
@@ -67,16 +67,19 @@ impl Rings {
     }
 }
 
-/// Moves interior vertices by the harmonic extension of `moved`, which holds the displacement of
-/// the loop vertices: over-relaxed sweeps in the order of the numbers, there and back.
-pub(super) fn extend(rings: &Rings, positions: &mut [DVec2], moved: &[DVec2], sweeps: usize) {
+/// Moves interior vertices by the harmonic extension of `moved`, which holds the displacement of the loop vertices
+/// and a guess of the others', right but for waves of less than `wave` edges: over-relaxed sweeps in the order of the
+/// numbers, there and back.
+pub(super) fn extend(
+    rings: &Rings,
+    positions: &mut [DVec2],
+    mut moved: Vec<DVec2>,
+    wave: f64,
+    sweeps: usize,
+) {
     let n = rings.n_loop;
-    let mut moved = moved.to_vec();
-    let mean = moved.iter().sum::<DVec2>() / n as f64;
-    moved.resize(positions.len(), mean);
     // The best factor for a grid of this diameter.
-    let across = (rings.len() as f64).sqrt().max(2.0);
-    let factor = 2.0 / (1.0 + (std::f64::consts::PI / across).sin());
+    let factor = 2.0 / (1.0 + (std::f64::consts::PI / wave.max(2.0)).sin());
     for sweep in 0..sweeps {
         let mut largest = 0.0f64;
         let mut visit = |i: usize| {
@@ -144,16 +147,17 @@ pub(super) fn untangle(
 const TANGLED: f64 = 2e-3;
 
 /// Lowers the distortion of valid triangles until no vertex moves by more than `tolerance` of its
-/// edges; never inverts one. Returns the number of sweeps.
+/// edges; never inverts one. Begins with the `active` interior vertices; others follow where those have moved.
+/// Returns the number of sweeps.
 pub(super) fn even_out(
     rings: &Rings,
     positions: &mut [DVec2],
+    mut active: Vec<bool>,
     sweeps: usize,
     tolerance: f64,
     progress: Progress<'_>,
 ) -> Result<usize> {
     let n = rings.n_loop;
-    let mut active = vec![true; rings.len()];
     for sweep in 0..sweeps {
         progress.report(sweep as f64 / sweeps as f64)?;
         let mut moved = 0;
