@@ -52,7 +52,7 @@ pub fn combine(
     holes: Option<&Bound<'_, PyAny>>,
     how: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Py<PyList>> {
-    let drawing = crate::drawing(outline, holes)?;
+    let drawing = crate::sketch::drawing(outline, holes)?;
     let allowed = "an (m, 2) array of real numbers";
     let other = Argument { name: "other", value: other, allowed }.points()?;
     let words = [("union", Combination::Union), ("difference", Combination::Difference)];

@@ -1,0 +1,128 @@
+//! Drawings to patches.
+
+use glam::DVec2;
+use gridmesh::options::SketchOptions;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::batch::Drawing;
+use crate::input::Argument;
+use crate::patch::Patch;
+use crate::watch::Watch;
+use crate::{options, reports};
+
+/// Mesh the inside of a closed planar drawing with a semi-regular triangle mesh.
+///
+/// Parameters
+/// ----------
+/// outline : (n, 2) array of real numbers, n >= 3
+///     Points of the outline in any units, closed implicitly, either orientation; duplicate and
+///     collinear points are welcome. Not modified.
+/// holes : sequence of (k, 2) arrays, optional
+///     Contours inside the outline, in the same way.
+/// edge_length : float, optional
+///     Edge length of the mesh, in the units of the outline; positive. Not together with `triangles`.
+/// triangles : int, optional
+///     Number of triangles of the flat patch, from 6 to 20 million, reached within 10 %. 2000 if
+///     neither is given.
+/// boundary : {"optimal", "grown"}
+///     "optimal": the boundary of least cost for this lattice and `max_distance`, where cost = turns +
+///     `closeness` x squared distance in edge lengths. "grown": the growth of the paper's sections
+///     IV-B to IV-D.
+/// max_distance : float
+///     Largest distance of the lattice boundary from the outline before it is moved onto it, in edge
+///     lengths; 0.5 to 4.
+/// closeness : float
+///     Price of a squared distance of one edge length against a turn of 60 degrees; at least 0.
+/// angle : float, optional
+///     Angle of the lattice in radians, in [0, pi / 3). None: the best of several.
+/// origin : (2,) array, optional
+///     A point of the lattice, in the units of the outline. With `edge_length` and `angle` it keeps the lattice
+///     where it was while an outline is being changed. None: the best of a few places. Not together with `mirror`.
+/// corner_angle : float
+///     A vertex is placed on points where the outline turns by more than this (radians).
+/// mirror : "auto" or (point, direction), optional
+///     An axis, two pairs of numbers, for a mesh that is its own mirror image: the lattice is laid on
+///     the axis and the boundary of least cost taken among the symmetric ones. "auto" finds the axis of
+///     the outline, the most upright one if there are several. The sides may differ by 2 % of the
+///     drawing's size and by 1.5 edge lengths; then the topology is symmetric, and each side keeps its
+///     own line. Only with boundary="optimal"; `angle`, if given, must fit the axis.
+/// self_crossing : {"error", "union"}
+///     "error": an outline that crosses itself is refused. "union": its outer outline is taken.
+/// proof_nodes : int
+///     Bounds the search that proves optimality where the first solution had conflicts; 0 beside `mirror`.
+/// relax : bool
+///     False leaves the interior vertices where the lattice has them; triangles may then be inverted,
+///     and such a patch is refused.
+/// progress : callable, optional
+///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
+///
+/// Returns
+/// -------
+/// Patch
+///     Every boundary vertex lies on its contour, no interior edge joins two boundary vertices, every
+///     interior vertex has six triangles, no triangle is inverted (also in float32), and the topology
+///     is that of the outline minus its holes. The same input gives the same bytes, for any number of
+///     threads. `report` has "triangles", "irregular" (irregular vertices after stitching),
+///     "minimum_irregular" (the least that any such body has), "turns", "turns_before" (a grown
+///     boundary's, before it is straightened), "turns_bound", "cost", "cost_bound" (None where none
+///     was computed), "optimal", "max_distance_used", "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
+///     (radians), "corners" (drawn ones), "released_corners" (those without a vertex of their own), "bridged_inlets" (with mesh vertices in them: 0, unless `relax` is off),
+///     "repaired" (repeated points dropped), "mirror_error" (greatest distance of a vertex from the
+///     image of its partner, in edge lengths; None without `mirror`), "placements" (of the lattice, tried) and "seconds" (per
+///     stage).
+///
+/// Raises
+/// ------
+/// GridMeshError
+///     If the drawing or an option is not allowed (see `GridMeshError.kind`), or when cancelled.
+/// TypeError
+///     If an argument has a type that is not allowed.
+///
+/// Notes
+/// -----
+/// Nealen, Pett, Alexa, Igarashi: GridMesh, sections II to IV. Other Python threads run meanwhile.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, gridmesh
+/// >>> t = np.linspace(0, 2 * np.pi, 100, endpoint=False)
+/// >>> patch = gridmesh.mesh_sketch(np.c_[np.cos(t), np.sin(t)], triangles=500)
+/// >>> bool(np.allclose(np.hypot(*patch.vertices[patch.loops[0]].T), 1, atol=1e-3))
+/// True
+#[pyfunction]
+#[pyo3(
+    signature = (outline, holes = None, *, progress = None, **options),
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, progress=None)"
+)]
+pub fn mesh_sketch(
+    py: Python<'_>,
+    outline: &Bound<'_, PyAny>,
+    holes: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Patch> {
+    let drawing = drawing(outline, holes)?;
+    let mut chosen = SketchOptions::default();
+    options::read("mesh_sketch", options, |name, value| options::set_sketch(&mut chosen, name, value))?;
+    let sketch = Watch::new(progress)?.run(py, |progress| {
+        gridmesh::sketch::mesh_sketch(&drawing.outline, &drawing.holes, &chosen, progress)
+    })?;
+    let report = reports::sketch(py, &sketch.report)?;
+    Ok(Patch::new(sketch.patch, report))
+}
+
+/// Reads an outline and its holes.
+pub fn drawing(outline: &Bound<'_, PyAny>, holes: Option<&Bound<'_, PyAny>>) -> PyResult<Drawing> {
+    let allowed = "an (n, 2) array of real numbers";
+    let outline = Argument { name: "outline", value: outline, allowed }.points()?;
+    let mut rings: Vec<Vec<DVec2>> = Vec::new();
+    if let Some(value) = holes {
+        let all = Argument { name: "holes", value, allowed: "a sequence of (k, 2) arrays of real numbers" };
+        for ring in value.try_iter().map_err(|_| all.wrong_type())? {
+            let name = format!("hole {}", rings.len());
+            rings.push(Argument { name: &name, value: &ring?, allowed }.points()?);
+        }
+    }
+    Ok(Drawing { outline, holes: rings })
+}
