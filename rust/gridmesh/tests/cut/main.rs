@@ -1,173 +1,17 @@
 //! Cuts of synthetic meshes keep their promises.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use std::collections::{BTreeMap, BTreeSet};
+mod models;
+
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use gridmesh::cut::{Cut, CutOptions, Keep, Piece, Polygons, Side, Sweep, cut};
-use gridmesh::error::Result;
+use gridmesh::cut::{CutOptions, Keep, Sweep, cut};
 use gridmesh::fill::Smooth;
 use gridmesh::metrics::check_mesh;
 use gridmesh::progress::Progress;
 
-/// Vertices, corners, offsets.
-struct Mesh(Vec<DVec3>, Vec<u32>, Vec<u32>);
-
-impl Mesh {
-    fn quads(vertices: Vec<DVec3>, quads: &[[u32; 4]]) -> Mesh {
-        Mesh(vertices, quads.concat(), (0..=quads.len() as u32).map(|k| 4 * k).collect())
-    }
-
-    fn faces(&self) -> Polygons<'_> {
-        Polygons { corners: &self.1, offsets: &self.2 }
-    }
-
-    fn cut(&self, stroke: &[DVec3], options: &CutOptions) -> Result<Cut> {
-        cut(&self.0, self.faces(), stroke, options, Progress::NONE)
-    }
-}
-
-/// A torus of quads around z, bumpy so that nothing is on a line.
-fn torus(n: u32, m: u32) -> Mesh {
-    let at = |i: u32, j: u32| (i % n) * m + j % m;
-    let (mut vertices, mut quads) = (vec![], vec![]);
-    for i in 0..n {
-        for j in 0..m {
-            let (u, v) = (TAU * f64::from(i) / f64::from(n), TAU * f64::from(j) / f64::from(m));
-            let r = 2.0 + 0.8 * v.cos();
-            vertices.push(DVec3::new(r * u.cos(), r * u.sin(), 0.8 * v.sin()));
-            quads.push([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
-        }
-    }
-    Mesh::quads(vertices, &quads)
-}
-
-fn cube() -> Mesh {
-    let corner = |k: u32| DVec3::new(f64::from(k >> 2), f64::from(k >> 1 & 1), f64::from(k & 1));
-    let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
-    Mesh::quads((0..8).map(corner).collect(), &quads)
-}
-
-/// A prism with ends of twelve corners.
-fn prism() -> Mesh {
-    let n = 12u32;
-    let ring = |z: f64| {
-        (0..n).map(move |k| {
-            let t = TAU * f64::from(k) / f64::from(n);
-            DVec3::new(t.cos(), t.sin(), z)
-        })
-    };
-    let mut corners: Vec<u32> = (0..n).rev().chain(n..2 * n).collect();
-    let mut offsets = vec![0, n, 2 * n];
-    for k in 0..n {
-        let next = (k + 1) % n;
-        corners.extend([k, next, next + n, k + n]);
-        offsets.push(corners.len() as u32);
-    }
-    Mesh(ring(-1.0).chain(ring(1.0)).collect(), corners, offsets)
-}
-
-fn triangles(piece: &Piece) -> Vec<[u32; 3]> {
-    // Fans: enough for what is connected to what.
-    let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
-    let fan = |f: usize| {
-        let c = faces.face(f);
-        (1..c.len() - 1).map(|k| [c[0], c[k], c[k + 1]]).collect::<Vec<_>>()
-    };
-    (0..faces.len()).flat_map(fan).collect()
-}
-
-fn assert_closed(cut: &Cut) {
-    for piece in &cut.pieces {
-        let check = check_mesh(piece.vertices.len(), &triangles(piece));
-        assert!(check.watertight, "{:?} {check:?}", piece.side);
-        assert_eq!(piece.source_face.len() + 1, piece.offsets.len());
-        assert_eq!(piece.source_vertices.len(), piece.vertices.len());
-    }
-}
-
-fn assert_volumes(cut: &Cut, tolerance: f64) {
-    let sum: f64 = cut.report.volumes.iter().sum();
-    let whole = cut.report.volume;
-    assert!((sum - whole).abs() <= tolerance * whole.abs(), "{sum} {whole}");
-    assert!(cut.report.volumes.iter().all(|v| *v > 0.0), "{:?}", cut.report.volumes);
-}
-
-/// Cap triangles by position, each from its least corner on.
-fn caps(piece: &Piece, reversed: bool) -> BTreeSet<Vec<[u64; 3]>> {
-    let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
-    let name = |f: usize| {
-        let mut t: Vec<[u64; 3]> =
-            faces.face(f).iter().map(|&v| piece.vertices[v as usize].to_array().map(f64::to_bits)).collect();
-        if reversed {
-            t.reverse();
-        }
-        let least = (0..t.len()).min_by_key(|&k| t[k]).unwrap();
-        t.rotate_left(least);
-        t
-    };
-    (0..faces.len()).filter(|&f| piece.source_face[f] < 0).map(name).collect()
-}
-
-fn assert_mirrored(cut: &Cut) {
-    let [left, right] = &cut.pieces[..] else { panic!("two pieces") };
-    assert!(!caps(left, false).is_empty());
-    assert_eq!(caps(left, false), caps(right, true));
-}
-
-/// Old vertices have their bits, and combinations of old vertices give the new ones outside caps.
-fn assert_sources(mesh: &Mesh, cut: &Cut, tolerance: f64) {
-    for piece in &cut.pieces {
-        let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
-        let outside: BTreeSet<u32> = (0..faces.len())
-            .filter(|&f| piece.source_face[f] >= 0)
-            .flat_map(|f| faces.face(f).iter().copied())
-            .collect();
-        for &v in &outside {
-            let (own, from) = (piece.vertices[v as usize], piece.source_vertices[v as usize]);
-            let weights = piece.source_weights[v as usize];
-            if weights[0] == 1.0 {
-                assert_eq!(own, mesh.0[from[0] as usize]);
-            }
-            let there: DVec3 = (0..3).map(|k| weights[k] * mesh.0[from[k] as usize]).sum();
-            assert!(there.distance(own) <= tolerance, "{there} {own}");
-        }
-    }
-}
-
-/// Faces that are returned whole: by their number in the input.
-fn untouched(mesh: &Mesh, cut: &Cut) -> BTreeMap<i32, Side> {
-    let mut found = BTreeMap::new();
-    for piece in &cut.pieces {
-        let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
-        for f in 0..faces.len() {
-            let source = piece.source_face[f];
-            let old = faces.face(f).iter().map(|&v| piece.source_vertices[v as usize][0]).collect::<Vec<_>>();
-            if source >= 0 && mesh.faces().face(source as usize) == old {
-                found.insert(source, piece.side);
-            }
-        }
-    }
-    found
-}
-
-fn down() -> CutOptions {
-    CutOptions::new(Sweep::Along(-DVec3::Z))
-}
-
-fn line(points: &[(f64, f64)]) -> Vec<DVec3> {
-    points.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect()
-}
-
-fn circle(x: f64, y: f64, r: f64, n: u32) -> Vec<DVec3> {
-    (0..=n)
-        .map(|k| {
-            let t = TAU * f64::from(k % n) / f64::from(n);
-            DVec3::new(x + r * t.cos(), y + r * t.sin(), 0.0)
-        })
-        .collect()
-}
+use crate::models::*;
 
 #[test]
 fn both_pieces_are_closed_and_add_up() {
@@ -582,5 +426,27 @@ fn progress_rises_and_false_stops() {
         let until = |_: f64| count.fetch_add(1, std::sync::atomic::Ordering::Relaxed) < stop;
         let result = cut(&mesh.0, mesh.faces(), &stroke, &down(), Progress::new(&until));
         assert_eq!(result.err().map_or("none", |e| e.kind()), "cancelled");
+    }
+}
+
+#[test]
+fn exact_cuts_of_fine_models_have_caps_no_finer_than_they_are() {
+    // Rims with hundreds of edges of every length.
+    let mesh = torus(300, 300);
+    let waves = |k: i32| (f64::from(k) / 20.0, 0.5 + 0.3 * (f64::from(k) / 10.0).sin());
+    let wave = line(&(-80..=80).map(waves).collect::<Vec<_>>());
+    for stroke in [line(&[(-4.0, 0.31), (4.0, 0.93)]), wave] {
+        let cut = mesh.cut(&stroke, &down()).unwrap();
+        assert_closed(&cut);
+        assert_mirrored(&cut);
+        assert_volumes(&cut, 1e-9);
+        let report = &cut.report;
+        assert_eq!((report.folded, report.repeated, report.defect), (0, 0, 0.0));
+        let rim: usize = cut.pieces[0].cap_loops.iter().map(Vec::len).sum();
+        assert!(rim > 600, "{rim}");
+        assert!(report.cap_radius_ratio > 0.9, "{}", report.cap_radius_ratio);
+        assert!(10 * report.cap_irregular < report.cap_vertices, "{report:?}");
+        // As many as triangles of the model's size, or a few times so many where its quads are narrow.
+        assert!(report.cap_triangles < mesh.faces().len(), "{}", report.cap_triangles);
     }
 }
