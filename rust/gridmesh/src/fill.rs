@@ -12,6 +12,7 @@ mod flips;
 mod graded;
 mod grown;
 pub mod holes;
+mod lobes;
 mod mean_value;
 mod meet;
 mod mesh;

@@ -12,6 +12,7 @@ use super::develop::Loop;
 use super::exact::{Layers, TURN, Wishes, conflicts, route};
 use super::graded::graded;
 use super::grown::grown;
+use super::lobes::without_lobes;
 use super::place;
 use super::quality::{Quality, measure};
 use super::small::{SMALL, around_centre, without_interior};
@@ -172,7 +173,7 @@ impl Contest<'_> {
             self.enter(interior, triangles, Method::Centre);
         }
         if options.thin && n > LARGE && !self.even {
-            self.thinned(options, progress.part(0.0, 0.3))?;
+            self.of_some(thinned(points), options, progress.part(0.0, 0.3))?;
             if self.is_settled(options) {
                 return Ok(());
             }
@@ -201,8 +202,12 @@ impl Contest<'_> {
                 Err(error) => return Err(error),
             }
         }
+        let folded = self.best.as_ref().is_none_or(|(_, fill)| fill.folded);
+        if folded && n > SMALL {
+            self.of_some(without_lobes(points), options, progress.part(0.7, 1.0))?;
+        }
         if self.best.is_none() {
-            // A loop that crosses itself: the triangles of a round loop with the same edges.
+            // A loop that lies upon itself: the triangles of a round loop with the same edges.
             let round = place::round_loop(points);
             let (interior, triangles) = graded(&round, wanted, taken, progress.part(0.7, 1.0))?;
             let interior = place::carried_over(&round, interior, &triangles, points, progress)?;
@@ -211,9 +216,14 @@ impl Contest<'_> {
         Ok(())
     }
 
-    /// A patch for some of the vertices, with the others on its edges.
-    fn thinned(&mut self, options: &FlatOptions, progress: Progress<'_>) -> Result<()> {
-        let Some(kept) = thinned(self.points) else { return Ok(()) };
+    /// A patch for some of the vertices, if there are any, with the others on its edges.
+    fn of_some(
+        &mut self,
+        kept: Option<Vec<usize>>,
+        options: &FlatOptions,
+        progress: Progress<'_>,
+    ) -> Result<()> {
+        let Some(kept) = kept else { return Ok(()) };
         let points: Vec<DVec2> = kept.iter().map(|&k| self.points[k]).collect();
         let wanted: Vec<i32> = kept.iter().map(|&k| self.wanted[k]).collect();
         let taken = |i: usize, j: usize| (self.taken)(kept[i], kept[j]);

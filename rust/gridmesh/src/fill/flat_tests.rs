@@ -176,6 +176,30 @@ fn a_loop_as_a_cut_leaves_it_gets_a_patch_as_coarse_as_its_long_edges() {
 }
 
 #[test]
+fn a_loop_that_crosses_itself_is_folded_there_alone() {
+    for n in [60, 200, 500] {
+        let mut polygon = crossed(n, 4.0, 6);
+        polygon.swap(n / 4, n / 4 + 3);
+        polygon.swap(n / 2, n / 2 + 2);
+        for thin in [false, true] {
+            let options = FlatOptions { thin, ..FlatOptions::default() };
+            let fill = match fill_flat(&polygon, &vec![4; n], &none, &options, Progress::NONE) {
+                Ok(fill) => fill,
+                Err(error) => panic!("{error}"),
+            };
+            check(&polygon, &fill, &none);
+            let positions = [polygon.as_slice(), &fill.interior].concat();
+            let is_inverted = |t: &&[u32; 3]| {
+                let [a, b, c] = t.map(|v| positions[v as usize]);
+                (b - a).perp_dot(c - a) <= 0.0
+            };
+            let inverted = fill.triangles.iter().filter(is_inverted).count();
+            assert!(fill.folded && inverted <= 16, "{n}: {inverted} of {}", fill.triangles.len());
+        }
+    }
+}
+
+#[test]
 fn a_large_uneven_loop_gets_a_lattice() {
     let polygon = crossed(900, 3.0, 4);
     let options = FlatOptions { angles: 3, placed: 1, ..FlatOptions::default() };
