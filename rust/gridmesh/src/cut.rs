@@ -242,7 +242,7 @@ fn part(
                             let before = released.len();
                             released.extend(parted.touching());
                             tally.report.repeated += released.len() - before;
-                            released.extend(parted.far(vertices, &sheet, &locator, tolerance.length));
+                            released.extend(parted.far(vertices, &locator, tolerance.length));
                             if released.len() > before {
                                 continue;
                             }
@@ -256,15 +256,13 @@ fn part(
                                 wanted.extend(in_the_way.into_iter().filter(|v| !released.contains(v)));
                                 redrawn <= REDRAWN && wanted.len() > before
                             };
-                            let done = rim::even_out(
-                                vertices,
-                                faces,
-                                &mut parted,
-                                length,
-                                tolerance.length,
-                                tally,
-                                again,
-                            );
+                            let off = |v: u32| match released.contains(&v) {
+                                true => f64::INFINITY,
+                                false => locator.off(vertices[v as usize], v, tolerance.length),
+                            };
+                            let through = rim::Through { reach: tolerance.length, off: &off };
+                            let done =
+                                rim::even_out(vertices, faces, &mut parted, length, &through, tally, again);
                             tally.stage("rim");
                             if !done {
                                 continue;

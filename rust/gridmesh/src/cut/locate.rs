@@ -1,7 +1,7 @@
 //! Which faces the line may meet, in one pass over the mesh: a grid over the plane knows where the line runs, and
 //! on which side of it every other cell is.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::input::Polygons;
@@ -33,7 +33,7 @@ pub(super) struct Met {
 }
 
 impl<'a> Locator<'a> {
-    pub fn new(n_vertices: &[glam::DVec3], sheet: &'a Sheet) -> Result<Self> {
+    pub fn new(n_vertices: &[DVec3], sheet: &'a Sheet) -> Result<Self> {
         let size = sheet.high - sheet.low;
         let across = size.max_element();
         if across.is_nan() || across <= 0.0 {
@@ -176,8 +176,14 @@ impl<'a> Locator<'a> {
         off.fold(f64::INFINITY, f64::min)
     }
 
+    /// Distance of a vertex at `p` from the swept surface, if it is less than `reach`; else more than that.
+    pub fn off(&self, p: DVec3, v: u32, reach: f64) -> f64 {
+        let depth = self.sheet.view.depth(p);
+        depth * self.distance(self.sheet.seen[v as usize], reach / depth)
+    }
+
     /// Faces near the line, and the sides of all vertices.
-    pub fn find(&self, vertices: &[glam::DVec3], faces: Polygons<'_>) -> Result<Met> {
+    pub fn find(&self, vertices: &[DVec3], faces: Polygons<'_>) -> Result<Met> {
         let seen = &self.sheet.seen;
         let left = (0..vertices.len())
             .into_par_iter()

@@ -5,10 +5,9 @@ use rustc_hash::FxHashMap;
 
 use super::cross::Node;
 use super::locate::Locator;
-use super::sheet::Sheet;
 
 /// How far vertices that the cut is drawn through may be off the swept surface, in diameters of their line.
-const SEAM: f64 = 0.018;
+pub(super) const SEAM: f64 = 0.018;
 
 /// A part of a face.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +55,7 @@ impl Parted {
     }
 
     /// Old vertices that the cut was drawn through, farther from the swept surface than suits their line's size.
-    pub fn far(&self, vertices: &[DVec3], sheet: &Sheet, locator: &Locator<'_>, reach: f64) -> Vec<u32> {
+    pub fn far(&self, vertices: &[DVec3], locator: &Locator<'_>, reach: f64) -> Vec<u32> {
         let mut line_of: FxHashMap<u32, u32> = FxHashMap::default();
         let mut edges = self.cut.keys().copied().collect::<Vec<_>>();
         edges.sort_unstable();
@@ -88,8 +87,7 @@ impl Parted {
         own.retain(|&v| {
             let [low, high] = boxes.get(&root(&mut line_of, v)).copied().unwrap_or_default();
             let allowed = SEAM * low.distance(high);
-            let depth = sheet.view.depth(vertices[v as usize]);
-            allowed < reach && depth * locator.distance(sheet.seen[v as usize], reach / depth) > allowed
+            allowed < reach && locator.off(vertices[v as usize], v, reach) > allowed
         });
         own
     }

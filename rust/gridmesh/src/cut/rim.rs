@@ -11,7 +11,7 @@ use rustc_hash::FxHashSet;
 use super::defect::defect;
 use super::input::{Polygons, triangles};
 use super::nearness::closest;
-use super::parted::{Part, Parted};
+use super::parted::{Part, Parted, SEAM};
 use super::report::Tally;
 use super::slide::Course;
 use super::spacing::resample;
@@ -36,17 +36,28 @@ const SLIDE: f64 = 0.3;
 const SHORT: f64 = 0.6;
 const LONG: f64 = 1.4;
 
+/// So often the line is drawn through vertices beside it, where it is.
+const DRAWN: usize = 2;
+
 /// Angles below this are reason enough to draw the cut through a vertex.
 const POOR: f64 = 0.19;
 
-/// Evens out the line and the faces along it. `again` is shown the old vertices within `reach` of the line that stay
-/// at thin triangles beside it, in order; if it wants the line drawn anew, it is not brought to an end: false.
+/// Which old vertices the line may be drawn through.
+pub(super) struct Through<'a> {
+    /// Their distance from the line at most.
+    pub reach: f64,
+    /// How far each is off where the line was drawn.
+    pub off: &'a dyn Fn(u32) -> f64,
+}
+
+/// Evens out the line and the faces along it. `again` is shown the old vertices beside the line that stay
+/// at thin triangles, in order; if it wants the line drawn anew, it is not brought to an end: false.
 pub(super) fn even_out(
     vertices: &[DVec3],
     faces: Polygons<'_>,
     parted: &mut Parted,
     length: f64,
-    reach: f64,
+    through: &Through<'_>,
     tally: &mut Tally,
     again: impl FnOnce(Vec<u32>) -> bool,
 ) -> bool {
@@ -54,18 +65,24 @@ pub(super) fn even_out(
     let old = std::mem::take(&mut parted.parts);
     let own = old.iter().map(|p| p.face).collect::<FxHashSet<_>>();
     let mut strip = Strip::new(vertices, parted, parts, length);
-    let (kept, mut course) = resample(&mut strip, length);
-    for round in 0..ROUNDS {
-        let mut changes = thin_out(&mut strip, &kept);
-        changes += clear_beside(&mut strip, BESIDE * length);
-        changes += thin_out(&mut strip, &kept);
-        changes += improve(&mut strip, &kept, length, round);
-        changes += slide(&mut strip, &mut course, length);
-        if changes == 0 {
+    let (mut kept, mut course) = resample(&mut strip, length);
+    // Once the line is drawn through others, only what is new there is looked at.
+    for from in [0].into_iter().chain([ROUNDS / 2; DRAWN]) {
+        for round in from..ROUNDS {
+            let mut changes = thin_out(&mut strip, &kept);
+            changes += clear_beside(&mut strip, BESIDE * length);
+            changes += thin_out(&mut strip, &kept);
+            changes += improve(&mut strip, &kept, length, round);
+            changes += slide(&mut strip, &mut course, length);
+            if changes == 0 {
+                break;
+            }
+        }
+        if !draw_through(&mut strip, &mut kept, through) {
             break;
         }
     }
-    if again(in_the_way(&strip, reach)) {
+    if again(in_the_way(&strip, through.reach)) {
         return false;
     }
     tally.report.defect = defect(faces, &strip);
@@ -76,6 +93,32 @@ pub(super) fn even_out(
     }
     parted.parts = parts.filter(|p| parted.divided[p.face as usize] || own.contains(&p.face)).collect();
     true
+}
+
+/// Draws the line through vertices that are in the way, where that makes the angles there larger.
+fn draw_through(strip: &mut Strip<'_>, kept: &mut FxHashSet<u32>, through: &Through<'_>) -> bool {
+    let mut drawn = false;
+    for v in in_the_way(strip, through.reach) {
+        let off = (through.off)(v);
+        let mut line: Vec<u32> =
+            strip.neighbours(v).into_iter().filter(|&u| !strip.on_line(u).is_empty()).collect();
+        let far = |u: u32| strip.position(u).distance_squared(strip.position(v));
+        line.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
+        for u in line {
+            if off > through.reach.min(SEAM * strip.line_size(u)) {
+                continue;
+            }
+            let around =
+                [u, v].into_iter().flat_map(|w| strip.triangles_at(w)).filter_map(|&t| strip.part(t));
+            let worst = around.map(|p| strip.min_angle(p.corners)).fold(f64::INFINITY, f64::min);
+            if strip.draw_through(u, v, 1.05 * worst) {
+                kept.insert(v);
+                drawn = true;
+                break;
+            }
+        }
+    }
+    drawn
 }
 
 fn in_the_way(strip: &Strip<'_>, reach: f64) -> Vec<u32> {

@@ -269,21 +269,100 @@ impl<'a> Strip<'a> {
     /// Moves `u` into its neighbour `v`, if the triangles around allow it; they must then have angles of `least`.
     pub fn collapse(&mut self, u: u32, v: u32, least: f64) -> bool {
         let line = self.on_line(u).to_vec();
-        if self.is_border(u) || (!line.is_empty() && (line.len() != 2 || !self.is_cut(u, v))) {
+        if !line.is_empty() && (line.len() != 2 || !self.is_cut(u, v)) {
             return false;
         }
+        let other = line.iter().copied().find(|&w| w != v);
+        if other.is_some_and(|w| self.neighbours(v).contains(&w)) || !self.merge(u, v, least) {
+            return false;
+        }
+        if let Some(w) = other {
+            let ([at_w, to_u], [from_u, to_v]) = (self.place(w, u), self.place(u, v));
+            let at_v = to_u + (to_v - from_u);
+            self.unlink(u, v);
+            self.unlink(u, w);
+            self.link(w, v, [at_w, at_v]);
+        }
+        true
+    }
+
+    /// Draws the line through `v`, which is beside it, instead of its neighbour `u` on it.
+    pub fn draw_through(&mut self, u: u32, v: u32, least: f64) -> bool {
+        let &[a, b] = self.on_line(u) else { return false };
+        if !self.on_line(v).is_empty() {
+            return false;
+        }
+        let ([at_a, to_u], [from_u, at_b]) = (self.place(a, u), self.place(u, b));
+        let [p, q, r] = [a, u, b].map(|w| self.position(w));
+        // How far along the line `v` is from `u`.
+        let along = |to: DVec3| (self.position(v) - q).dot(to - q) / (to - q).length_squared();
+        let (back, ahead) = (along(p), along(r));
+        let by = if ahead > back { ahead * (at_b - from_u) } else { -back * (to_u - at_a) };
+        // Beside `u`, and not beside the next one.
+        if !((0.0..0.6).contains(&ahead.max(back)) && self.merge(u, v, least)) {
+            return false;
+        }
+        self.unlink(u, a);
+        self.unlink(u, b);
+        self.link(a, v, [at_a, to_u + by]);
+        self.link(v, b, [from_u + by, at_b]);
+        true
+    }
+
+    /// Diameter of the box around the line that a vertex lies on.
+    pub fn line_size(&self, v: u32) -> f64 {
+        let mut low = self.position(v);
+        let mut high = low;
+        for &first in self.on_line(v) {
+            let (mut last, mut at) = (v, first);
+            while at != v {
+                let p = self.position(at);
+                (low, high) = (low.min(p), high.max(p));
+                let Some(&next) = self.on_line(at).iter().find(|&&w| w != last) else { break };
+                (last, at) = (at, next);
+            }
+            if at == v {
+                break;
+            }
+        }
+        low.distance(high)
+    }
+
+    /// Where an edge of the line begins and ends on the unrolled line.
+    fn place(&self, from: u32, to: u32) -> [f64; 2] {
+        let [x, y] = self.parted.cut.get(&(from.min(to), from.max(to))).copied().unwrap_or_default();
+        if from < to { [x, y] } else { [y, x] }
+    }
+
+    fn unlink(&mut self, a: u32, b: u32) {
+        self.parted.cut.remove(&(a.min(b), a.max(b)));
+        for (v, old) in [(a, b), (b, a)] {
+            if let Some(list) = self.line.get_mut(&v) {
+                list.retain(|&w| w != old);
+                if list.is_empty() {
+                    self.line.remove(&v);
+                }
+            }
+        }
+    }
+
+    fn link(&mut self, a: u32, b: u32, [x, y]: [f64; 2]) {
+        self.parted.cut.insert((a.min(b), a.max(b)), if a < b { [x, y] } else { [y, x] });
+        for (v, new) in [(a, b), (b, a)] {
+            self.line.entry(v).or_default().push(new);
+        }
+    }
+
+    /// The triangles of `u` given to its neighbour `v`, if they stay near the old ones and upright.
+    fn merge(&mut self, u: u32, v: u32, least: f64) -> bool {
         let shared = self.with_edge(u, v);
-        if shared.len() != 2 {
+        if self.is_border(u) || shared.len() != 2 {
             return false;
         }
         let (near_u, near_v) = (self.neighbours(u), self.neighbours(v));
         let common = near_u.iter().filter(|w| near_v.contains(w)).count();
         let joins = |w: &u32| *w != v && !near_v.contains(w) && self.is_border(*w) && self.is_border(v);
         if common != 2 || near_u.iter().any(joins) {
-            return false;
-        }
-        let other = line.iter().copied().find(|&w| w != v);
-        if other.is_some_and(|w| near_v.contains(&w)) {
             return false;
         }
         let all = self.triangles_at(u).to_vec();
@@ -312,23 +391,6 @@ impl<'a> Strip<'a> {
             self.replace(t, Some(part));
         }
         self.around.remove(&u);
-        if let Some(w) = other {
-            let place = |strip: &Self, from: u32, to: u32| {
-                let [x, y] = strip.parted.cut.get(&(from.min(to), from.max(to))).copied().unwrap_or_default();
-                if from < to { [x, y] } else { [y, x] }
-            };
-            let ([at_w, to_u], [from_u, to_v]) = (place(self, w, u), place(self, u, v));
-            let at_v = to_u + (to_v - from_u);
-            self.parted.cut.remove(&(u.min(v), u.max(v)));
-            self.parted.cut.remove(&(u.min(w), u.max(w)));
-            self.parted.cut.insert((v.min(w), v.max(w)), if v < w { [at_v, at_w] } else { [at_w, at_v] });
-            for (x, to) in [(v, w), (w, v)] {
-                if let Some(list) = self.line.get_mut(&x) {
-                    list.iter_mut().filter(|y| **y == u).for_each(|y| *y = to);
-                }
-            }
-            self.line.remove(&u);
-        }
         true
     }
 }
