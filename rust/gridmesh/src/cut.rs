@@ -12,6 +12,7 @@ mod cross;
 mod defect;
 mod ground;
 mod input;
+mod line;
 mod locate;
 mod loops;
 mod nearness;

@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use super::cross::Node;
-use super::nearness::closest;
 use super::parted::Part;
 use super::strip::Strip;
 
@@ -57,13 +56,14 @@ impl Strip<'_> {
         let homes = self.homes(&near);
         let middle = near.iter().map(|&w| self.position(w)).sum::<DVec3>() / near.len().max(1) as f64;
         // Back onto the surface.
-        let Some((_, home)) = self.home_of(middle, &homes) else { return false };
-        let (_, weights) = closest(middle, self.home(home));
-        self.parted.nodes[k] = Node::within(self.vertices, home, weights);
+        let Some(home) = self.home_of(middle, &homes) else { return false };
+        let (_, weights) = home.facet.closest(middle);
+        self.parted.nodes[k] = Node::within(self.vertices, home.corners, weights);
         let fits = least(self) > before
-            && parts
-                .iter()
-                .all(|p| self.is_upright(p.corners, p.home) && self.is_near(p.corners, p.home, &homes));
+            && parts.iter().all(|p| {
+                self.is_upright(p.corners, p.home)
+                    && self.is_near(p.corners, &self.facet(p.home), p.home, &homes)
+            });
         if fits {
             parts.iter().for_each(|p| self.touch(p.corners));
         } else {

@@ -4,7 +4,6 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::cross::Node;
-use super::nearness::closest;
 use super::strip::Strip;
 
 /// The line as it was drawn, and where on it its vertices are.
@@ -87,9 +86,9 @@ impl Course {
         let homes = strip.homes(&strip.neighbours(v));
         for (_, to) in ways {
             let (at, place) = curve.at(to);
-            let Some((_, home)) = strip.home_of(at, &homes) else { continue };
-            let (_, weights) = closest(at, strip.home(home));
-            strip.parted.nodes[k] = Node { position: at, source: home, weights };
+            let Some(home) = strip.home_of(at, &homes) else { continue };
+            let (_, weights) = home.facet.closest(at);
+            strip.parted.nodes[k] = Node { position: at, source: home.corners, weights };
             let moved = parts.iter().map(|part| strip.rehomed(part, part.corners, &homes));
             let Some(moved) = moved.collect::<Option<Vec<_>>>() else {
                 strip.parted.nodes[k] = old;

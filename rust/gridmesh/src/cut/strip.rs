@@ -6,9 +6,9 @@
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::cap::shape;
 use super::cross::Node;
-use super::nearness::{closest, samples, within};
+use super::ground::Home;
+use super::nearness::{Facet, closest, samples, within};
 use super::parted::{Part, Parted};
 
 pub(super) struct Strip<'a> {
@@ -29,9 +29,9 @@ pub(super) struct Strip<'a> {
     /// How far apart that is looked at.
     spacing: f64,
     /// The cut's edges, by vertex.
-    line: FxHashMap<u32, Vec<u32>>,
+    pub line: FxHashMap<u32, Vec<u32>>,
     /// The old triangles at each old vertex.
-    pub old: FxHashMap<u32, Vec<(u32, [u32; 3])>>,
+    pub old: FxHashMap<u32, Vec<Home>>,
     /// Counts changes; and for each vertex, the last one of its triangles.
     clock: u32,
     changed: FxHashMap<u32, u32>,
@@ -78,12 +78,13 @@ impl<'a> Strip<'a> {
             line.entry(a).or_default().push(b);
             line.entry(b).or_default().push(a);
         }
-        let mut old: FxHashMap<u32, Vec<(u32, [u32; 3])>> = FxHashMap::default();
+        let mut old: FxHashMap<u32, Vec<Home>> = FxHashMap::default();
         let mut homes = parts.iter().map(|p| (p.face, p.home)).collect::<Vec<_>>();
         homes.sort_unstable();
         homes.dedup();
-        for (face, home) in homes {
-            home.iter().for_each(|&v| old.entry(v).or_default().push((face, home)));
+        for (face, corners) in homes {
+            let facet = Facet::new(corners.map(|v| vertices[v as usize]));
+            corners.iter().for_each(|&v| old.entry(v).or_default().push(Home { face, corners, facet }));
         }
         let parts = parts.into_iter().map(Some).collect();
         Strip {
@@ -150,7 +151,15 @@ impl<'a> Strip<'a> {
     }
 
     pub fn min_angle(&self, corners: [u32; 3]) -> f64 {
-        shape(corners.map(|v| self.position(v))).0
+        let [a, b, c] = corners.map(|v| self.position(v));
+        // It lies opposite the shortest edge.
+        let [x, y, z] = [b.distance_squared(c), c.distance_squared(a), a.distance_squared(b)];
+        let (p, q) = match x.min(y).min(z) {
+            least if least == x => (b - a, c - a),
+            least if least == y => (c - b, a - b),
+            _ => (a - c, b - c),
+        };
+        p.cross(q).length().atan2(p.dot(q))
     }
 
     /// The old surface's normal at a vertex: the mean over the triangles there.
@@ -231,7 +240,7 @@ impl<'a> Strip<'a> {
         }
         let position = self.position(a).lerp(self.position(b), t);
         let homes = self.homes(&[a, b]);
-        let (_, home) = self.home_of(position, &homes).unwrap_or((first.face, first.home));
+        let home = self.home_of(position, &homes).map_or(first.home, |home| home.corners);
         let (_, weights) = closest(position, self.home(home));
         let m = (self.parted.n_old + self.parted.nodes.len()) as u32;
         self.parted.nodes.push(Node { position, source: home, weights });
@@ -243,27 +252,13 @@ impl<'a> Strip<'a> {
             self.add(Part { corners: halves[1], ..part });
         }
         if let Some([x, y]) = cut {
-            let (low, high) = (a.min(b), a.max(b));
-            let place = if a < b { x + t * (y - x) } else { y + t * (x - y) };
-            self.parted.cut.remove(&(low, high));
-            self.parted.cut.insert((low, m), [x, place]);
-            self.parted.cut.insert((high, m), [y, place]);
-            for (v, old) in [(a, b), (b, a)] {
-                if let Some(list) = self.line.get_mut(&v) {
-                    list.iter_mut().filter(|x| **x == old).for_each(|x| *x = m);
-                }
-            }
-            self.line.insert(m, vec![a, b]);
+            let [x, y] = if a < b { [x, y] } else { [y, x] };
+            let place = x + t * (y - x);
+            self.unlink(a, b);
+            self.link(a, m, [x, place]);
+            self.link(m, b, [place, y]);
         }
         Some(m)
-    }
-
-    /// True if the line's edge stays shorter than `longest` when `u` moves into `v`.
-    pub fn may_go(&self, u: u32, v: u32, longest: f64) -> bool {
-        match *self.on_line(u) {
-            [a, b] if a == v || b == v => self.position(a).distance(self.position(b)) < longest,
-            _ => false,
-        }
     }
 
     /// Moves `u` into its neighbour `v`, if the triangles around allow it; they must then have angles of `least`.
@@ -286,75 +281,8 @@ impl<'a> Strip<'a> {
         true
     }
 
-    /// Draws the line through `v`, which is beside it, instead of its neighbour `u` on it.
-    pub fn draw_through(&mut self, u: u32, v: u32, least: f64) -> bool {
-        let &[a, b] = self.on_line(u) else { return false };
-        if !self.on_line(v).is_empty() {
-            return false;
-        }
-        let ([at_a, to_u], [from_u, at_b]) = (self.place(a, u), self.place(u, b));
-        let [p, q, r] = [a, u, b].map(|w| self.position(w));
-        // How far along the line `v` is from `u`.
-        let along = |to: DVec3| (self.position(v) - q).dot(to - q) / (to - q).length_squared();
-        let (back, ahead) = (along(p), along(r));
-        let by = if ahead > back { ahead * (at_b - from_u) } else { -back * (to_u - at_a) };
-        // Beside `u`, and not beside the next one.
-        if !((0.0..0.6).contains(&ahead.max(back)) && self.merge(u, v, least)) {
-            return false;
-        }
-        self.unlink(u, a);
-        self.unlink(u, b);
-        self.link(a, v, [at_a, to_u + by]);
-        self.link(v, b, [from_u + by, at_b]);
-        true
-    }
-
-    /// Diameter of the box around the line that a vertex lies on.
-    pub fn line_size(&self, v: u32) -> f64 {
-        let mut low = self.position(v);
-        let mut high = low;
-        for &first in self.on_line(v) {
-            let (mut last, mut at) = (v, first);
-            while at != v {
-                let p = self.position(at);
-                (low, high) = (low.min(p), high.max(p));
-                let Some(&next) = self.on_line(at).iter().find(|&&w| w != last) else { break };
-                (last, at) = (at, next);
-            }
-            if at == v {
-                break;
-            }
-        }
-        low.distance(high)
-    }
-
-    /// Where an edge of the line begins and ends on the unrolled line.
-    fn place(&self, from: u32, to: u32) -> [f64; 2] {
-        let [x, y] = self.parted.cut.get(&(from.min(to), from.max(to))).copied().unwrap_or_default();
-        if from < to { [x, y] } else { [y, x] }
-    }
-
-    fn unlink(&mut self, a: u32, b: u32) {
-        self.parted.cut.remove(&(a.min(b), a.max(b)));
-        for (v, old) in [(a, b), (b, a)] {
-            if let Some(list) = self.line.get_mut(&v) {
-                list.retain(|&w| w != old);
-                if list.is_empty() {
-                    self.line.remove(&v);
-                }
-            }
-        }
-    }
-
-    fn link(&mut self, a: u32, b: u32, [x, y]: [f64; 2]) {
-        self.parted.cut.insert((a.min(b), a.max(b)), if a < b { [x, y] } else { [y, x] });
-        for (v, new) in [(a, b), (b, a)] {
-            self.line.entry(v).or_default().push(new);
-        }
-    }
-
     /// The triangles of `u` given to its neighbour `v`, if they stay near the old ones and upright.
-    fn merge(&mut self, u: u32, v: u32, least: f64) -> bool {
+    pub fn merge(&mut self, u: u32, v: u32, least: f64) -> bool {
         let shared = self.with_edge(u, v);
         if self.is_border(u) || shared.len() != 2 {
             return false;
