@@ -3,7 +3,7 @@
 //!
 //! Where a cut passes through a mesh as it is, the loop's edges are as long as the mesh's and as short as they
 //! come, in turn. A lattice with all of them has steps of their mean length; one with those that are about as far
-//! apart as the longest edges are long has a quarter of the triangles, and better ones.
+//! apart as the longest edges are long has a quarter of the triangles.
 
 use glam::DVec2;
 
