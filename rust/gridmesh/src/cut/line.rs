@@ -42,14 +42,15 @@ impl Strip<'_> {
         let mut high = low;
         for &first in self.on_line(v) {
             let (mut last, mut at) = (v, first);
-            while at != v {
+            // Where lines touch each other, this one may not lead back.
+            for _ in 0..self.line.len() {
+                if at == v {
+                    return low.distance(high);
+                }
                 let p = self.position(at);
                 (low, high) = (low.min(p), high.max(p));
                 let Some(&next) = self.on_line(at).iter().find(|&&w| w != last) else { break };
                 (last, at) = (at, next);
-            }
-            if at == v {
-                break;
             }
         }
         low.distance(high)
