@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import gc
-import glob
 import os
 import sys
 import tempfile
@@ -16,6 +15,7 @@ from mathutils import Matrix
 
 from .. import meshes
 from ..api import Body
+from . import drafts
 from .loading import said
 from .whole import is_whole
 
@@ -29,6 +29,7 @@ class OutputError(RuntimeError):
 def placed(name: str, bodies: list[Body], crease_angle: float) -> list[bpy.types.Object]:
     """Make objects of the bodies, in the scene."""
     made = []
+    name = name.encode("utf-8", "replace").decode()  # of a file, which may be no text
     for body in bodies:
         mesh = bpy.data.meshes.new(name)
         ob = bpy.data.objects.new(name, mesh)
@@ -53,10 +54,9 @@ def write(path: Path, objects: list[bpy.types.Object]) -> None:
 def safely(path: Path, make: Callable[[Path], None], faces: int = 0) -> None:
     """Let a file be made under a temporary name beside `path`, look whether it is whole, and rename it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    prefix, suffix = f".gridmesh-{path.name}-", path.suffix.lower()
-    for left in path.parent.glob(f"{glob.escape(prefix)}????????*"):
-        left.unlink()  # of a run that was killed
-    number, name = tempfile.mkstemp(prefix=prefix, suffix=suffix, dir=path.parent)
+    drafts.remove(path)  # of runs that were killed
+    prefix = drafts.prefix(path, os.getpid())
+    number, name = tempfile.mkstemp(prefix=prefix, suffix=path.suffix.lower(), dir=path.parent)
     os.close(number)
     draft = Path(name)
     try:
@@ -74,10 +74,7 @@ def safely(path: Path, make: Callable[[Path], None], faces: int = 0) -> None:
         _release()
         raise
     finally:
-        for left in path.parent.glob(
-            f"{glob.escape(draft.name)}*"
-        ):  # Blender writes to a name with an @ first
-            left.unlink()
+        drafts.remove(path, os.getpid())  # more than one: Blender writes to a name with an @ first
 
 
 def _release() -> None:
