@@ -50,7 +50,7 @@ def _ignores_case(folder: str) -> bool:
     if other == name:
         return False
     try:
-        return os.path.samefile(folder, os.path.join(parent, other))  # noqa: PTH118
+        return Path(folder).samefile(Path(parent, other))
     except OSError:
         return False
 

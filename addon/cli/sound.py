@@ -50,7 +50,7 @@ def _of_stl(path: Path) -> list[str]:
     claimed = struct.unpack_from("<I", head, 80)[0] if len(head) == 84 else None
     if claimed is not None and size == 84 + 50 * claimed:
         return []
-    if not head.lstrip()[:5].lower() == b"solid":
+    if head.lstrip()[:5].lower() != b"solid":
         if claimed is None:
             raise files.FileError("load", "it is no STL: it has no header")
         room = (size - 84) // 50

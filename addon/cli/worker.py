@@ -103,10 +103,9 @@ def _look(
         if same.of(path) in written:
             text = f"out '{places.shown(out)}' would overwrite '{places.shown(path)}', which it reads"
             raise files.FileError("overwrites", f"{text}; give it another name")
-    if before is not None and before[0] == key and before[1] == files.digest_of(Path(out)):
-        if picture is None or Path(picture).exists():
-            return {"status": "unchanged"}
-    return {"status": "ok", "key": key}
+    pictured = picture is None or Path(picture).exists()
+    unchanged = before is not None and before[0] == key and before[1] == files.digest_of(Path(out))
+    return {"status": "unchanged" if unchanged and pictured else "ok", "key": key}
 
 
 def _make(
