@@ -3,7 +3,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
+import shutil
+import tempfile
+from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path
 from xml.parsers import expat
@@ -158,7 +162,8 @@ def _import(path: Path) -> None:
         raise LoadError(f"Blender's add-on '{_NEEDED[suffix]}' is missing, which reads {suffix} files")
     if suffix == ".svg":
         _check_svg(path)
-        _operate(bpy.ops.import_curve.svg, filepath=name)
+        with _named_in_text(path) as alias:
+            _operate(bpy.ops.import_curve.svg, filepath=str(alias))
     elif suffix == ".ply":
         _operate(bpy.ops.wm.ply_import, filepath=name, forward_axis="Y", up_axis="Z")
     elif suffix == ".obj":
@@ -167,6 +172,17 @@ def _import(path: Path) -> None:
         _operate(bpy.ops.wm.stl_import, filepath=name, forward_axis="Y", up_axis="Z", use_mesh_validate=True)
     else:
         _operate(bpy.ops.import_scene.gltf, filepath=name)
+
+
+@contextlib.contextmanager
+def _named_in_text(path: Path) -> Iterator[Path]:
+    """Path of the file, or of a copy if its name is no text: the importer of SVG gives it to what it makes."""
+    stem = path.stem.encode("utf-8", "replace").decode()
+    if stem == path.stem:
+        yield path
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        yield Path(shutil.copy(path, Path(folder, stem + path.suffix)))
 
 
 def _operate(operator: object, **options: object) -> None:
