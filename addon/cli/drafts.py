@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import os
 import platform
+from collections.abc import Callable
 from pathlib import Path
 
 _COMMON = ".gridmesh-"
@@ -15,25 +16,36 @@ _HOST = hashlib.sha256(platform.node().encode("utf-8", "replace")).hexdigest()[:
 
 def prefix(path: Path, process: int) -> str:
     """How names of drafts for this file begin. It holds no part of the file's name: that may be long, or no text."""
-    return f"{_start(path)}{process}-"
+    name = hashlib.sha256(os.fsencode(path.name)).hexdigest()[:10]
+    return f"{_COMMON}{_HOST}-{process}-{name}-"
 
 
-def _start(path: Path) -> str:
-    return f"{_COMMON}{hashlib.sha256(os.fsencode(path.name)).hexdigest()[:10]}-{_HOST}-"
+def remove(path: Path, process: int) -> None:
+    """Remove the drafts for this file that a process left."""
+    start = prefix(path, process)
+    _unlink(path.parent, lambda name: name.startswith(start))
 
 
-def remove(path: Path, process: int | None = None) -> None:
-    """Remove the drafts for this file that this process left; None: those of any process of this machine that has ended."""
-    start = _start(path) if process is None else prefix(path, process)
+def sweep(folder: Path) -> None:
+    """Remove the drafts in a folder of all processes of this machine that have ended."""
+    start = f"{_COMMON}{_HOST}-"
+
+    def left(name: str) -> bool:
+        writer = name.removeprefix(start).partition("-")[0]
+        return name.startswith(start) and writer.isdecimal() and not _lives(int(writer))
+
+    _unlink(folder, left)
+
+
+def _unlink(folder: Path, chosen: Callable[[str], bool]) -> None:
     try:
-        left = [file for file in path.parent.iterdir() if file.name.startswith(start)]
+        with os.scandir(folder) as entries:
+            found = [entry.path for entry in entries if chosen(entry.name)]
     except OSError:
         return  # no folder, no drafts
-    for file in left:
-        writer = file.name.removeprefix(_start(path)).partition("-")[0]
-        if process is not None or (writer.isdecimal() and not _lives(int(writer))):
-            with contextlib.suppress(OSError):  # another run was faster, or it is in use
-                file.unlink()
+    for path in found:
+        with contextlib.suppress(OSError):  # another run was faster, or it is in use
+            Path(path).unlink()
 
 
 def _lives(process: int) -> bool:

@@ -26,6 +26,10 @@ class OutputError(RuntimeError):
     kind = "output"
 
 
+_swept: set[Path] = set()
+"""Folders in which nothing is left of runs that were killed."""
+
+
 def placed(name: str, bodies: list[Body], crease_angle: float) -> list[bpy.types.Object]:
     """Make objects of the bodies, in the scene."""
     made = []
@@ -54,7 +58,9 @@ def write(path: Path, objects: list[bpy.types.Object]) -> None:
 def safely(path: Path, make: Callable[[Path], None], faces: int = 0) -> None:
     """Let a file be made under a temporary name beside `path`, look whether it is whole, and rename it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    drafts.remove(path)  # of runs that were killed
+    if path.parent not in _swept:  # in a large folder that takes its time
+        drafts.sweep(path.parent)
+        _swept.add(path.parent)
     prefix = drafts.prefix(path, os.getpid())
     number, name = tempfile.mkstemp(prefix=prefix, suffix=path.suffix.lower(), dir=path.parent)
     os.close(number)
@@ -69,12 +75,16 @@ def safely(path: Path, make: Callable[[Path], None], faces: int = 0) -> None:
         with draft.open("rb+") as file:
             os.fsync(file.fileno())
         draft.chmod(0o666 & ~_umask())
-        draft.replace(path)
+        try:
+            draft.replace(path)
+        except OSError as error:
+            raise OutputError(f"'{path.name[:60]}' cannot be written: {error.strerror}") from error
     except BaseException:
         _release()
         raise
     finally:
-        drafts.remove(path, os.getpid())  # more than one: Blender writes to a name with an @ first
+        for left in (draft, draft.with_name(f"{draft.name}@")):  # Blender writes to the second one first
+            left.unlink(missing_ok=True)
 
 
 def _release() -> None:

@@ -207,14 +207,15 @@ def test_drafts_of_the_dead_are_removed_and_those_of_the_living_stay(tmp_path):
         pass
     dead = tmp_path / f"{drafts.prefix(out, child.pid)}a.ply"
     living = tmp_path / f"{drafts.prefix(out, os.getppid())}a.ply"
-    other = tmp_path / f"{drafts.prefix(tmp_path / 'other.ply', child.pid)}a.ply"
+    other = tmp_path / f"{drafts.prefix(tmp_path / 'other.ply', os.getppid())}a.ply"
     for file in (dead, living, other):
         file.touch()
-    drafts.remove(out)
+    drafts.sweep(tmp_path)
     assert sorted(tmp_path.iterdir()) == sorted([living, other])
     drafts.remove(out, os.getppid())
     assert list(tmp_path.iterdir()) == [other]
-    drafts.remove(tmp_path / "nowhere" / "a.ply")
+    drafts.remove(tmp_path / "nowhere" / "a.ply", os.getpid())
+    drafts.sweep(tmp_path / "nowhere")
 
 
 @linux
