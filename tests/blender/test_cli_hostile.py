@@ -147,7 +147,9 @@ def test_two_signals_end_a_run_with_its_report_whole(tmp_path):
         process.stdout.read()
     assert process.returncode == 130
     found = {one: result["status"] for one, result in results(tmp_path).items()}
-    assert found in ({"i1": "ok", "i2": "error"}, {"i1": "ok"}), "the first signal may come before the second item"
+    assert found in ({"i1": "ok", "i2": "error"}, {"i1": "ok"}), (
+        "the first signal may come before the second item"
+    )
     assert list(outputs(tmp_path)) == ["a.ply"]
 
 
