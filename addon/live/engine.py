@@ -14,8 +14,9 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import meshes, profilecurve, strokes
+from .. import frames, meshes, profilecurve, strokes
 from ..api import Body
+from ..frames import is_linked
 from ..native import NativeError
 from ..outlines import Plane, Sketch, Stroke
 from .reading import LostError, sketch_of
@@ -36,13 +37,14 @@ class _State:
     """Fingerprint of what it was made of last, in full or quickly."""
     options: str
     lattice: Lattice | None = None
-    place: Any = None
-    """Where the drawing's object was."""
     since: float = 0.0
     """When it changed last; 0 when it was made in full."""
     failed: str = ""
     """Fingerprint of what has no body."""
 
+
+BY_HAND = "its mesh was changed by hand; Rebuild from Outline gives that up, Freeze keeps it"
+"""Why a body pauses whose mesh is not what was made of its stroke."""
 
 _states: dict[int, _State] = {}
 _rendering = False
@@ -57,13 +59,6 @@ def awake() -> bool:
     return not _rendering and not _busy and (in_background or not bpy.app.background)
 
 
-def is_linked(ob: bpy.types.Object) -> bool:
-    """Whether an object is a body with a link. To read a group of properties that is not there would make it."""
-    system = getattr(ob, "bl_system_properties_get", None)  # from Blender 5.0 on
-    stored = ob if system is None else system()
-    return stored is not None and "gridmesh_live" in stored and ob.gridmesh_live.linked
-
-
 def bodies(source: bpy.types.Object | None = None) -> list[bpy.types.Object]:
     """Bodies that are linked (to `source`)."""
     linked = [ob for ob in bpy.data.objects if ob.type == "MESH" and is_linked(ob)]
@@ -71,7 +66,10 @@ def bodies(source: bpy.types.Object | None = None) -> list[bpy.types.Object]:
 
 
 def link(ob: bpy.types.Object, stroke: Stroke, source: bpy.types.Object, maker: Any, *, follow: bool) -> None:
-    """Link a body that was just made from a stroke of `source`; `maker` has the options that it was made with."""
+    """Link a body that was just made from a stroke of `source`; `maker` has the options that it was made with.
+
+    Both have to be evaluated: they stay where they are, and from then on lie to each other as they do.
+    """
     live = ob.gridmesh_live
     live.linked, live.source, live.algorithm = True, source, ALGORITHM
     live.layer, live.stroke, live.count = stroke.layer, stroke.index, stroke.count
@@ -79,17 +77,37 @@ def link(ob: bpy.types.Object, stroke: Stroke, source: bpy.types.Object, maker: 
     points = maker.curve_points()
     if points is not None:
         profilecurve.put(ob, points)
+    if frames.stored(ob) is None:
+        known = meshes.LINK in ob
+        place = frames.carrier_world(source, stroke.layer)
+        frames.remember(
+            ob, meshes.frame_of_link(ob, place) if known else frames.apart(source, stroke.layer, ob)
+        )
+    if meshes.LINK in ob:
+        del ob[meshes.LINK]
     live.digest = ""
     live.enabled = follow
 
 
 def freeze(ob: bpy.types.Object) -> None:
-    """Make a plain mesh of a body: it knows nothing of its stroke any more."""
+    """Make a plain mesh of a body: it knows nothing of its stroke any more. An outline of its own goes."""
+    outline = frames.owned(ob)
     ob.property_unset("gridmesh_live")
+    ob.data.property_unset("gridmesh_made")
     profilecurve.remove(ob)
     if meshes.LINK in ob:
         del ob[meshes.LINK]
     _states.pop(ob.session_uid, None)
+    if outline is not None and not bodies(outline):
+        remove_drawing(outline)
+
+
+def remove_drawing(source: bpy.types.Object) -> None:
+    """Remove a grease pencil object, and its data if nobody else has it."""
+    data = source.data
+    bpy.data.objects.remove(source)
+    if not data.users:
+        bpy.data.batch_remove([data])
 
 
 def touch(ob: bpy.types.Object) -> None:
@@ -135,6 +153,8 @@ def _hindrance(ob: bpy.types.Object) -> str:
         return "it is being edited; leave its mode"
     if ob.data.shape_keys is not None:
         return "it has shape keys, which fit no new mesh"
+    if meshes.by_hand(ob.data):
+        return BY_HAND
     if ob.gridmesh_live.algorithm != ALGORITHM:
         return "it was made by another version of GridMesh; press Adopt to make it anew with this one"
     return ""
@@ -170,11 +190,13 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
             live.source = None  # a deleted drawing is not kept alive by its bodies
         _tell(live, str(error))
         return False
+    if frames.nested(live.source, ob):
+        frames.remember(ob, frames.frame(ob))
     mark, options = fingerprint(live, sketch), repr(_options(live))
     state = _states.get(uid)
     if live.digest == mark or (not full and state is not None and state.seen == mark):
         if state is None or state.seen != mark:
-            _states[uid] = _State(mark, options, place=_place(live.source))
+            _states[uid] = _State(mark, options)
         elif live.digest == mark:
             state.since = 0.0
         if (live.stroke, live.count) != (sketch.stroke.index, sketch.stroke.count):
@@ -186,8 +208,8 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
         return False
     lattice = None
     if not full and state is not None and state.options == options:
-        lattice = _dragged(ob, state)
-    state = _states[uid] = _State(mark, options, lattice, _place(live.source), perf_counter())
+        lattice = state.lattice or _stored(live)
+    state = _states[uid] = _State(mark, options, lattice, perf_counter())
     try:
         body, state.lattice = _solved(live, sketch, lattice)
     except (SolveError, NativeError) as error:
@@ -197,9 +219,10 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
         else:
             _wait()  # the best lattice may do, but to look for it would hold up the drag
         return False
-    write(ob, body, live.corner_angle, marks=lattice is None)
+    write(ob, meshes.in_space(body), live.corner_angle, marks=lattice is None)
     slots = [state.lattice.edge_length, state.lattice.angle, *state.lattice.origin]
     live.lattice = [float(value) for value in slots]
+    live.plane = [*state.lattice.plane.origin.tolist(), *state.lattice.plane.axes.ravel().tolist()]
     live.stroke, live.count = sketch.stroke.index, sketch.stroke.count
     live.digest = mark if lattice is None else ""
     state.since = 0.0 if lattice is None else perf_counter()
@@ -220,57 +243,40 @@ def _solved(live: Any, sketch: Sketch, lattice: Lattice | None) -> tuple[Body, L
     return solve(sketch, sketch_options, body_options, pen=pen)
 
 
-def _dragged(ob: bpy.types.Object, state: _State) -> Lattice | None:
-    """Return the lattice of the body as it is, moved along with the drawing's object."""
-    lattice = state.lattice
-    live = ob.gridmesh_live
-    if lattice is None:
-        if not live.lattice[0] or meshes.LINK not in ob:
-            return None
-        matrix = np.array(list(ob[meshes.LINK]["matrix"]), float).reshape(4, 4)
-        plane = Plane(matrix[:3, 3], matrix[:3, :3].T)
-        lattice = Lattice(plane, live.lattice[0], live.lattice[1], np.array(live.lattice[2:]))
-    now = _place(live.source)
-    if state.place is None or np.array_equal(now, state.place):
-        return lattice
-    try:
-        motion = now @ np.linalg.inv(state.place)
-    except np.linalg.LinAlgError:
+def _stored(live: Any) -> Lattice | None:
+    """Return the lattice of the body as it is, after a file was opened or a step undone."""
+    if not live.lattice[0]:
         return None
-    turn = motion[:3, :3]
-    if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-5) or np.linalg.det(turn) < 0:
-        return None
-    plane = Plane(turn @ lattice.plane.origin + motion[:3, 3], lattice.plane.axes @ turn.T)
-    return Lattice(plane, lattice.edge_length, lattice.angle, lattice.origin)
-
-
-def _place(source: bpy.types.Object) -> np.ndarray:
-    return np.array(source.matrix_world)
+    values = np.array(live.plane, float)
+    plane = Plane(values[:3], values[3:].reshape(3, 3))
+    return Lattice(plane, live.lattice[0], live.lattice[1], np.array(live.lattice[2:]))
 
 
 def write(ob: bpy.types.Object, body: Body, crease_angle: float, *, marks: bool) -> None:
     """Give an object another mesh of the same name; all that belongs to vertices stays where the triangles do.
 
-    marks : whether creases are marked anew where the triangles stay; while dragging they wait.
+    body : with vertices in the object's space. marks : whether creases are marked anew where the triangles stay;
+    while dragging they wait.
     """
     mesh = ob.data
-    triangles = np.ascontiguousarray(body.triangles, np.int32)
+    triangles = np.ascontiguousarray(body.triangles, np.int32).ravel()
     if len(mesh.vertices) != len(body.vertices) or len(mesh.loops) != triangles.size:
         meshes.refresh(ob, body, crease_angle)
         return
     corners = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("vertex_index", corners)
-    if not np.array_equal(corners, triangles.ravel()):
+    if not np.array_equal(corners, triangles):
         meshes.refresh(ob, body, crease_angle)
         return
-    mesh.vertices.foreach_set("co", np.ascontiguousarray(body.vertices, np.float32).ravel())
+    points = np.ascontiguousarray(body.vertices, np.float32).ravel()
+    mesh.vertices.foreach_set("co", points)
     layer = mesh.uv_layers.get(meshes.UV_MAP)
     if layer is not None:
         layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
     if marks:
         meshes.mark_creases(mesh, body, crease_angle)
     mesh.update()
-    meshes.move_along(ob, body)
+    mesh.gridmesh_made = meshes.fingerprint(points, corners, len(mesh.polygons))
 
 
 def _tell(live: Any, problem: str) -> None:

@@ -8,7 +8,7 @@ from time import perf_counter
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
-from .. import api, meshes, outlines, profilecurve, strokes
+from .. import api, frames, meshes, outlines, profilecurve, strokes
 from ..live import engine
 from ..progress import Pointer
 from ..properties import CurveOption, SketchOptions
@@ -130,6 +130,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
             notes += meshes.made_from_holes(context, sketches)
             sketches, refused = meshes.separate_blocked(context, sketches)
             failures += refused
+            sketches = meshes.localized(context, sketches, self.close_gaps)
         options = self.sketch_options(), self.body_options()
         if self.may_wait and api.expected_triangles(sketches, options[0]) > LONG:
             return self.wait(context, lambda progress: api.build(sketches, *options, progress))
@@ -187,11 +188,14 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
 
     def _link(self, context: bpy.types.Context, bodies: list[api.Body], made: list[bpy.types.Object]) -> None:
         """Let the bodies know their drawings, and those that know them already the options they have now."""
+        context.view_layer.update()
         for body, ob in zip(bodies, made, strict=True):
             source = context.view_layer.objects.get(body.sketch.stroke.source)
             if source is not None and (self.follow or engine.is_linked(ob)):
                 follow = self.follow or ob.gridmesh_live.enabled
                 engine.link(ob, body.sketch.stroke, source, self, follow=follow)
+                if follow:
+                    frames.carry(ob, source, body.sketch.stroke.layer)
                 if self.curve_points() is None and profilecurve.holder(ob) is not None:
                     engine.remake(ob)  # with the curve that it has
 
