@@ -72,8 +72,22 @@ def _parts() -> tuple[ModuleType, ...]:
     from . import cli, frames, keys, preset_files, translations, ui
     from .draw import cut_tool
     from .draw import operator as draw
-    from .live import engine, watch
+    from .live import engine, handlers, watch
     from .live import properties as live
     from .overlay import ui as overlay
 
-    return (translations, preset_files, ui, overlay, frames, live, engine, watch, draw, cut_tool, keys, cli)
+    return (
+        translations,
+        preset_files,
+        ui,
+        overlay,
+        frames,
+        live,
+        engine,
+        handlers,
+        watch,
+        draw,
+        cut_tool,
+        keys,
+        cli,
+    )

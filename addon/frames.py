@@ -35,6 +35,11 @@ def owned(ob: bpy.types.Object) -> bpy.types.Object | None:
     return source if nested(source, ob) and source.gridmesh_outline else None
 
 
+def astray(source: bpy.types.Object) -> bool:
+    """Whether an outline of a body is no longer the child of it, or of anything that has a body's link."""
+    return source.gridmesh_outline and (source.parent is None or not is_linked(source.parent))
+
+
 def layer_matrix(layer: Any) -> np.ndarray:
     """Matrix (4, 4) from a grease pencil layer to what carries it: its object, or the layer's own parent."""
     if layer.parent is None:
@@ -102,7 +107,7 @@ def nest(source: bpy.types.Object, ob: bpy.types.Object, matrix: np.ndarray) -> 
 def carry(ob: bpy.types.Object, source: bpy.types.Object, layer: str) -> None:
     """Make a body the child of what carries its strokes; it stays where it is. One with a parent keeps that."""
     above, bone = carrier(source, layer)
-    if ob.parent is not None or ob in _ancestors(above):
+    if ob.parent is not None or ob in ancestors(above):
         return
     world = Matrix(carrier_world(source, layer).tolist())
     if bone:
@@ -115,7 +120,7 @@ def carry(ob: bpy.types.Object, source: bpy.types.Object, layer: str) -> None:
     ob.matrix_parent_inverse = world.inverted()
 
 
-def _ancestors(ob: bpy.types.Object | None) -> list[bpy.types.Object]:
+def ancestors(ob: bpy.types.Object | None) -> list[bpy.types.Object]:
     """The object, its parent, and so on."""
     found = []
     while ob is not None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import api, frames, meshes, strokes
 from ..live import engine, outlined
+from ..live.linework import nearest
 from ..live.outlined import OutlineError, radii
 from ..live.reading import LostError, sketch_of
 from ..live.solve import TOO_THIN, Patience, reason_of
@@ -151,7 +152,7 @@ def _new(
         sketch = prepare(Stroke(world, False, "", "", 0, 1, widths=widths), close_gaps=1.0)
     except StrokeError as error:
         raise DrawError(str(error)) from error
-    carried = _nearest(sketch.outline, sketch.plane.local(world)[:, :2], widths)
+    carried = nearest(sketch.outline, sketch.plane.local(world)[:, :2], widths)
     body = outlined.make(context, [sketch.outline], [carried], sketch.plane.matrix, options)
     _select(context, [body])
     return Drawn("new", [body])
@@ -192,6 +193,8 @@ def _changed(
     gridmesh = native("combine")
     sketch, ob = found.sketch, found.ob
     live = ob.gridmesh_live
+    if meshes.by_hand(ob.data):
+        raise DrawError(engine.BY_HAND)
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     how = "union" if found.action == "extend" else "difference"
     parts = gridmesh.combine(sketch.outline, found.stroke, holes, how=how)
@@ -321,16 +324,7 @@ def _carried(
     ]
     points.append(stroke)
     values.append(radii(pressures, sketch.size))
-    return _nearest(ring, np.concatenate(points), np.concatenate(values))
-
-
-def _nearest(ring: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Value (n,) at each point of a ring: of the known point that is nearest."""
-    out = np.empty(len(ring))
-    for at in range(0, len(ring), 256):
-        apart = ring[at : at + 256, None] - known[None]
-        out[at : at + 256] = values[np.einsum("ijk,ijk->ij", apart, apart).argmin(axis=1)]
-    return out
+    return nearest(ring, np.concatenate(points), np.concatenate(values))
 
 
 def _select(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> None:

@@ -14,11 +14,12 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import frames, meshes, profilecurve, strokes
+from .. import frames, meshes, profilecurve
 from ..api import Body
-from ..frames import is_linked
 from ..native import NativeError
 from ..outlines import Plane, Sketch, Stroke
+from . import family, linework
+from .family import bodies
 from .reading import LostError, sketch_of
 from .solve import ALGORITHM, Lattice, LeftError, SolveError, digest, solve
 
@@ -36,6 +37,8 @@ class _State:
     seen: str
     """Fingerprint of what it was made of last, in full or quickly."""
     options: str
+    frame: bytes
+    """How the drawing lay to the body."""
     lattice: Lattice | None = None
     since: float = 0.0
     """When it changed last; 0 when it was made in full."""
@@ -47,7 +50,8 @@ BY_HAND = "its mesh was changed by hand; Rebuild from Outline gives that up, Fre
 """Why a body pauses whose mesh is not what was made of its stroke."""
 
 _states: dict[int, _State] = {}
-_rendering = False
+rendering = False
+"""Set while a render runs, during which nothing is changed."""
 _busy = False
 
 timing: list[float] = []
@@ -56,13 +60,7 @@ timing: list[float] = []
 
 def awake() -> bool:
     """Whether bodies may follow now."""
-    return not _rendering and not _busy and (in_background or not bpy.app.background)
-
-
-def bodies(source: bpy.types.Object | None = None) -> list[bpy.types.Object]:
-    """Bodies that are linked (to `source`)."""
-    linked = [ob for ob in bpy.data.objects if ob.type == "MESH" and is_linked(ob)]
-    return [ob for ob in linked if source is None or ob.gridmesh_live.source == source]
+    return not rendering and not _busy and (in_background or not bpy.app.background)
 
 
 def link(ob: bpy.types.Object, stroke: Stroke, source: bpy.types.Object, maker: Any, *, follow: bool) -> None:
@@ -86,12 +84,16 @@ def link(ob: bpy.types.Object, stroke: Stroke, source: bpy.types.Object, maker: 
     if meshes.LINK in ob:
         del ob[meshes.LINK]
     live.digest = ""
+    family.claim(ob)
+    family.note_place(ob)
     live.enabled = follow
 
 
 def freeze(ob: bpy.types.Object) -> None:
     """Make a plain mesh of a body: it knows nothing of its stroke any more. An outline of its own goes."""
     outline = frames.owned(ob)
+    if ob.data.users > 1:
+        ob.data = ob.data.copy()  # those that share it go on
     ob.property_unset("gridmesh_live")
     ob.data.property_unset("gridmesh_made")
     profilecurve.remove(ob)
@@ -99,29 +101,29 @@ def freeze(ob: bpy.types.Object) -> None:
         del ob[meshes.LINK]
     _states.pop(ob.session_uid, None)
     if outline is not None and not bodies(outline):
-        remove_drawing(outline)
-
-
-def remove_drawing(source: bpy.types.Object) -> None:
-    """Remove a grease pencil object, and its data if nobody else has it."""
-    data = source.data
-    bpy.data.objects.remove(source)
-    if not data.users:
-        bpy.data.batch_remove([data])
+        linework.remove(outline)
 
 
 def touch(ob: bpy.types.Object) -> None:
     """Let a body follow now if it is awake."""
     if awake():
-        _follow(ob, bpy.context.evaluated_depsgraph_get(), full=False)
+        follow(ob, bpy.context.evaluated_depsgraph_get())
 
 
 def settle() -> int:
+    """Bring bodies and drawings in order, and make every body in full that is not; return how many were made."""
+    if not awake():
+        return 0
+    family.mend()
+    return refresh()
+
+
+def refresh() -> int:
     """Make every body in full that is not; return how many were made."""
     if not awake():
         return 0
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    return sum(_follow(ob, depsgraph, full=True) for ob in bodies())
+    return sum(follow(ob, depsgraph, full=True) for ob in bodies())
 
 
 def remake(ob: bpy.types.Object) -> bool:
@@ -160,10 +162,10 @@ def _hindrance(ob: bpy.types.Object) -> str:
     return ""
 
 
-def _follow(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, full: bool) -> bool:
+def follow(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, full: bool = False) -> bool:
     """Bring a body up to date with its stroke; return whether its mesh was made anew."""
     global _busy
-    if not ob.gridmesh_live.enabled:
+    if not ob.gridmesh_live.enabled or family.writer(ob) != ob:
         return False
     started = perf_counter()
     _busy = True
@@ -186,17 +188,15 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
     try:
         sketch = sketch_of(ob, depsgraph)
     except LostError as error:
-        if live.source is not None and not live.source.users_scene:
-            live.source = None  # a deleted drawing is not kept alive by its bodies
         _tell(live, str(error))
         return False
-    if frames.nested(live.source, ob):
-        frames.remember(ob, frames.frame(ob))
+    _remember_frame(ob)
+    frame = _frame(ob)
     mark, options = fingerprint(live, sketch), repr(_options(live))
     state = _states.get(uid)
     if live.digest == mark or (not full and state is not None and state.seen == mark):
         if state is None or state.seen != mark:
-            _states[uid] = _State(mark, options)
+            _states[uid] = _State(mark, options, frame)
         elif live.digest == mark:
             state.since = 0.0
         if (live.stroke, live.count) != (sketch.stroke.index, sketch.stroke.count):
@@ -209,7 +209,7 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
     lattice = None
     if not full and state is not None and state.options == options:
         lattice = state.lattice or _stored(live)
-    state = _states[uid] = _State(mark, options, lattice, perf_counter())
+    state = _states[uid] = _State(mark, options, frame, lattice, perf_counter())
     try:
         body, state.lattice = _solved(live, sketch, lattice)
     except (SolveError, NativeError) as error:
@@ -230,6 +230,31 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
     if lattice is not None:
         _wait()
     return True
+
+
+def _frame(ob: bpy.types.Object) -> bytes:
+    """How the drawing of a body lies to it, to be compared."""
+    live = ob.gridmesh_live
+    layers = live.source.data.layers if live.source.type == "GREASEPENCIL" else ()
+    own = [frames.layer_matrix(layer).tobytes() for layer in layers if layer.name == live.layer]
+    return b"".join([frames.frame(ob).tobytes(), *own])
+
+
+def lies_otherwise(ob: bpy.types.Object) -> bool:
+    """Whether the drawing of a body lies in another way to it than when that was looked at last; or it was not."""
+    state = _states.get(ob.session_uid)
+    return state is None or ob.gridmesh_live.source is None or state.frame != _frame(ob)
+
+
+def _remember_frame(ob: bpy.types.Object) -> None:
+    """Store how an outline lies in its body, also with the bodies that share the mesh."""
+    source = ob.gridmesh_live.source
+    if not frames.nested(source, ob):
+        return
+    matrix = frames.frame(ob)
+    sharers = [ob] if ob.data.users < 2 else [other for other in bodies(source) if other.data == ob.data]
+    for one in sharers:
+        frames.remember(one, matrix)
 
 
 def _solved(live: Any, sketch: Sketch, lattice: Lattice | None) -> tuple[Body, Lattice]:
@@ -284,84 +309,17 @@ def _tell(live: Any, problem: str) -> None:
         live.problem = problem
 
 
-# ------------------------------------------------------------------------------------------------------ handlers
+# ------------------------------------------------------------------------------------------------ the end of a change
 
 
-_DRAWINGS = tuple(
-    getattr(bpy.types, name)
-    for name in ("Curve", "Curves", "GreasePencilv3", "GreasePencil")
-    if hasattr(bpy.types, name)
-)
-
-
-@bpy.app.handlers.persistent
-def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
-    """Let bodies follow whose drawing, or whose own properties, were changed."""
-    if not awake():
-        return
-    sources, drawings, own = [], [], []
-    for update in depsgraph.updates:
-        if isinstance(update.id, _DRAWINGS):
-            drawings.append(update.id.original)
-        elif isinstance(update.id, bpy.types.Object):
-            ob = update.id.original
-            if ob.type in strokes.SOURCE_TYPES:
-                sources.append(ob)
-            elif ob.type == "MESH" and is_linked(ob):
-                own.append(ob)
-    if sources or drawings:
-        for ob in bodies():
-            source = ob.gridmesh_live.source
-            if ob not in own and source is not None and (source in sources or source.data in drawings):
-                own.append(ob)
-    for ob in own:
-        _follow(ob, depsgraph, full=False)
-
-
-@bpy.app.handlers.persistent
-def _on_undo(*_: Any) -> None:
-    """After a step back or forth strokes and bodies may be of different times."""
-    _states.clear()
-    settle()
-
-
-@bpy.app.handlers.persistent
-def _on_load(*_: Any) -> None:
-    """A file that was opened is left as it is until something is changed."""
+def forget() -> None:
+    """Forget what is known of bodies: after a step back or forth, or in another file."""
     _states.clear()
 
 
-@bpy.app.handlers.persistent
-def _on_save(*_: Any) -> None:
-    """What is saved is made in full."""
-    if any(state.since for state in _states.values()):
-        settle()
-
-
-@bpy.app.handlers.persistent
-def _on_render(*_: Any) -> None:
-    global _rendering
-    _rendering = True
-
-
-@bpy.app.handlers.persistent
-def _after_render(*_: Any) -> None:
-    global _rendering
-    _rendering = False
-
-
-def _handlers() -> list[tuple[list[Any], Any]]:
-    on = bpy.app.handlers
-    return [
-        (on.depsgraph_update_post, _on_change),
-        (on.undo_post, _on_undo),
-        (on.redo_post, _on_undo),
-        (on.load_post, _on_load),
-        (on.save_pre, _on_save),
-        (on.render_init, _on_render),
-        (on.render_complete, _after_render),
-        (on.render_cancel, _after_render),
-    ]
+def unsettled() -> bool:
+    """Whether there are bodies that are not made in full."""
+    return any(state.since for state in _states.values())
 
 
 def _wait() -> None:
@@ -374,15 +332,15 @@ def _tick() -> float | None:
     last = max((state.since for state in _states.values()), default=0.0)
     if not last:
         return None
-    if perf_counter() - last < PAUSE or _tool_runs():
+    if perf_counter() - last < PAUSE or tool_runs():
         return 0.1
-    settle()
+    refresh()
     for uid in _states.keys() - {ob.session_uid for ob in bpy.data.objects}:
         del _states[uid]
-    return 0.1 if any(state.since for state in _states.values()) and awake() else None
+    return 0.1 if unsettled() and awake() else None
 
 
-def _tool_runs() -> bool:
+def tool_runs() -> bool:
     """Whether a tool is running that may go on changing the stroke: a drag is not over while it is."""
     aside = {"SCREEN_OT_animation_play", "SCREEN_OT_animation_step", "OBJECT_OT_gridmesh_draw"}
     return any(
@@ -393,17 +351,11 @@ def _tool_runs() -> bool:
 
 
 def register() -> None:
-    """Start to listen."""
-    for handlers, function in _handlers():
-        if function not in handlers:
-            handlers.append(function)
+    """Nothing to do before a body is changed."""
 
 
 def unregister() -> None:
     """Stop; bodies stay as they are."""
-    for handlers, function in _handlers():
-        if function in handlers:
-            handlers.remove(function)
     if bpy.app.timers.is_registered(_tick):
         bpy.app.timers.unregister(_tick)
     _states.clear()

@@ -80,6 +80,8 @@ class GridMeshLive(SketchOptions, ShapeOptions, bpy.types.PropertyGroup):
     """Matrix from the space of the drawing to that of the body, by rows; see `frames`. All 0 in files of 0.1.0."""
     plane: FloatVectorProperty(size=12, options={"HIDDEN"})
     """Plane of the sketch in the body's space when the body was made last: its origin and its axes."""
+    uid: IntProperty(options={"HIDDEN"})
+    """`session_uid` of the object, by which a copy is told from the body."""
     problem: StringProperty(options={"HIDDEN"})
     """Why the body does not follow now."""
 

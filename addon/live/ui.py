@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty
 
-from .. import profilecurve
+from .. import frames, profilecurve
 from ..strokes import selected
 from ..translations import CONTEXT
 from . import engine, watch
@@ -16,7 +16,7 @@ from .solve import ALGORITHM
 
 
 def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
-    return [ob for ob in selected(context) if ob.type == "MESH" and engine.is_linked(ob)]
+    return [ob for ob in selected(context) if ob.type == "MESH" and frames.is_linked(ob)]
 
 
 class _OnBodies:
@@ -123,7 +123,7 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
     def poll(cls, context: bpy.types.Context) -> bool:
         """Show it for bodies with a link."""
         active = context.view_layer.objects.active
-        return active is not None and active.type == "MESH" and engine.is_linked(active)
+        return active is not None and active.type == "MESH" and frames.is_linked(active)
 
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draw the switch."""

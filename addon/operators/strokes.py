@@ -191,7 +191,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         context.view_layer.update()
         for body, ob in zip(bodies, made, strict=True):
             source = context.view_layer.objects.get(body.sketch.stroke.source)
-            if source is not None and (self.follow or engine.is_linked(ob)):
+            if source is not None and (self.follow or frames.is_linked(ob)):
                 follow = self.follow or ob.gridmesh_live.enabled
                 engine.link(ob, body.sketch.stroke, source, self, follow=follow)
                 if follow:

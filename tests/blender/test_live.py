@@ -18,6 +18,7 @@ from drawings import (
     world_vertices,
 )
 
+from addon import frames
 from addon.live import engine
 
 pytestmark = pytest.mark.usefixtures("awake")
@@ -171,7 +172,7 @@ def test_frozen_it_is_a_plain_mesh(drawn):
     activate(body)
     assert bpy.ops.object.gridmesh_freeze() == {"FINISHED"}
     before = bytes_of(body)
-    assert not engine.is_linked(body)
+    assert not frames.is_linked(body)
     assert list(body.keys()) == []
     redraw(drawing, bump(bean(), 0.3))
     engine.settle()
