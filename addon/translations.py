@@ -180,8 +180,17 @@ GERMAN = {
         "Den Körper folgen lassen, wenn sein Strich bearbeitet wird; der Schalter ist in der Seitenleiste"
     ),
     "Live Body": "Lebender Körper",
-    "Make plain meshes of the selected bodies; they no longer know their drawing": (
-        "Aus den ausgewählten Körpern gewöhnliche Meshes machen, die ihre Zeichnung nicht mehr kennen"
+    "Make the bodies of the selected drawings, or the selected bodies, anew with these options; each stays the same "
+    "object. Strokes without a body get one": (
+        "Die Körper der ausgewählten Zeichnungen, oder die ausgewählten Körper, mit diesen Optionen neu machen; jeder "
+        "bleibt dasselbe Objekt. Striche ohne Körper bekommen einen"
+    ),
+    "Make the selected bodies anew from their outlines; what was changed in their meshes by hand is lost": (
+        "Die ausgewählten Körper neu aus ihren Umrissen machen; was von Hand an ihren Meshes geändert wurde, geht verloren"
+    ),
+    "Rebuild from Outline": "Neu aus dem Umriss",
+    "Make plain meshes of the selected bodies; outlines drawn with the tool are removed": (
+        "Aus den ausgewählten Körpern gewöhnliche Meshes machen; mit dem Werkzeug gezeichnete Umrisse werden entfernt"
     ),
     "Make the selected bodies anew with this version of GridMesh, and let them follow their drawing": (
         "Die ausgewählten Körper mit dieser Version von GridMesh neu machen und ihrer Zeichnung folgen lassen"

@@ -7,6 +7,8 @@ no tool is running, the best lattice is searched, so that the result depends on 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -104,6 +106,17 @@ def freeze(ob: bpy.types.Object) -> None:
         linework.remove(outline)
 
 
+@contextmanager
+def resting() -> Iterator[None]:
+    """Let no body follow for a while."""
+    global _busy
+    before, _busy = _busy, True
+    try:
+        yield
+    finally:
+        _busy = before
+
+
 def touch(ob: bpy.types.Object) -> None:
     """Let a body follow now if it is awake."""
     if awake():
@@ -128,14 +141,19 @@ def refresh() -> int:
 
 def remake(ob: bpy.types.Object) -> bool:
     """Make a body in full because somebody asked, whether it follows or not, and whether there is a window or not."""
-    global _busy
     _states.pop(ob.session_uid, None)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    _busy = True
-    try:
+    with resting():
         return _updated(ob, depsgraph, True)
-    finally:
-        _busy = False
+
+
+def rebuild(ob: bpy.types.Object) -> None:
+    """Make a body anew whose mesh was changed by hand, and let it follow again; the changes are lost."""
+    if ob.mode == "OBJECT" and ob.is_editable and ob.data.is_editable:
+        meshes.sign(ob.data)
+    ob.gridmesh_live.digest = ""
+    remake(ob)
+    ob.gridmesh_live.enabled = True
 
 
 def fingerprint(live: Any, sketch: Sketch) -> str:
@@ -164,15 +182,11 @@ def _hindrance(ob: bpy.types.Object) -> str:
 
 def follow(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, full: bool = False) -> bool:
     """Bring a body up to date with its stroke; return whether its mesh was made anew."""
-    global _busy
     if not ob.gridmesh_live.enabled or family.writer(ob) != ob:
         return False
     started = perf_counter()
-    _busy = True
-    try:
+    with resting():
         done = _updated(ob, depsgraph, full)
-    finally:
-        _busy = False
     if done:
         timing.append(perf_counter() - started)
         del timing[:-200]

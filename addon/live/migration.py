@@ -24,9 +24,10 @@ def migrate() -> str:
     old = [ob for ob in family.bodies() if frames.stored(ob) is None and ob.library is None]
     message = ""
     if old:
-        bpy.context.view_layer.update()
-        nested = sum(_migrate(ob) for ob in old)
-        bpy.context.view_layer.update()
+        with engine.resting():
+            bpy.context.view_layer.update()
+            nested = sum(_migrate(ob) for ob in old)
+            bpy.context.view_layer.update()
         message = (
             f"Live bodies of GridMesh 0.1.0: {len(old)}. Outlines that are now inside their bodies: {nested}"
         )

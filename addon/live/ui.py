@@ -8,10 +8,10 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty
 
-from .. import frames, profilecurve
+from .. import frames, meshes, profilecurve, wrapping
 from ..strokes import selected
 from ..translations import CONTEXT
-from . import engine, watch
+from . import engine, migration, watch
 from .solve import ALGORITHM
 
 
@@ -32,7 +32,7 @@ class _OnBodies:
 
 
 class OBJECT_OT_gridmesh_freeze(_OnBodies, bpy.types.Operator):  # noqa: N801
-    """Make plain meshes of the selected bodies; they no longer know their drawing"""  # noqa: D400 (the tooltip)
+    """Make plain meshes of the selected bodies; outlines drawn with the tool are removed"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_freeze"
     bl_label = "Freeze"
@@ -62,6 +62,25 @@ class OBJECT_OT_gridmesh_adopt(_OnBodies, bpy.types.Operator):  # noqa: N801
             live.enabled = True
             if live.problem:
                 problems.append(f"'{ob.name}': {live.problem}")
+        if problems:
+            self.report({"WARNING"}, "\n".join(problems[:3]))
+        return {"FINISHED"}
+
+
+class OBJECT_OT_gridmesh_rebuild(_OnBodies, bpy.types.Operator):  # noqa: N801
+    """Make the selected bodies anew from their outlines; what was changed in their meshes by hand is lost"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_rebuild"
+    bl_label = "Rebuild from Outline"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Give up what was changed by hand, and follow again; also in background: it was asked for."""
+        problems = []
+        for ob in _chosen(context):
+            engine.rebuild(ob)
+            if ob.gridmesh_live.problem:
+                problems.append(f"'{ob.name}': {ob.gridmesh_live.problem}")
         if problems:
             self.report({"WARNING"}, "\n".join(problems[:3]))
         return {"FINISHED"}
@@ -134,12 +153,16 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        live = context.view_layer.objects.active.gridmesh_live
+        active = context.view_layer.objects.active
+        live = active.gridmesh_live
+        if migration.message:
+            wrapping.label(layout, context, migration.message, icon="INFO")
         if live.problem and live.enabled:
-            column = layout.column(align=True)
+            column = layout.column()
             column.alert = True
-            for at in range(0, len(live.problem), 40):
-                column.label(text=live.problem[at : at + 40], icon="ERROR" if at == 0 else "BLANK1")
+            wrapping.label(column, context, live.problem, icon="ERROR")
+        if live.problem == engine.BY_HAND and meshes.by_hand(active.data):
+            layout.operator(OBJECT_OT_gridmesh_rebuild.bl_idname, icon="FILE_REFRESH")
         if live.algorithm != ALGORITHM:
             layout.operator(OBJECT_OT_gridmesh_adopt.bl_idname)
         layout.prop(live, "source")
@@ -153,6 +176,7 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
 classes = (
     OBJECT_OT_gridmesh_freeze,
     OBJECT_OT_gridmesh_adopt,
+    OBJECT_OT_gridmesh_rebuild,
     OBJECT_OT_gridmesh_curve,
     VIEW3D_PT_gridmesh_live,
 )

@@ -12,6 +12,7 @@ from .. import api, frames, meshes, outlines, profilecurve, strokes
 from ..live import engine
 from ..progress import Pointer
 from ..properties import CurveOption, SketchOptions
+from ..translations import CONTEXT
 from .messages import counted, listed
 from .waiting import Waiting
 
@@ -62,7 +63,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
     update_existing: BoolProperty(
         name="Update Existing",
         description="Replace the mesh of the object made from the stroke before, and keep all else of it",
-        default=False,
+        default=True,
         options={"SKIP_SAVE"},
     )
     collection: EnumProperty(
@@ -81,6 +82,17 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         default=False,
     )
     result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def description(cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Say what the button does that is pointed at."""
+        if properties.is_property_set("update_existing") and properties.update_existing:
+            return bpy.app.translations.pgettext_tip(
+                "Make the bodies of the selected drawings, or the selected bodies, anew with these options; each stays "
+                "the same object. Strokes without a body get one",
+                CONTEXT,
+            )
+        return ""  # the class says it
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -126,10 +138,12 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         if reading.wanted is not None:
             sketches, refused = _only(reading.wanted, sketches, chosen, refused)
         failures += refused
+        known: set[tuple[str, str, int]] = set()
         if self.update_existing:
             notes += meshes.made_from_holes(context, sketches)
             sketches, refused = meshes.separate_blocked(context, sketches)
             failures += refused
+            known = set(meshes.made_before(context))
             sketches = meshes.localized(context, sketches, self.close_gaps)
         options = self.sketch_options(), self.body_options()
         if self.may_wait and api.expected_triangles(sketches, options[0]) > LONG:
@@ -143,6 +157,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         failures += refused
         if not bodies:
             return self._refuse(*map(str, failures))
+        notes += _there_already(sum(body.sketch.stroke.key in known for body in bodies))
         made: list[bpy.types.Object] = []
         notes += meshes.place(
             context,
@@ -232,6 +247,18 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         )
         gaps = sum(body.sketch.closed_gap > 0 for body in bodies)
         return f"{text}; {counted(gaps, 'gap')} closed" if gaps else text
+
+
+def _there_already(updated: int) -> list[str]:
+    """Say that bodies were updated that had been made before."""
+    if not updated:
+        return []
+    what = (
+        "1 body was there already and was"
+        if updated == 1
+        else f"{updated} bodies were there already and were"
+    )
+    return [f"{what} updated; turn off Update Existing to make another"]
 
 
 def _read_for(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> strokes.Reading:
