@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import bpy
 
-BESIDE = 62
+BESIDE = 90
 """What is beside the text of a label with an icon, in pixels at a scale of 1: margins, icon, tabs."""
 
 NARROWEST = 60

@@ -182,7 +182,11 @@ def _hindrance(ob: bpy.types.Object) -> str:
 
 def follow(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, full: bool = False) -> bool:
     """Bring a body up to date with its stroke; return whether its mesh was made anew."""
-    if not ob.gridmesh_live.enabled or family.writer(ob) != ob:
+    if not ob.gridmesh_live.enabled:
+        return False
+    writer = family.writer(ob)
+    if writer != ob:
+        _tell(ob.gridmesh_live, writer.gridmesh_live.problem)
         return False
     started = perf_counter()
     with resting():

@@ -56,10 +56,16 @@ def known() -> list[bpy.types.Object]:
     """Bodies that were there when they were counted last, or that have changed since: cheap where there are none."""
     if _memory.bodies is None:
         _memory.bodies = {ob.session_uid: ob for ob in bodies()}
-    gone = [uid for uid, ob in _memory.bodies.items() if not _valid(ob)]
-    for uid in gone:
-        del _memory.bodies[uid]
     return list(_memory.bodies.values())
+
+
+def miss() -> bool:
+    """Count bodies out that were removed; say whether there were any."""
+    there = _memory.bodies or {}
+    gone = [uid for uid, ob in there.items() if not _valid(ob)]
+    for uid in gone:
+        del there[uid]
+    return bool(gone)
 
 
 def meet(ob: bpy.types.Object) -> bool:

@@ -44,7 +44,10 @@ def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
                 own.append((ob, update.is_updated_geometry or update.is_updated_shading))
         elif isinstance(changed, _ARRANGED):
             arranged = True
+    gone = family.miss()
     followers = family.known()
+    if gone:
+        _mend_soon()
     if not followers:
         return
     for ob in _concerned(followers, sources, drawings, own):

@@ -220,8 +220,9 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         objects = strokes.source_objects(context)
         if objects:
             return strokes.read_objects(context, objects)
-        if self.update_existing:
-            return _read_for(context, meshes.selected_bodies(context))
+        selected = meshes.selected_bodies(context) if self.update_existing else []
+        if selected:
+            return _read_for(context, selected)
         return strokes.Reading(notes=["no object with strokes is selected; select a drawing or a curve"])
 
     def _chosen(self, found: list[outlines.Stroke]) -> list[outlines.Stroke]:
