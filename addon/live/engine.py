@@ -87,6 +87,7 @@ def link(ob: bpy.types.Object, stroke: Stroke, source: bpy.types.Object, maker: 
         del ob[meshes.LINK]
     live.digest = ""
     family.claim(ob)
+    family.meet(ob)
     family.note_place(ob)
     live.enabled = follow
 

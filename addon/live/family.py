@@ -59,6 +59,13 @@ def known() -> list[bpy.types.Object]:
     return list(_memory.bodies.values())
 
 
+def nobody() -> bool:
+    """Whether there are no bodies, as far as is known; costs nothing."""
+    if _memory.bodies is None:
+        known()
+    return not _memory.bodies
+
+
 def miss() -> bool:
     """Count bodies out that were removed; say whether there were any."""
     there = _memory.bodies or {}

@@ -27,7 +27,7 @@ _ARRANGED = (bpy.types.Scene, bpy.types.Collection)
 @bpy.app.handlers.persistent
 def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
     """Let bodies follow whose drawing, or whose own properties, were changed."""
-    if not engine.awake():
+    if not engine.awake() or family.nobody():
         return
     sources, drawings, own = [], [], []
     arranged = new = False
@@ -46,16 +46,12 @@ def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
             arranged = True
     gone = family.miss()
     followers = family.known()
-    if gone:
-        _mend_soon()
-    if not followers:
-        return
     for ob in _concerned(followers, sources, drawings, own):
         engine.follow(ob, depsgraph)
     apart = any(frames.astray(ob) for ob in sources)
     for ob, _ in own:
         family.note_place(ob)
-    if arranged or new or apart:
+    if arranged or new or apart or gone:
         _mend_soon()
 
 
@@ -121,6 +117,12 @@ def _on_load(*_: Any) -> None:
 
 
 @bpy.app.handlers.persistent
+def _on_import(*_: Any) -> None:
+    """Bodies may have been appended or linked, where there were none."""
+    family.forget(everything=False)
+
+
+@bpy.app.handlers.persistent
 def _on_save(*_: Any) -> None:
     """What is saved is made in full."""
     if engine.unsettled():
@@ -146,6 +148,7 @@ def _handlers() -> list[tuple[list[Any], Any]]:
         (on.undo_post, _on_undo),
         (on.redo_post, _on_undo),
         (on.load_post, _on_load),
+        (on.blend_import_post, _on_import),
         (on.save_pre, _on_save),
         (on.render_init, _on_render),
         (on.render_complete, _after_render),

@@ -20,7 +20,7 @@ from mathutils import Matrix
 
 from addon import frames
 from addon.draw.gesture import pack
-from addon.live import engine
+from addon.live import engine, family
 from addon.live.reading import sketch_of
 
 pytestmark = pytest.mark.usefixtures("awake")
@@ -515,6 +515,20 @@ def test_the_loose_ends_of_the_stroke_are_not_kept():
     assert np.linalg.norm(lines, axis=1).max() < 2.1
 
 
+def test_bodies_that_are_appended_are_looked_at(tmp_path):
+    """Where there is none, changes are not looked at; one that comes from a file is seen without more."""
+    body, _ = by_tool()
+    name = body.name
+    path = str(tmp_path / "library.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    bpy.context.view_layer.update()
+    assert family.nobody()
+    bpy.ops.wm.append(directory=f"{path}/Object/", filename=name)
+    bpy.context.view_layer.update()
+    assert not family.nobody()
+
+
 @pytest.mark.parametrize("way", ["append", "load", "link"])
 def test_a_body_alone_from_another_file(tmp_path, pair, way):
     body, source = pair
@@ -575,8 +589,6 @@ def test_moving_costs_nothing(pair, monkeypatch):
 
 
 def test_nothing_is_walked_where_nothing_is_live(monkeypatch):
-    from addon.live import family
-
     ob = grease_pencil([bean()])
     bpy.context.view_layer.update()
     assert family.known() == []

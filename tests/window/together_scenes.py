@@ -62,8 +62,8 @@ def everything():
 def together_transforms():
     """A G X 2 Enter, A S 2 Enter, A R Y 90 Enter, and a drag: body and outline once, not twice; undo of each."""
     body = yield from drawn()
-    before, pivot = shape(body), np.array(body.matrix_world)[:3, 3]
-    about = Matrix.Translation(pivot)
+    before, place = shape(body), np.array(body.matrix_world)
+    about = Matrix.Translation(place[:3, 3])
     quarter = about @ Matrix.Rotation(np.pi / 2, 4, "Y") @ about.inverted()
     rows = [
         ("A G X 2", ("G", "X", "2", "RET"), Matrix.Translation((2, 0, 0))),
@@ -90,7 +90,7 @@ def together_transforms():
         yield from stage.press("LEFTMOUSE", "RELEASE")
         yield 1.0
         (body,) = bodies()
-        motion = np.array(body.matrix_world) @ np.linalg.inv(np.array(about))
+        motion = np.array(body.matrix_world) @ np.linalg.inv(place)
         assert np.abs(motion - np.eye(4)).max() > 0.05, f"{key} by dragging did nothing"
         check(body, before, motion, f"{key} by dragging")
         yield from undo()
