@@ -266,9 +266,16 @@ def digest(mesh: bpy.types.Mesh) -> str:
     """Fingerprint of the vertices and faces of a mesh. Other data of it does not count."""
     points = np.empty(len(mesh.vertices) * 3, np.float32)
     mesh.vertices.foreach_get("co", points)
+    return fingerprint(points, corners_of(mesh), len(mesh.polygons))
+
+
+def corners_of(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Vertex (int32) of each corner; as an attribute, which is many times as fast as from `loops`."""
     corners = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
-    return fingerprint(points, corners, len(mesh.polygons))
+    attribute = mesh.attributes.get(".corner_vert")
+    if attribute is not None:
+        attribute.data.foreach_get("value", corners)
+    return corners
 
 
 def fingerprint(points: np.ndarray, corners: np.ndarray, faces: int) -> str:

@@ -307,8 +307,7 @@ def write(ob: bpy.types.Object, body: Body, crease_angle: float, *, marks: bool)
     if len(mesh.vertices) != len(body.vertices) or len(mesh.loops) != triangles.size:
         meshes.refresh(ob, body, crease_angle)
         return
-    corners = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
+    corners = meshes.corners_of(mesh)
     if not np.array_equal(corners, triangles):
         meshes.refresh(ob, body, crease_angle)
         return
