@@ -17,7 +17,9 @@ class GridMeshCutTool(bpy.types.WorkSpaceTool):
     bl_context_mode = "OBJECT"
     bl_idname = "gridmesh.cut"
     bl_label = "GridMesh Cut"
-    bl_description = "Cut the selected meshes.\nDrag across them, then click the side to keep; Enter keeps both"
+    bl_description = (
+        "Cut the selected meshes.\nDrag across them, then click the side to keep; Enter keeps both"
+    )
     bl_icon = "ops.mesh.knife_tool"
     bl_cursor = "KNIFE"
     bl_keymap = (
