@@ -40,7 +40,7 @@ use crate::{arrays, reports};
 ///     False leaves the pieces open.
 /// edge_length : float, optional
 ///     Length of the edges along the cut, which are made even, and the faces along it rebuilt: what good
-///     caps need. None: the cut's edges are as the mesh's edges divide it.
+///     caps need. Of the stroke, what is within a hundredth of it counts as straight. None: the cut's edges are as the mesh's edges divide it.
 /// gap : float
 ///     Width of what is taken away between the pieces, half of it on either side of the stroke.
 /// smooth : {"flat", "tangent", "curvature"}

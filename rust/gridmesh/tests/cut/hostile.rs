@@ -88,7 +88,7 @@ fn progress_never_runs_backwards() {
 fn holes_are_punched_in_perspective() {
     for (mesh, r) in [(ball(24), 0.5), (ball(8), 0.5), (cube(), 0.3)] {
         for n in [12, 40] {
-            for k in 0..15 {
+            for k in (0..15).step_by(if mesh.0.len() > 500 { 1 } else { 5 }) {
                 for edge_length in [None, Some(0.1), Some(0.3)] {
                     let shift = 0.03 * f64::from(k);
                     let middle = if r < 0.4 { DVec3::new(0.5, 0.5, 1.0) } else { DVec3::ZERO };
@@ -110,7 +110,8 @@ fn holes_are_punched_in_perspective() {
 fn bulging_caps_stay_inside_the_piece() {
     for smooth in [Smooth::Tangent, Smooth::Curvature] {
         for y in [0.5, 0.9, 0.98, 0.999] {
-            let stroke = line(&[(-1.0, y), (2.0, y)]);
+            // To the right of it is a slab, into which the cap of the left bulges.
+            let stroke = line(&[(2.0, y), (-1.0, y)]);
             let options = CutOptions { smooth, edge_length: Some(0.25), ..down() };
             let done = cube().cut(&stroke, &options).unwrap();
             assert_closed(&done);
@@ -199,7 +200,7 @@ fn a_short_stroke_cuts_only_what_it_crosses() {
     let stroke = line(&[(1.5, 0.6), (2.4, -0.1)]);
     let all = mesh.cut(&stroke, &down()).unwrap();
     let done = mesh.cut(&stroke, &CutOptions { extend_ends: false, ..down() }).unwrap();
-    assert_eq!(all.report.loops, done.report.loops);
+    assert_eq!((all.report.loops, done.report.loops), (2, 1));
     let tilted = line(&[(1.2, 0.6), (1.4, -0.1)]);
     let ends = cut_reach(&mesh.0, mesh.faces(), &tilted, Sweep::Along(-DVec3::Z), Progress::NONE).unwrap();
     assert_eq!(ends, [tilted[0], tilted[1]]);
