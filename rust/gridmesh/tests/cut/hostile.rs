@@ -117,7 +117,7 @@ fn bulging_caps_stay_inside_the_piece() {
             assert_closed(&done);
             assert_mirrored(&done);
             assert_volumes(&done, 1e-6);
-            assert_eq!(done.report.reduced_caps > 0, y > 0.95, "{y} {:?}", done.report.volumes);
+            assert_eq!(done.report.reduced_caps > 0, y > 0.8, "{y} {:?}", done.report.volumes);
             // Alone it may bulge as it likes.
             let alone = cube().cut(&stroke, &CutOptions { keep: Keep::Left, ..options }).unwrap();
             assert_eq!(alone.report.reduced_caps, 0);
