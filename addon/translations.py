@@ -221,8 +221,8 @@ GERMAN = {
     "Facing the view, through the 3D cursor": "Der Ansicht zugewandt, durch den 3D-Cursor",
     "GridMesh Draw": "GridMesh zeichnen",
     "GridMesh Cut": "GridMesh schneiden",
-    "Cut the active mesh.\nDrag across it, then click the side to keep; Enter keeps both": (
-        "Das aktive Mesh zerschneiden.\nQuer darüber ziehen, dann die Seite anklicken, die bleibt; Eingabe behält beide"
+    "Cut the selected meshes.\nDrag across them, then click the side to keep; Enter keeps both": (
+        "Die ausgewählten Meshes zerschneiden.\nQuer darüber ziehen, dann die Seite anklicken, die bleibt; Eingabe behält beide"
     ),
     "How much the pressure of the pen drives the depth of the body": (
         "Wie sehr der Druck des Stifts die Tiefe des Körpers bestimmt"
@@ -307,9 +307,15 @@ GERMAN = {
     "Cut & Cap": "Schneiden und schließen",
     "Cut & Cap along Stroke": "Am Strich schneiden und schließen",
     "Cut along Stroke": "Am Strich schneiden",
-    "Cut the active mesh along a stroke and close it with regular triangle patches": (
-        "Das aktive Mesh an einem Strich schneiden und mit regelmäßigen Flicken aus Dreiecken schließen"
+    "Continue the ends of the stroke straight on through everything; otherwise only as far as the part of the mesh "
+    "that the stroke crosses": (
+        "Die Enden des Strichs geradeaus durch alles fortsetzen; sonst nur so weit wie der Teil des Mesh, den der "
+        "Strich quert"
     ),
+    "Cut the selected meshes along a stroke and close them with regular triangle patches": (
+        "Die ausgewählten Meshes an einem Strich schneiden und mit regelmäßigen Flicken aus Dreiecken schließen"
+    ),
+    "Extend Ends": "Enden verlängern",
     "Direction": "Richtung",
     "Direction that the stroke is swept along, through the model": (
         "Richtung, in der der Strich durch das Modell gezogen wird"

@@ -53,9 +53,12 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<cut::Cut>()?;
     module.add_class::<cut::Piece>()?;
     module.add_function(wrap_pyfunction!(cut::cut, module)?)?;
+    module.add_function(wrap_pyfunction!(cut::cut_reach, module)?)?;
     module.add_function(wrap_pyfunction!(patch::_patch, module)?)?;
     module.add_function(wrap_pyfunction!(surface::_surface, module)?)?;
     module.add_function(wrap_pyfunction!(fill::_fill, module)?)?;
     module.add_function(wrap_pyfunction!(regrid::_regrid, module)?)?;
+    module.add_function(wrap_pyfunction!(cut::_cut, module)?)?;
+    module.add_function(wrap_pyfunction!(cut::_piece, module)?)?;
     Ok(())
 }

@@ -221,6 +221,11 @@ pub enum Error {
         /// Where.
         at: [f64; 3],
     },
+    /// What a stroke crosses without its ends continued hangs together around the cut.
+    StillJoined {
+        /// Where.
+        at: [f64; 3],
+    },
 }
 
 impl Error {
@@ -258,6 +263,7 @@ impl Error {
             Error::StrokeMisses => "stroke_misses",
             Error::BehindEye { .. } => "behind_eye",
             Error::CutFailed { .. } => "cut_failed",
+            Error::StillJoined { .. } => "still_joined",
         }
     }
 }
@@ -408,6 +414,11 @@ impl fmt::Display for Error {
                 f,
                 "the mesh cannot be cut here: {reason}, near ({x:.6}, {y:.6}, {z:.6}); move the stroke a little, \
                  or merge vertices that nearly coincide there"
+            ),
+            Error::StillJoined { at: [x, y, z] } => write!(
+                f,
+                "what the stroke crosses still hangs together around the cut, near ({x:.6}, {y:.6}, {z:.6}); \
+                 draw it across all that must come apart, or let its ends be extended"
             ),
         }
     }

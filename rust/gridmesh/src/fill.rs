@@ -14,7 +14,7 @@ mod grown;
 pub mod holes;
 mod lobes;
 mod mean_value;
-mod meet;
+pub(crate) mod meet;
 mod mesh;
 mod one;
 mod options;

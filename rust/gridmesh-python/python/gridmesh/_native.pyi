@@ -14,12 +14,15 @@ __all__ = [
     "Regrid",
     "Surface",
     "__version__",
+    "_cut",
     "_fill",
     "_patch",
+    "_piece",
     "_regrid",
     "_surface",
     "combine",
     "cut",
+    "cut_reach",
     "fill_hole",
     "fill_holes",
     "flat",
@@ -220,6 +223,7 @@ class Piece:
     def side(self) -> Literal["left", "right"]: ...
     def __copy__(self) -> Piece: ...
     def __deepcopy__(self, _memo: object, /) -> Piece: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Cut:
@@ -229,6 +233,7 @@ class Cut:
     def report(self) -> dict[str, Any]: ...
     def __copy__(self) -> Cut: ...
     def __deepcopy__(self, _memo: object, /) -> Cut: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 def cut(
     vertices: npt.ArrayLike,
@@ -242,8 +247,20 @@ def cut(
     edge_length: float | None = None,
     gap: float = 0.0,
     smooth: Literal["flat", "tangent", "curvature"] = "flat",
+    extend_ends: bool = True,
+    mirrors: Sequence[Sequence[Sequence[float]]] | npt.NDArray[np.float64] = (),
+    mirror_distance: float = 0.0,
     progress: _Progress | None = None,
 ) -> Cut: ...
+def cut_reach(
+    vertices: npt.ArrayLike,
+    faces: npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike],
+    stroke: npt.ArrayLike,
+    *,
+    direction: npt.ArrayLike | None = None,
+    eye: npt.ArrayLike | None = None,
+    progress: _Progress | None = None,
+) -> npt.NDArray[np.float64]: ...
 def map_sketches(
     outlines: Iterable[_Points | tuple[_Points, Sequence[_Points]]],
     *,
@@ -267,4 +284,6 @@ def _fill(
     patch: Any,
     report: Any,
 ) -> Fill: ...
+def _cut(pieces: Any, report: Any) -> Cut: ...
+def _piece(left: Any, positions: Any, faces: Any, cap_loops: Any) -> Piece: ...
 def _regrid(fill: Any, source_faces: Any, source_weights: Any, unused: Any, off: Any) -> Regrid: ...
