@@ -3,12 +3,13 @@
 use glam::{DVec2, DVec3};
 
 use super::fair::{Bending, Membrane, seams};
-use super::meet::{count_meetings, is_graph};
+use super::meet::{MOST, count_meetings, is_graph};
 use super::patchwork::Patchwork;
 use super::sweep::sweep;
 use super::unroll::area_vector;
 use super::{Shape, Smooth};
 use crate::error::{Error, Result};
+use crate::progress::Progress;
 
 /// Weight of the angles across the loop's edges against the curvatures at the vertices. Chosen on disks cut
 /// from meshes: with 0.7 the seam is rougher than its surroundings by a fifth, with more than 3 the
@@ -57,11 +58,13 @@ pub(super) struct Faults {
 }
 
 impl Faults {
-    fn of(work: &Patchwork, positions: &[DVec3]) -> Faults {
+    /// Meetings are counted up to `most`, or some more.
+    fn of(work: &Patchwork, positions: &[DVec3], most: usize, progress: Progress<'_>) -> Result<Faults> {
         let (own, around) = work.triangles.split_at(work.n_patch);
         let apart = is_graph(&positions[..work.n], &positions[..work.end], own);
-        let (meetings, _) = count_meetings(|v| positions[v as usize], own, around, apart);
-        Faults { meetings, film: false, folds: folds(work, positions) }
+        let (meetings, _) =
+            count_meetings(|v| positions[v as usize], own, around, apart, most, progress)?;
+        Ok(Faults { meetings, film: false, folds: folds(work, positions) })
     }
 }
 
@@ -72,7 +75,7 @@ impl Shape {
     /// thin plate on the film's metric. Then rounds that separate shape and sampling: sweeps within
     /// the surface make the triangles good, a step along the normals makes the bending small. Neither undoes
     /// the other, as each solve in three coordinates would.
-    pub(super) fn solve(&self, mesh: &[DVec3]) -> Result<Solved> {
+    pub(super) fn solve(&self, mesh: &[DVec3], progress: Progress<'_>) -> Result<Solved> {
         let work = &self.work;
         let mut positions = vec![DVec3::ZERO; work.len()];
         for (k, &v) in self.loop_.iter().enumerate() {
@@ -83,28 +86,33 @@ impl Shape {
         }
         let membrane = if work.inner().is_empty() { None } else { self.film(&mut positions)? };
         let rim_angle = rim_angle(work, &positions);
+        progress.report(0.2)?;
         let mut solved = Solved { positions, faults: Faults::default(), repaired: 0, rim_angle };
         let mut stages = vec![];
         if !work.inner().is_empty() && self.smooth != Smooth::Flat && work.closed[..work.n].contains(&true) {
             stages.push(solved.positions.clone());
-            match self.bend(&mut solved.positions, membrane, &mut stages) {
+            match self.bend(&mut solved.positions, membrane, &mut stages, progress.part(0.2, 0.6)) {
                 Ok(()) => {}
                 // Triangles without area can spoil the equations: what was reached before has to do.
                 Err(Error::Solver { .. }) => {
-                    solved.positions = stages.pop().unwrap_or_default();
+                    let before = stages.pop().ok_or(Error::Internal { reason: "no film to fall back on" })?;
+                    solved.positions = before;
                     solved.repaired = 1;
                 }
                 Err(other) => return Err(other),
             }
         }
-        solved.faults = Faults::of(work, &solved.positions);
+        solved.faults = Faults::of(work, &solved.positions, MOST, progress.part(0.6, 0.8))?;
         // The film has the fewest faults, but it does not continue the surface: it is for patches that meet
         // something and could do without.
         for (k, stage) in stages.into_iter().enumerate().rev() {
             if solved.faults == Faults::default() || (k == 0 && solved.faults.meetings == 0) {
                 break;
             }
-            let faults = Faults { film: k == 0, ..Faults::of(work, &stage) };
+            // More than these need not be counted: such a stage is no better.
+            let most = if k == 0 { 1 } else { solved.faults.meetings + 1 };
+            let faults = Faults::of(work, &stage, most, progress.part(0.8, 1.0))?;
+            let faults = Faults { film: k == 0, ..faults };
             if faults < solved.faults && (k > 0 || faults.meetings == 0) {
                 (solved.positions, solved.faults, solved.repaired) = (stage, faults, 1);
             }
@@ -137,10 +145,13 @@ impl Shape {
         positions: &mut [DVec3],
         membrane: Option<Membrane<'_>>,
         stages: &mut Vec<Vec<DVec3>>,
+        progress: Progress<'_>,
     ) -> Result<()> {
         let work = &self.work;
         let bending = Bending::new(work)?;
+        progress.report(0.1)?;
         bending.positions(positions)?;
+        sound(positions)?;
         let membrane = match (self.smooth, membrane) {
             (Smooth::Curvature, None) => Some(Membrane::new(work)?),
             (Smooth::Curvature, some) => some,
@@ -155,10 +166,13 @@ impl Shape {
         for _ in 0..rounds {
             stages.push(positions.to_vec());
             for _ in 0..SWEEPS {
+                progress.report(0.2)?;
                 sweep(work, positions);
             }
+            progress.report(0.5)?;
             let target = membrane.as_ref().map(|m| curvature_target(work, m, positions)).transpose()?;
             let [before, after] = bending.normal_step(positions, seam, target.as_deref())?;
+            sound(positions)?;
             if after > (1.0 - SETTLED) * before {
                 break;
             }
@@ -220,6 +234,14 @@ impl Shape {
         }
         Ok(all)
     }
+}
+
+/// Refuses positions that are not finite, as surroundings of very different sizes can bring about.
+fn sound(positions: &[DVec3]) -> Result<()> {
+    if positions.iter().all(|p| p.is_finite()) {
+        return Ok(());
+    }
+    Err(Error::Solver { stage: "fill", reason: "a vertex is not finite".into() })
 }
 
 /// The way from the plane to space if the flat loop is the loop itself, moved rigidly.

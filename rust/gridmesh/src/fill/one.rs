@@ -40,11 +40,11 @@ impl Job<'_> {
         let around = checked.vertices.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
         let unrolled = unroll(&around);
         clock.stage("unroll");
-        let mut best = task.attempt(unrolled, &mut clock, progress)?;
+        let mut best = task.attempt(unrolled, &mut clock, progress.part(0.1, 0.7))?;
         if best.solved.faults != Faults::default()
             && let Some(unrolled) = unroll_least_bent(&around, &task.outside())
         {
-            let other = task.attempt(unrolled, &mut clock, progress)?;
+            let other = task.attempt(unrolled, &mut clock, progress.part(0.7, 1.0))?;
             if other.solved.faults < best.solved.faults {
                 best = other;
             }
@@ -69,7 +69,7 @@ impl Task<'_> {
         let is_taken = |i: usize, j: usize| self.taken.has(i, j);
         // A triangle that the mesh has already is filled with three others.
         let options = FlatOptions { single: !self.taken.face, ..FlatOptions::default() };
-        let patch = fill_flat(&unrolled.points, &wanted, &is_taken, &options, progress)?;
+        let patch = fill_flat(&unrolled.points, &wanted, &is_taken, &options, progress.part(0.0, 0.6))?;
         if patch.quality.repeated > 0 {
             return Err(Error::NoPatch {
                 reason: "every patch repeats an edge of the mesh".into(),
@@ -77,10 +77,10 @@ impl Task<'_> {
             });
         }
         clock.stage("grid");
-        progress.report(0.0)?;
+        progress.report(0.6)?;
 
         let rings = if smooth == Smooth::Curvature { 2 } else { 1 };
-        let work = Patchwork::new(loop_, patch.interior.len(), &patch.triangles, self.rim, rings);
+        let work = Patchwork::new(loop_, patch.interior.len(), &patch.triangles, self.rim, rings)?;
         let shape = Shape {
             work,
             loop_: loop_.clone(),
@@ -90,7 +90,7 @@ impl Task<'_> {
             vertices: self.job.vertices.len(),
             positions: vec![],
         };
-        let solved = shape.solve(self.job.vertices)?;
+        let solved = shape.solve(self.job.vertices, progress.part(0.6, 1.0))?;
         clock.stage("fair");
         Ok(Attempt { unrolled, patch, shape, solved })
     }

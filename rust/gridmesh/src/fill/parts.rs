@@ -79,7 +79,7 @@ impl Fill {
         let name = |v: u32| if (v as usize) < n { loop_[v as usize] } else { v - n as u32 + vertices as u32 };
         let named = triangles[..patch].iter().map(|t| t.map(name)).collect();
         let given = if reversed { loop_.iter().rev().copied().collect() } else { loop_.clone() };
-        let work = Patchwork::of(n, end, outer, triangles, patch);
+        let work = Patchwork::of(n, end, outer, triangles, patch)?;
         let new = positions[n..end].to_vec();
         let shape = Arc::new(Shape { work, loop_, reversed, flat, smooth, vertices, positions });
         Ok(Fill { loop_: given, vertices: new, triangles: named, report, shape })
