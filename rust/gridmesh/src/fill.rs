@@ -27,6 +27,7 @@ mod regrid;
 mod report;
 mod reserve;
 mod settle;
+mod sharp;
 mod small;
 mod solver;
 mod span;
@@ -70,6 +71,8 @@ pub struct Fill {
     pub triangles: Vec<[u32; 3]>,
     /// Numbers about it.
     pub report: FillReport,
+    /// Edges of the patch along which a hard edge of the surroundings goes on, numbered as the triangles are.
+    pub creases: Vec<[u32; 2]>,
     shape: Arc<Shape>,
 }
 
@@ -83,6 +86,8 @@ struct Shape {
     smooth: Smooth,
     vertices: usize,
     positions: Vec<DVec3>,
+    /// Hard edges; where there are some, `flat` has each planar part in a place of its own.
+    creases: Vec<[u32; 2]>,
 }
 
 /// Fills one hole of a mesh, or a loop of edges without a mesh.
@@ -92,6 +97,9 @@ struct Shape {
 /// edges gets one new triangle, wound against its neighbour (against most of the neighbours, where they
 /// disagree). The patch is a disk, and no new edge or face repeats one of the mesh. It may meet itself or
 /// the mesh, as any filling of a knotted loop has to; the report counts this and `strict` refuses it.
+///
+/// With `sharp`, hard edges of the surroundings that run into the loop go on in the patch, if they meet in one line
+/// or one point and the surface between them is planar; the report says how many do.
 ///
 /// Work is local but for passes over the mesh that find the triangles near the loop. The same input
 /// gives the same output for any number of threads.
@@ -310,6 +318,9 @@ impl Fill {
         let near = self.shape.loop_.iter().chain(&self.shape.work.outer);
         if let Some(&v) = near.into_iter().find(|&&v| !vertices[v as usize].is_finite()) {
             return Err(Error::NotFinite { what: "mesh".into(), point: v as usize });
+        }
+        if !self.shape.creases.is_empty() {
+            return self.shape.carried(vertices);
         }
         let positions = self.shape.solve(vertices, Progress::NONE)?.positions;
         Ok(positions[self.shape.work.inner()].to_vec())

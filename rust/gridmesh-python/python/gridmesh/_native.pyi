@@ -107,6 +107,8 @@ class Fill:
     @property
     def triangles(self) -> npt.NDArray[np.int32]: ...
     @property
+    def creases(self) -> npt.NDArray[np.int32]: ...
+    @property
     def report(self) -> dict[str, Any]: ...
     def extend(self, values: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
     def refit(self, vertices: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
@@ -175,6 +177,8 @@ def fill_hole(
     smooth: Literal["flat", "tangent", "curvature"] = "tangent",
     strict: bool = False,
     polygons: npt.ArrayLike | None = None,
+    sharp: float | None = None,
+    creases: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> Fill: ...
 def fill_holes(
@@ -186,6 +190,8 @@ def fill_holes(
     smooth: Literal["flat", "tangent", "curvature"] = "tangent",
     strict: bool = False,
     polygons: npt.ArrayLike | None = None,
+    sharp: float | None = None,
+    creases: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> list[Fill | GridMeshError]: ...
 def regrid(
@@ -265,6 +271,7 @@ def _fill(
     outer: Any,
     triangles: Any,
     patch: Any,
+    creases: Any,
     report: Any,
 ) -> Fill: ...
 def _regrid(fill: Any, source_faces: Any, source_weights: Any, unused: Any, off: Any) -> Regrid: ...

@@ -1,9 +1,9 @@
 //! Positions and data of the new vertices.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::fair::{Bending, Membrane, seams};
-use super::meet::{MOST, count_meetings, is_graph};
+use super::meet::{count_meetings, is_graph};
 use super::patchwork::Patchwork;
 use super::sweep::sweep;
 use super::unroll::area_vector;
@@ -32,6 +32,9 @@ const SETTLED: f64 = 1e-3;
 /// of those given.
 pub(super) const LEAST_WEIGHT: f64 = 1e-3;
 
+/// Patches with this many meetings count as equally tangled: to count on takes time and helps nobody.
+const TANGLED: usize = 2000;
+
 /// A loop counts as planar if it leaves its plane by less than this share of its size.
 const PLANAR: f64 = 1e-12;
 
@@ -59,11 +62,16 @@ pub(super) struct Faults {
 
 impl Faults {
     /// Meetings are counted up to `most`, or some more.
-    fn of(work: &Patchwork, positions: &[DVec3], most: usize, progress: Progress<'_>) -> Result<Faults> {
+    pub(super) fn of(
+        work: &Patchwork,
+        positions: &[DVec3],
+        most: usize,
+        progress: Progress<'_>,
+    ) -> Result<Faults> {
         let (own, around) = work.triangles.split_at(work.n_patch);
         let apart = is_graph(&positions[..work.n], &positions[..work.end], own);
-        let (meetings, _) =
-            count_meetings(|v| positions[v as usize], own, around, apart, most, progress)?;
+        let (meetings, _) = count_meetings(|v| positions[v as usize], own, around, apart, most, progress)?;
+        let meetings = meetings.min(TANGLED);
         Ok(Faults { meetings, film: false, folds: folds(work, positions) })
     }
 }
@@ -102,7 +110,7 @@ impl Shape {
                 Err(other) => return Err(other),
             }
         }
-        solved.faults = Faults::of(work, &solved.positions, MOST, progress.part(0.6, 0.8))?;
+        solved.faults = Faults::of(work, &solved.positions, TANGLED, progress.part(0.6, 0.8))?;
         // The film has the fewest faults, but it does not continue the surface: it is for patches that meet
         // something and could do without.
         for (k, stage) in stages.into_iter().enumerate().rev() {
@@ -118,6 +126,43 @@ impl Shape {
             }
         }
         Ok(solved)
+    }
+
+    /// New vertices for a mesh at `mesh`, moved with the loop: by the affine map that fits its displacement best,
+    /// and what that leaves extended harmonically. So hard edges stay straight.
+    pub(super) fn carried(&self, mesh: &[DVec3]) -> Result<Vec<DVec3>> {
+        let work = &self.work;
+        let before = |v: usize| self.positions[v];
+        let after = |v: usize| {
+            if v < work.n { mesh[self.loop_[v] as usize] } else { mesh[work.outer[v - work.end] as usize] }
+        };
+        let given = (0..work.n).chain(work.end..work.len()).collect::<Vec<_>>();
+        let count = given.len() as f64;
+        let centre = given.iter().map(|&v| before(v)).sum::<DVec3>() / count;
+        let shift = given.iter().map(|&v| after(v) - before(v)).sum::<DVec3>() / count;
+        let size = given.iter().map(|&v| before(v).distance(centre)).fold(f64::MIN_POSITIVE, f64::max);
+        let (mut spread, mut moved) = (DMat3::ZERO, DMat3::ZERO);
+        for &v in &given {
+            let (x, d) = ((before(v) - centre) / size, after(v) - before(v) - shift);
+            spread += DMat3::from_cols(x * x.x, x * x.y, x * x.z);
+            moved += DMat3::from_cols(d * x.x, d * x.y, d * x.z);
+        }
+        // Of planar surroundings the way across the plane is not known: it stays as it is.
+        let turned = moved * (spread + DMat3::IDENTITY * 1e-9).inverse();
+        let affine = |p: DVec3| shift + turned * ((p - centre) / size);
+        let mut found = self.positions[work.inner()].iter().map(|&p| p + affine(p)).collect::<Vec<_>>();
+        let left = |v: usize| after(v) - before(v) - affine(before(v));
+        if found.is_empty() || (0..work.n).all(|v| left(v) == DVec3::ZERO) {
+            return Ok(found);
+        }
+        let weights =
+            work.cotangents(&self.positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
+        let rest = Membrane::new(work)?.harmonic(&weights, |v| left(v).to_array())?;
+        for (p, rest) in found.iter_mut().zip(rest) {
+            *p += DVec3::from(rest);
+        }
+        sound(&found)?;
+        Ok(found)
     }
 
     /// Places the new vertices on a film in the loop.
@@ -293,7 +338,7 @@ fn curvature_target(work: &Patchwork, membrane: &Membrane<'_>, positions: &[DVec
 }
 
 /// Mean angle across the loop's edges, weighted by length.
-fn rim_angle(work: &Patchwork, positions: &[DVec3]) -> f64 {
+pub(super) fn rim_angle(work: &Patchwork, positions: &[DVec3]) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
     for [a, b, c, d] in seams(work) {
         let [a, b, c, d] = [a, b, c, d].map(|v| positions[v as usize]);

@@ -19,10 +19,10 @@ const CELLS: usize = 48;
 pub(crate) const MOST: usize = 100_000;
 
 /// Triangles between two looks at how many meetings there are, and whether to go on.
-const BLOCK: usize = 512;
+const BLOCK: usize = 256;
 
 /// The same where one thread works alone.
-const SMALL_BLOCK: usize = 128;
+const SMALL_BLOCK: usize = 16;
 
 /// From this number of triangles on the work is shared among threads.
 const MANY: usize = 4096;
@@ -95,9 +95,8 @@ pub(crate) fn near_boxes(boxes: &[Box3], positions: &[DVec3], triangles: &[[u32;
                 let own = Box3::around(t.map(|v| positions[v as usize]));
                 let (low, high) = (cell(own.low), cell(own.high));
                 let hit = (low.z..=high.z).any(|z| {
-                    (low.y..=high.y).any(|y| {
-                        taken[cell_number(low.x, y, z)..=cell_number(high.x, y, z)].contains(&true)
-                    })
+                    (low.y..=high.y)
+                        .any(|y| taken[cell_number(low.x, y, z)..=cell_number(high.x, y, z)].contains(&true))
                 });
                 if !hit {
                     continue;

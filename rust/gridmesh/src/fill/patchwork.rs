@@ -75,7 +75,13 @@ impl Patchwork {
     ///
     /// # Errors
     /// [`Error::Internal`].
-    pub fn of(n: usize, end: usize, outer: Vec<u32>, triangles: Vec<[u32; 3]>, n_patch: usize) -> Result<Self> {
+    pub fn of(
+        n: usize,
+        end: usize,
+        outer: Vec<u32>,
+        triangles: Vec<[u32; 3]>,
+        n_patch: usize,
+    ) -> Result<Self> {
         let count = end + outer.len();
         let mut it = Patchwork {
             n,

@@ -77,7 +77,8 @@ fn replaced(
     }
     let pick = |wanted: bool| -> (Vec<u32>, Vec<[u32; 3]>) {
         // Triangles that repeat a vertex are no part of a region, but their edges are not to be repeated.
-        let kept = (0..triangles.len()).filter(|&t| chosen[t] == wanted && !(wanted && repeats(&triangles[t])));
+        let kept =
+            (0..triangles.len()).filter(|&t| chosen[t] == wanted && !(wanted && repeats(&triangles[t])));
         kept.map(|t| (t as u32, triangles[t])).unzip()
     };
     let ((numbers, region), (kept, rest)) = (pick(true), pick(false));
@@ -103,7 +104,7 @@ fn replaced(
         if polygons.is_empty() { vec![] } else { kept.iter().map(|&t| polygons[t as usize]).collect() };
     let options = &FillOptions { polygons, ..options.clone() };
     // What counts is where the vertices come to lie in the end.
-    let first = FillOptions { smooth: Smooth::Flat, strict: false, ..options.clone() };
+    let first = FillOptions { smooth: Smooth::Flat, strict: false, sharp: None, ..options.clone() };
     let job = Job { vertices, triangles: &rest, options: if keep_shape { &first } else { options } };
     let mut fills = job.run(&[Ok(loop_)], progress.part(0.0, 0.5))?;
     let mut fill = fills.pop().unwrap_or(Err(NO_ITEM))?;
