@@ -18,7 +18,8 @@ def cube(gone):
     bm.to_mesh(ob.data)
     bm.free()
     without_faces(ob, lambda centre: not gone(centre))
-    select(ob, rim(edit(ob)))
+    bm = edit(ob)
+    select(ob, rim(bm))
     return ob
 
 

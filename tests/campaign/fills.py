@@ -161,7 +161,8 @@ def flatten(rng, vertices, faces):
 
 
 def scale(rng, vertices, faces):
-    return vertices * 10.0 ** rng.choice([-200, -70, -55, -20, 20, 55, 70, 200]), faces
+    with np.errstate(over="ignore"):
+        return vertices * 10.0 ** rng.choice([-200, -70, -55, -20, 20, 55, 70, 200]), faces
 
 
 def shift(rng, vertices, faces):
@@ -600,6 +601,8 @@ def main():
     options = parser.parse_args()
 
     def tell(case):
+        if case.number % 500 == 499:
+            print(f"... {case.number + 1}", flush=True)
         if case.wrong or case.seconds > 5:
             print(f"{case.number}: {case.name}: {case.seconds:.2f} s; {'; '.join(case.wrong)}", flush=True)
 

@@ -242,8 +242,8 @@ def test_hard_edges_go_on(name, turned):
     faces = faces[~gone(vertices[faces].mean(axis=1))]
     if turned:
         rng = np.random.default_rng(2)
-        vertices = vertices @ np.linalg.qr(rng.normal(size=(3, 3)))[0] * 0.01 + 3
-        faces = faces if volume(vertices, faces) > volume(vertices, faces[:, ::-1]) else faces[:, ::-1]
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        vertices = vertices @ (turn * np.linalg.det(turn)) * 0.01 + 3
     whole = 512 * (1e-6 if turned else 1)
     (fill,) = gridmesh.fill_holes(vertices, faces, sharp=np.radians(30))
     check_fill(vertices, faces, fill)
@@ -311,10 +311,10 @@ def test_random_holes():
 
 
 def test_random_arguments():
-    for function, given in arguments.calls().values():
-        assert callable(function)
-        assert given
+    for name, (function, given) in arguments.calls().items():
+        arguments.call(name, function, dict(given))  # right as they are
     outcomes, wrong, _ = arguments.campaign(300, seed=11)
     assert not wrong
     assert outcomes["result"] > 10
     assert outcomes["TypeError"] > 50
+    assert outcomes["invalid_shape"] > 20
