@@ -168,7 +168,12 @@ CASES = {
     "single edge closed": (single_wire, {"close_chains": True}, "select at least three edges", 2),
     "lone point": (lone_point, {}, "vertex 0 lies on no hole", 1),
     "empty mesh": (empty_mesh, {}, "nothing is selected", None),
-    "closed mesh": (closed_mesh, {}, "^Error: What is selected has no open edges; select an edge or a vertex", 42),
+    "closed mesh": (
+        closed_mesh,
+        {},
+        "^Error: What is selected has no open edges; select an edge or a vertex",
+        42,
+    ),
     "closed cube": (closed_cube, {}, "^Error: What is selected has no open edges", 8),
 }
 

@@ -40,73 +40,100 @@ def calls():
     patch = gridmesh.mesh_sketch(SQUARE, triangles=60)
     fill = gridmesh.fill_hole(vertices, faces, loop)
     made = {
-        "mesh_sketch": dict(
-            outline=SQUARE,
-            holes=[[[1, 1], [2, 1], [2, 2]]],
-            triangles=200,
-            boundary="optimal",
-            max_distance=1.5,
-            closeness=0.3,
-            angle=None,
-            origin=None,
-            corner_angle=0.7,
-            mirror=None,
-            self_crossing="error",
-            relax=True,
-            proof_nodes=0,
-            progress=None,
-        ),
-        "stitch": dict(patch=patch),
-        "inflate": dict(patch=patch, depth=0.5, profile="round", curve=None, front=None, back=None, progress=None),
-        "flat": dict(patch=patch),
-        "map_sketches": dict(outlines=[SQUARE, SQUARE], triangles=60),
-        "fill_hole": dict(
-            vertices=vertices,
-            triangles=faces,
-            loop=loop,
-            smooth="tangent",
-            strict=False,
-            polygons=np.arange(len(faces)),
-            sharp=0.5,
-            creases=[[30, 21]],
-            progress=None,
-        ),
-        "fill_holes": dict(
-            vertices=vertices,
-            triangles=faces,
-            loops=[loop],
-            max_edges=None,
-            smooth="curvature",
-            strict=False,
-            polygons=None,
-            sharp=None,
-            creases=None,
-            progress=None,
-        ),
-        "regrid": dict(
-            vertices=vertices,
-            triangles=faces,
-            faces=np.flatnonzero(np.isin(faces, 11).any(axis=1)),
-            keep_shape=True,
-            smooth="flat",
-            strict=False,
-            polygons=None,
-            progress=None,
-        ),
-        "cut": dict(
-            vertices=corners,
-            faces=sides,
-            stroke=[[-1, 0.4, 0.5], [2, 0.6, 0.5]],
-            direction=(0, 0, 1),
-            smooth="flat",
-        ),
-        "combine": dict(outline=SQUARE, other=[[1, -1], [2, -1], [2, 5], [1, 5]], holes=[], how="union"),
+        "mesh_sketch": {
+            "outline": SQUARE,
+            "holes": [[[1, 1], [2, 1], [2, 2]]],
+            "triangles": 200,
+            "boundary": "optimal",
+            "max_distance": 1.5,
+            "closeness": 0.3,
+            "angle": None,
+            "origin": None,
+            "corner_angle": 0.7,
+            "mirror": None,
+            "self_crossing": "error",
+            "relax": True,
+            "proof_nodes": 0,
+            "progress": None,
+        },
+        "stitch": {"patch": patch},
+        "inflate": {
+            "patch": patch,
+            "depth": 0.5,
+            "profile": "round",
+            "curve": None,
+            "front": None,
+            "back": None,
+            "progress": None,
+        },
+        "flat": {"patch": patch},
+        "map_sketches": {"outlines": [SQUARE, SQUARE], "triangles": 60},
+        "fill_hole": {
+            "vertices": vertices,
+            "triangles": faces,
+            "loop": loop,
+            "smooth": "tangent",
+            "strict": False,
+            "polygons": np.arange(len(faces)),
+            "sharp": 0.5,
+            "creases": [[30, 21]],
+            "progress": None,
+        },
+        "fill_holes": {
+            "vertices": vertices,
+            "triangles": faces,
+            "loops": [loop],
+            "max_edges": None,
+            "smooth": "curvature",
+            "strict": False,
+            "polygons": None,
+            "sharp": None,
+            "creases": None,
+            "progress": None,
+        },
+        "regrid": {
+            "vertices": vertices,
+            "triangles": faces,
+            "faces": np.flatnonzero(np.isin(faces, 11).any(axis=1)),
+            "keep_shape": True,
+            "smooth": "flat",
+            "strict": False,
+            "polygons": None,
+            "progress": None,
+        },
+        "cut": {
+            "vertices": corners,
+            "faces": sides,
+            "stroke": [[-1, 0.4, 0.5], [2, 0.6, 0.5]],
+            "direction": (0, 0, 1),
+            "smooth": "flat",
+        },
+        "combine": {
+            "outline": SQUARE,
+            "other": [[1, -1], [2, -1], [2, 5], [1, 5]],
+            "holes": [],
+            "how": "union",
+        },
     }
-    found = {name: (getattr(gridmesh, name), given) for name, given in made.items() if hasattr(gridmesh, name)}
-    found["Fill.extend"] = (fill.extend, dict(values=np.zeros((8, 2))))
-    found["Fill.refit"] = (fill.refit, dict(vertices=vertices))
+    found = {
+        name: (getattr(gridmesh, name), given) for name, given in made.items() if hasattr(gridmesh, name)
+    }
+    found["Fill.extend"] = (fill.extend, {"values": np.zeros((8, 2))})
+    found["Fill.refit"] = (fill.refit, {"vertices": vertices})
     rebuild, fields = fill.__reduce__()
-    names = "loop backwards smooth vertices flat positions outer triangles patch creases report".split()
+    names = [
+        "loop",
+        "backwards",
+        "smooth",
+        "vertices",
+        "flat",
+        "positions",
+        "outer",
+        "triangles",
+        "patch",
+        "creases",
+        "report",
+    ]
     found["_fill"] = (rebuild, dict(zip(names, fields, strict=True)))
     return found
 
@@ -144,7 +171,9 @@ def spoiled(rng, value):
             array = array.astype(rng.choice(["f8", "i8", "f4", "i4", "u1", ">f8", "O"]))
             way = rng.integers(5)
             if way == 0:
-                array.reshape(-1)[rng.integers(array.size)] = rng.choice([0, 1, 100]) if array.dtype == "u1" else rng.choice([-1, 100])
+                array.reshape(-1)[rng.integers(array.size)] = (
+                    rng.choice([0, 1, 100]) if array.dtype == "u1" else rng.choice([-1, 100])
+                )
             elif way == 1:
                 array = array[: rng.integers(len(array))]
             elif way == 2:
@@ -178,7 +207,7 @@ def run(functions, number, seed):
     except OverflowError as error:
         # What Python itself says where the maker of pickles, which nobody calls by hand, gets a number out of range.
         outcome, wrong = "OverflowError", "" if name == "_fill" else repr(error)
-    except Exception as error:  # noqa: BLE001 - this is what is looked for
+    except Exception as error:
         outcome, wrong = type(error).__name__, repr(error)
     else:
         outcome, wrong = "result", ""
@@ -219,7 +248,9 @@ def main():
     parser.add_argument("--cases", type=int, default=2000)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    outcomes, wrong, slowest = campaign(options.cases, options.seed, tell=lambda text: print(text, flush=True))
+    outcomes, wrong, slowest = campaign(
+        options.cases, options.seed, tell=lambda text: print(text, flush=True)
+    )
     print(outcomes.most_common())
     print(f"{len(wrong)} of {options.cases} cases wrong")
     for seconds, number, told in slowest:

@@ -119,7 +119,9 @@ def fins(rng, vertices, faces):
 def degenerate(rng, vertices, faces):
     more = []
     for _ in range(rng.integers(1, 12)):
-        i, k = faces[rng.integers(len(faces))][:2] if rng.random() < 0.3 else rng.integers(0, len(vertices), 2)
+        i, k = (
+            faces[rng.integers(len(faces))][:2] if rng.random() < 0.3 else rng.integers(0, len(vertices), 2)
+        )
         more.append([[i, i, k], [i, k, i], [k, i, i], [i, i, i]][rng.integers(4)])
     return vertices, np.r_[faces, more]
 
@@ -195,7 +197,11 @@ BREAKAGES = {
 def fourier(rng, n):
     t = np.linspace(0, 2 * np.pi, n, endpoint=False)
     waves = rng.normal(0, 1, (3, 2, 6)) / np.arange(1, 7) ** 1.5
-    return np.einsum("xsk,skn->nx", waves, np.stack([np.sin(np.outer(np.arange(1, 7), t)), np.cos(np.outer(np.arange(1, 7), t))]))
+    return np.einsum(
+        "xsk,skn->nx",
+        waves,
+        np.stack([np.sin(np.outer(np.arange(1, 7), t)), np.cos(np.outer(np.arange(1, 7), t))]),
+    )
 
 
 def noise(rng, n):
@@ -240,13 +246,19 @@ def noisy_circle(rng, n):
 
 
 def uneven_circle(rng, n):
-    t = np.sort(rng.uniform(0, 2 * np.pi, n)) if rng.random() < 0.5 else 2 * np.pi * np.linspace(0, 1, n + 1)[:-1] ** 4
+    t = (
+        np.sort(rng.uniform(0, 2 * np.pi, n))
+        if rng.random() < 0.5
+        else 2 * np.pi * np.linspace(0, 1, n + 1)[:-1] ** 4
+    )
     return np.c_[np.cos(t), np.sin(t), 0.2 * np.cos(2 * t)]
 
 
 def needle(rng, n):
     x = np.r_[np.linspace(0, 1, n - n // 2), np.linspace(1, 0, n // 2 + 2)[1:-1]]
-    return np.c_[x, 10.0 ** -rng.integers(1, 18) * np.sin(np.pi * x + (np.arange(len(x)) >= n - n // 2) * np.pi), 0 * x]
+    return np.c_[
+        x, 10.0 ** -rng.integers(1, 18) * np.sin(np.pi * x + (np.arange(len(x)) >= n - n // 2) * np.pi), 0 * x
+    ]
 
 
 def line(rng, n):
@@ -300,10 +312,14 @@ def faults(vertices, faces, loop, fill, others=()):
 
     expect(np.array_equal(fill.loop, loop), "the loop is another one")
     expect(np.isfinite(new).all(), "a new vertex is not finite")
-    expect(len(triangles) and triangles.min() >= 0 and triangles.max() < n + len(new), "vertices out of range")
+    expect(
+        len(triangles) and triangles.min() >= 0 and triangles.max() < n + len(new), "vertices out of range"
+    )
     if found:
         return found
-    expect(((np.sort(triangles, axis=1)[:, 1:] - np.sort(triangles, axis=1)[:, :-1]) > 0).all(), "a corner twice")
+    expect(
+        ((np.sort(triangles, axis=1)[:, 1:] - np.sort(triangles, axis=1)[:, :-1]) > 0).all(), "a corner twice"
+    )
     used = np.unique(triangles)
     expect(np.array_equal(used[used < n], np.sort(loop)), "other vertices than the loop's at the boundary")
     expect(np.array_equal(used[used >= n], np.arange(n, n + len(new))), "unused new vertices")
@@ -313,7 +329,9 @@ def faults(vertices, faces, loop, fill, others=()):
     unique, counts = np.unique(keys(edges), return_counts=True)
     expect(counts.max() <= 2, "an edge of three triangles")
     rim = np.c_[loop, np.roll(loop, -1)]
-    expect(np.array_equal(unique[counts == 1], np.sort(keys(rim))), "not one triangle at each edge of the loop")
+    expect(
+        np.array_equal(unique[counts == 1], np.sort(keys(rim))), "not one triangle at each edge of the loop"
+    )
     expect(len(used) - len(unique) + len(triangles) == 1, "not a disk (Euler)")
     expect(pieces(triangles, used) == 1, "not a disk (pieces)")
     expect(fans_close(triangles, set(loop.tolist())), "not a disk (fans)")
@@ -572,7 +590,10 @@ def call(rng, way, vertices, triangles, faces, loops, options):
         return [(loop, faces, item) for loop, item in zip(loops, items, strict=True)]
     if way == "all":
         most = None if rng.random() < 0.5 else int(rng.integers(3, 60))
-        return [(None, faces, item) for item in gridmesh.fill_holes(vertices, triangles, max_edges=most, **options)]
+        return [
+            (None, faces, item)
+            for item in gridmesh.fill_holes(vertices, triangles, max_edges=most, **options)
+        ]
     seed = faces[rng.integers(len(faces))]
     near = np.isin(faces, seed).any(axis=1)
     if rng.random() < 0.5:
