@@ -374,6 +374,11 @@ GERMAN = {
     "Close selected chains of edges by a straight edge": (
         "Ausgewählte Ketten von Kanten durch eine gerade Kante schließen"
     ),
+    "Continue hard edges of the surroundings (bent by more than 30 degrees, or marked sharp) to where they meet, as at "
+    "a corner of a cube": (
+        "Harte Kanten der Umgebung (um mehr als 30 Grad geknickt oder als scharf markiert) fortsetzen, bis sie sich "
+        "treffen, wie an einer Würfelecke"
+    ),
     "Curvature": "Krümmung",
     "Holes with more edges are left open; 0 fills holes of any size, the outer border too": (
         "Löcher mit mehr Kanten bleiben offen; 0 füllt Löcher jeder Größe, auch den äußeren Rand"
@@ -382,6 +387,7 @@ GERMAN = {
     "Join pairs of triangles to quads where that gives good ones": (
         "Je zwei Dreiecke zu einem Viereck verbinden, wo das gute gibt"
     ),
+    "Keep Hard Edges": "Harte Kanten erhalten",
     "Max Edges": "Höchstens Kanten",
     "Quads": "Vierecke",
     "Selected loops of open edges, and the whole holes that single selected edges or vertices lie on": (

@@ -110,6 +110,11 @@ pub enum Error {
     },
     /// The caller asked to stop.
     Cancelled,
+    /// The library contradicts itself: a bug, whatever the input.
+    Internal {
+        /// What should not be.
+        reason: &'static str,
+    },
     /// A vertex number that does not exist.
     IndexOutOfRange {
         /// What names it, such as `loop` or `triangle 7`.
@@ -246,6 +251,7 @@ impl Error {
             Error::NoPatch { .. } => "no_patch",
             Error::Solver { .. } => "solver",
             Error::Cancelled => "cancelled",
+            Error::Internal { .. } => "internal",
             Error::IndexOutOfRange { .. } => "index_out_of_range",
             Error::RepeatedVertex { .. } => "repeated_vertex",
             Error::FigureEight { .. } => "figure_eight",
@@ -337,6 +343,9 @@ impl fmt::Display for Error {
                 write!(f, "the linear solve of the {stage} failed: {reason}")
             }
             Error::Cancelled => write!(f, "cancelled"),
+            Error::Internal { reason } => {
+                write!(f, "a bug in gridmesh, please report it with this input: {reason}")
+            }
             Error::IndexOutOfRange { what, index, vertices } => write!(
                 f,
                 "the {what} names vertex {index}; allowed: 0 to {}, one of the {vertices} vertices given",

@@ -110,6 +110,8 @@ class Fill:
     @property
     def triangles(self) -> npt.NDArray[np.int32]: ...
     @property
+    def creases(self) -> npt.NDArray[np.int32]: ...
+    @property
     def report(self) -> dict[str, Any]: ...
     def extend(self, values: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
     def refit(self, vertices: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
@@ -178,6 +180,8 @@ def fill_hole(
     smooth: Literal["flat", "tangent", "curvature"] = "tangent",
     strict: bool = False,
     polygons: npt.ArrayLike | None = None,
+    sharp: float | None = None,
+    creases: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> Fill: ...
 def fill_holes(
@@ -189,6 +193,8 @@ def fill_holes(
     smooth: Literal["flat", "tangent", "curvature"] = "tangent",
     strict: bool = False,
     polygons: npt.ArrayLike | None = None,
+    sharp: float | None = None,
+    creases: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> list[Fill | GridMeshError]: ...
 def regrid(
@@ -282,6 +288,7 @@ def _fill(
     outer: Any,
     triangles: Any,
     patch: Any,
+    creases: Any,
     report: Any,
 ) -> Fill: ...
 def _cut(pieces: Any, report: Any) -> Cut: ...
