@@ -22,7 +22,7 @@ create_exception!(
          A stable word for programs: \"not_finite\", \"too_few_points\", \"zero_area\",\n    \
          \"self_intersecting\", \"hole_misplaced\", \"not_symmetric\", \"invalid_option\", \"invalid_shape\",\n    \
          \"invalid_type\" (only inside the list of `map_sketches`; elsewhere a TypeError is raised),\n    \
-         \"too_coarse\", \"too_large\", \"no_patch\", \"solver\", \"cancelled\"; of fills\n    \
+         \"too_coarse\", \"too_large\", \"no_patch\", \"inverted\", \"solver\", \"cancelled\"; of fills\n    \
          \"index_out_of_range\", \"repeated_vertex\", \"figure_eight\", \"zero_length_edge\",\n    \
          \"self_touching\", \"faces_on_both_sides\", \"non_manifold\", \"shared_edge\",\n    \
          \"fill_intersects\", \"not_a_disk\"; of cuts\n    \

@@ -23,8 +23,8 @@ use crate::{options, reports};
 /// edge_length : float, optional
 ///     Edge length of the mesh, in the units of the outline; positive. Not together with `triangles`.
 /// triangles : int, optional
-///     Number of triangles of the flat patch, from 6 to 20 million, reached within 10 %. 2000 if
-///     neither is given.
+///     Number of triangles of the flat patch, from 6 to 20 million; 2000 if neither is given. Reached within
+///     10 %, below 60 within 6 triangles (a handful comes in few sizes): `report["triangles"]` says how many.
 /// boundary : {"optimal", "grown"}
 ///     "optimal": the boundary of least cost for this lattice and `max_distance`, where cost = turns +
 ///     `closeness` x squared distance in edge lengths. "grown": the growth of the paper's sections
@@ -53,7 +53,10 @@ use crate::{options, reports};
 ///     Bounds the search that proves optimality where the first solution had conflicts; 0 beside `mirror`.
 /// relax : bool
 ///     False leaves the interior vertices where the lattice has them; triangles may then be inverted,
-///     and such a patch is refused.
+///     and such a patch is refused (kind "inverted").
+/// least : bool
+///     True: the refusal of a drawing too thin for its mesh (kind "too_coarse") names the least number of triangles
+///     that works, in steps of a tenth; the search may take some seconds. False: it is refused at once.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
 ///
@@ -93,7 +96,7 @@ use crate::{options, reports};
 #[pyfunction]
 #[pyo3(
     signature = (outline, holes = None, *, progress = None, **options),
-    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, progress=None)"
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, least=True, progress=None)"
 )]
 pub fn mesh_sketch(
     py: Python<'_>,

@@ -243,11 +243,6 @@ impl ClosedCurve {
         self.wrap(s - self.first)
     }
 
-    /// The arc length whose [`input_arc`](Self::input_arc) is `s`.
-    pub(crate) fn own_arc(&self, s: f64) -> f64 {
-        self.wrap(s + self.first)
-    }
-
     /// The input segment (`i` runs from input point `i` to the next) on which arc length `s` lies,
     /// and the parameter on it.
     pub fn source(&self, s: f64) -> (u32, f64) {

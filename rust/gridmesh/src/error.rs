@@ -84,8 +84,8 @@ pub enum Error {
     TooCoarse {
         /// The number of triangles that was asked for.
         triangles: usize,
-        /// The least number that works.
-        least: usize,
+        /// What is known of the number that would do.
+        needed: Needed,
     },
     /// The mesh asked for is larger than is supported.
     TooLarge {
@@ -110,6 +110,11 @@ pub enum Error {
     },
     /// The caller asked to stop.
     Cancelled,
+    /// Without relaxation some triangles of the patch are inverted.
+    Inverted {
+        /// A corner of one of them, in the units of the drawing.
+        at: [f64; 2],
+    },
     /// The library contradicts itself: a bug, whatever the input.
     Internal {
         /// What should not be.
@@ -233,6 +238,17 @@ pub enum Error {
     },
 }
 
+/// What is known of the number of triangles that a drawing needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needed {
+    /// This number works, and none that is a tenth smaller was found to.
+    Least(usize),
+    /// Numbers up to this one were tried, and none of them works.
+    MoreThan(usize),
+    /// It was not searched for.
+    Unknown,
+}
+
 impl Error {
     /// A stable word for each kind of error, for programs.
     pub fn kind(&self) -> &'static str {
@@ -251,6 +267,7 @@ impl Error {
             Error::NoPatch { .. } => "no_patch",
             Error::Solver { .. } => "solver",
             Error::Cancelled => "cancelled",
+            Error::Inverted { .. } => "inverted",
             Error::Internal { .. } => "internal",
             Error::IndexOutOfRange { .. } => "index_out_of_range",
             Error::RepeatedVertex { .. } => "repeated_vertex",
@@ -324,10 +341,17 @@ impl fmt::Display for Error {
             Error::InvalidOption { name, value, allowed } => {
                 write!(f, "{name} is {value}; allowed: {allowed}")
             }
-            Error::TooCoarse { triangles, least } => write!(
-                f,
-                "{triangles} triangles are too few to follow this drawing; {least} work (or a smaller edge length)"
-            ),
+            Error::TooCoarse { triangles, needed } => {
+                write!(f, "{triangles} triangles are too few to follow this drawing; ")?;
+                match needed {
+                    Needed::Least(least) => write!(f, "{least} work (or a smaller edge length)"),
+                    Needed::MoreThan(tried) => write!(
+                        f,
+                        "numbers up to {tried} were tried and do not work either, use more or draw its thin parts wider"
+                    ),
+                    Needed::Unknown => write!(f, "use more (or a smaller edge length)"),
+                }
+            }
             Error::TooLarge { triangles, limit } => write!(
                 f,
                 "about {triangles:.3e} triangles were asked for; at most {limit:.3e} are supported, \
@@ -343,6 +367,11 @@ impl fmt::Display for Error {
                 write!(f, "the linear solve of the {stage} failed: {reason}")
             }
             Error::Cancelled => write!(f, "cancelled"),
+            Error::Inverted { at: [x, y] } => write!(
+                f,
+                "without relaxation triangles are inverted, one of them near ({x:.6}, {y:.6}); \
+                 leave relax on, or use more triangles"
+            ),
             Error::Internal { reason } => {
                 write!(f, "a bug in gridmesh, please report it with this input: {reason}")
             }

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::curve::bounds;
 use crate::pockets::{Fans, Pockets, depth_in};
 use crate::segments::nearest_on_segment;
 
@@ -17,6 +18,7 @@ const BEYOND: [f64; 7] = [0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.6];
 /// `limit` as for [`pockets`](crate::pockets::pockets), `h` the length of an edge. True if any vertex
 /// moved.
 pub(crate) fn expel(pockets: &Pockets, vertices: &mut [DVec2], fans: &Fans<'_>, limit: f64, h: f64) -> bool {
+    let boxes: Vec<(DVec2, DVec2)> = pockets.inlets.iter().map(|pocket| bounds(pocket)).collect();
     let mut moved = false;
     for &(v, inlet) in &pockets.inside {
         let at = vertices[v];
@@ -25,8 +27,9 @@ pub(crate) fn expel(pockets: &Pockets, vertices: &mut [DVec2], fans: &Fans<'_>, 
             fans.at(v).map(with).fold(f64::NEG_INFINITY, f64::max)
         };
         let is_out = |p: DVec2| {
-            let depth = |pocket: &Vec<DVec2>| depth_in(pocket, p).unwrap_or(0.0);
-            pockets.inlets.iter().all(|pocket| depth(pocket) <= limit)
+            let is_beside = |&(low, high): &(DVec2, DVec2)| p.cmpge(low).all() && p.cmple(high).all();
+            let near = pockets.inlets.iter().zip(&boxes).filter(|(_, bounds)| is_beside(bounds));
+            near.map(|(pocket, _)| depth_in(pocket, p).unwrap_or(0.0)).all(|depth| depth <= limit)
         };
         let walls = pockets.inlets[inlet]
             .windows(2)
@@ -35,13 +38,14 @@ pub(crate) fn expel(pockets: &Pockets, vertices: &mut [DVec2], fans: &Fans<'_>, 
             let ahead = (wall - at).normalize_or_zero();
             BEYOND.map(|beyond| wall + beyond * h * ahead)
         });
-        let best = places
+        let allowed = cotangent(at).max(1.0 / LEAST_ANGLE.tan());
+        let mut good: Vec<(f64, DVec2)> = places
             .map(|place| (cotangent(place), place))
-            .filter(|&(cotangent, place)| cotangent.is_finite() && is_out(place))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((worst, place)) = best
-            && worst <= cotangent(at).max(1.0 / LEAST_ANGLE.tan())
-        {
+            .filter(|&(cotangent, _)| cotangent.is_finite() && cotangent <= allowed)
+            .collect();
+        good.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // The best place that is outside all inlets: asked last, since inlets may have many points.
+        if let Some((_, place)) = good.into_iter().find(|&(_, place)| is_out(place)) {
             vertices[v] = place;
             moved = true;
         }

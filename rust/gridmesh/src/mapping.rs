@@ -105,13 +105,20 @@ pub fn corners(arcs: &[f64], turning: &[f64], length: f64, angle: f64, separatio
         .map(|(&arc, &angle)| Corner { arc, angle })
         .collect();
     found.sort_by(|a, b| b.angle.abs().total_cmp(&a.angle.abs()).then(a.arc.total_cmp(&b.arc)));
+    // Cells as long as the separation, or a little longer: only neighbours can be too near.
+    let n = ((length / separation) as usize).clamp(1, found.len().max(1));
+    let cell_of = |arc: f64| ((arc.rem_euclid(length) / length * n as f64) as usize).min(n - 1);
+    let mut cells: Vec<Vec<f64>> = vec![Vec::new(); n];
     let mut kept: Vec<Corner> = Vec::new();
     for corner in found {
-        let apart = |other: &Corner| {
-            let d = (corner.arc - other.arc).rem_euclid(length);
+        let apart = |other: &f64| {
+            let d = (corner.arc - other).rem_euclid(length);
             d.min(length - d) >= separation
         };
-        if kept.iter().all(apart) {
+        let cell = cell_of(corner.arc);
+        // Rounding may put a corner one cell aside.
+        if (0..5).all(|k| cells[(cell + n * 2 + k - 2) % n].iter().all(apart)) {
+            cells[cell].push(corner.arc);
             kept.push(corner);
         }
     }

@@ -50,7 +50,8 @@ pub enum Mirror {
 pub struct SketchOptions {
     /// Edge length of the lattice in the units of the drawing; exclusive with `triangles`.
     pub edge_length: Option<f64>,
-    /// Triangles of the flat patch, reached within 10 %; 2000 if neither is given.
+    /// Triangles of the flat patch, 6 or more; 2000 if neither is given. Reached within 10 %, below 60 within 6
+    /// triangles: the report says how many there are.
     pub triangles: Option<usize>,
     /// How the boundary is found.
     pub boundary: BoundaryMethod,
@@ -73,9 +74,12 @@ pub struct SketchOptions {
     /// Search nodes spent on proving a boundary optimal whose first solution had conflicts; not
     /// beside `mirror`.
     pub proof_nodes: usize,
-    /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and
-    /// may hold inverted triangles.
+    /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and is
+    /// refused ([`Error::Inverted`]) where that inverts triangles.
     pub relax: bool,
+    /// Whether a drawing too thin for its mesh is told the least number of triangles that works. The
+    /// search may take some seconds; without it such a drawing is refused at once.
+    pub least: bool,
 }
 
 impl Default for SketchOptions {
@@ -93,6 +97,7 @@ impl Default for SketchOptions {
             self_crossing: SelfCrossing::Error,
             proof_nodes: 0,
             relax: true,
+            least: true,
         }
     }
 }

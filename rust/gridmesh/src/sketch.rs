@@ -4,7 +4,6 @@ mod lattices;
 mod least;
 mod size;
 
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use glam::DVec2;
@@ -13,7 +12,7 @@ use size::Miss;
 
 use crate::contours::read_contours;
 use crate::curve::ClosedCurve;
-use crate::error::{Error, Result};
+use crate::error::{Error, Needed, Result};
 use crate::lattice::Lattice;
 use crate::mirror;
 use crate::options::{
@@ -22,7 +21,7 @@ use crate::options::{
 use crate::outline::{Obstacle, Outline};
 use crate::patch::Patch;
 use crate::place::{Placed, min_angle, min_angle_off_corners, place};
-use crate::progress::Progress;
+use crate::progress::{Progress, Rising};
 use crate::symmetry::Symmetry;
 use crate::union::{nearest_source, outer_outline};
 
@@ -49,9 +48,10 @@ pub struct Sketch {
 /// direction it runs. Time is linear in the number of triangles and points for ordinary drawings.
 ///
 /// # Errors
-/// [`Error::TooCoarse`] with a number of triangles that works, if no valid patch of about the size
-/// asked for was found; [`Error::NoPatch`] if none was found at any size; and the errors of
-/// [`ClosedCurve::new`] and [`SketchOptions::check`].
+/// [`Error::TooCoarse`] if no valid patch of about the size asked for was found, with the least number of
+/// triangles that works unless [`SketchOptions::least`] is off or the search for it would take too long;
+/// [`Error::NoPatch`] if there is none at any size up to [`MAX_TRIANGLES`]; [`Error::Inverted`] without
+/// relaxation; and the errors of [`ClosedCurve::new`] and [`SketchOptions::check`].
 ///
 /// Source: Nealen et al., GridMesh, 2009, section IV.
 pub fn mesh_sketch(
@@ -63,15 +63,9 @@ pub fn mesh_sketch(
     options.check()?;
     progress.report(0.0)?;
     // Angles are solved side by side, and failed placements start again: only what rises is passed on.
-    let state = Mutex::new((0.0f64, false));
-    let rising = |fraction: f64| {
-        let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.0 = state.0.max(fraction);
-        // Once cancelled, the other angles hear of it without asking again.
-        state.1 = state.1 || progress.report(state.0).is_err();
-        !state.1
-    };
-    let progress = Progress::new(&rising);
+    let rising = Rising::new(progress);
+    let callback = |fraction: f64| rising.report(fraction);
+    let progress = Progress::new(&callback);
     let started = Instant::now();
     let union = match options.self_crossing {
         SelfCrossing::Error => None,
@@ -108,12 +102,17 @@ pub fn mesh_sketch(
     };
     let attempt = if job.is_hopeless(expected.round() as usize) {
         let at = job.contours[0].points()[0];
-        Err(Obstacle { reason: "the drawing is too thin for two rows of triangles".to_owned(), at })
+        Err(Obstacle::new("the drawing is too thin for two rows of triangles", at))
     } else {
         job.attempt(asked, Effort::Full, progress)?
     };
     let mut sketch = match attempt {
         Ok(sketch) => sketch,
+        Err(Obstacle { at, is_inverted: true, .. }) => return Err(Error::Inverted { at: at.to_array() }),
+        Err(_) if !options.least => {
+            let triangles = expected.round().max(1.0) as usize;
+            return Err(Error::TooCoarse { triangles, needed: Needed::Unknown });
+        }
         Err(obstacle) => return Err(job.least_that_works(expected, obstacle, progress)?),
     };
     if let Some((_, slivers)) = union {
@@ -247,12 +246,11 @@ impl Job<'_> {
         if let Some((_, outline, placed, mirror_error)) = best {
             if let Some(reason) = placed.fault(self.options) {
                 let at = placed.patch.inlets.first().map_or(self.centre, |inlet| inlet[0]);
-                return Ok(Err(Obstacle { reason: reason.to_owned(), at }));
+                return Ok(Err(Obstacle::new(reason, at)));
             }
             return Ok(Ok(self.report(&outline, placed, mirror_error)));
         }
-        let none = || Obstacle { reason: "no lattice was tried".to_owned(), at: DVec2::ZERO };
-        Ok(Err(obstacle.unwrap_or_else(none)))
+        obstacle.map(Err).map(Ok).unwrap_or(Err(Error::Internal { reason: "no lattice was tried" }))
     }
 
     /// The patch of an outline, symmetric if that was asked for; and by how much it is not.

@@ -52,6 +52,7 @@ class _Options(TypedDict, total=False):
     self_crossing: Literal["error", "union"]
     proof_nodes: int
     relax: bool
+    least: bool
     depth: float
     profile: Literal["round", "even", "flat", "peak"]
     curve: npt.ArrayLike | None
@@ -134,6 +135,7 @@ def mesh_sketch(
     self_crossing: Literal["error", "union"] = "error",
     proof_nodes: int = 0,
     relax: bool = True,
+    least: bool = True,
     progress: _Progress | None = None,
 ) -> Patch: ...
 def combine(
