@@ -61,6 +61,14 @@ def sketches_of(
     return outer, failures, notes
 
 
+TOO_THIN = "the stroke is too thin for a mesh this coarse; use more triangles or shorter edges"
+
+
+def reason_of(error: Any) -> str:
+    """What to say of an error of the module where the number of triangles that would do was not searched for."""
+    return TOO_THIN if error.kind == "too_coarse" else str(error)
+
+
 def build(
     sketches: list[Sketch],
     sketch_options: dict[str, Any],
@@ -84,7 +92,8 @@ def build(
         if isinstance(surface, gridmesh.GridMeshError):
             if surface.kind == "cancelled":
                 raise CancelledError from surface
-            failures.append(Failure(sketch.stroke.label, str(surface)))
+            reason = str(surface) if sketch_options.get("least", True) else reason_of(surface)
+            failures.append(Failure(sketch.stroke.label, reason))
             continue
         bodies.append(
             Body(

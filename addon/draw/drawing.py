@@ -14,7 +14,6 @@ from ..live import engine, outlined
 from ..live.linework import nearest
 from ..live.outlined import OutlineError, radii
 from ..live.reading import LostError, sketch_of
-from ..live.solve import TOO_THIN, Patience, reason_of
 from ..native import native
 from ..outlines import Plane, Sketch, Stroke, StrokeError, prepare, project
 from .gesture import FEWEST, relation
@@ -165,10 +164,7 @@ def _make(
     read = strokes.read_grease_pencil(source, context.evaluated_depsgraph_get())
     sketches, failures, _ = api.sketches_of(read.strokes, close_gaps=1.0, holes=True)
     sketches = [sketch for sketch in sketches if sketch.stroke.index in wanted]
-    try:
-        bodies, refused = api.build(sketches, options.sketch_options(), options.body_options(), Patience())
-    except api.CancelledError as error:
-        raise DrawError(TOO_THIN) from error
+    bodies, refused = api.build(sketches, {**options.sketch_options(), "least": False}, options.body_options())
     failures += refused
     if failures or not bodies:
         raise DrawError(failures[0].reason if failures else "the stroke encloses nothing")
@@ -305,9 +301,9 @@ def _try(gridmesh: Any, parts: list[Any], live: Any) -> None:
     """Refuse what would have no body before anything is changed."""
     for outline, holes in parts:
         try:
-            gridmesh.mesh_sketch(outline, holes, progress=Patience(), **live.sketch_options())
+            gridmesh.mesh_sketch(outline, holes, least=False, **live.sketch_options())
         except gridmesh.GridMeshError as error:
-            raise DrawError(reason_of(error)) from error
+            raise DrawError(api.reason_of(error)) from error
 
 
 def _carried(

@@ -8,6 +8,9 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::process;
+use crate::watch::SIGNALS_EVERY;
+
 create_exception!(
     gridmesh,
     GridMeshError,
@@ -46,7 +49,7 @@ pub fn from_core(py: Python<'_>, err: &Error) -> PyErr {
 
 /// Runs `work` without the interpreter lock; a panic, always a bug, becomes an error of kind `internal`.
 pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> Result<T, Failure> {
-    py.detach(|| guarded(work))
+    py.detach(|| guarded(|| process::run(work, SIGNALS_EVERY, || {})))
 }
 
 /// Runs `work`; a panic becomes [`Failure::Panic`].

@@ -1,6 +1,6 @@
 //! The Python module `gridmesh._native`: conversions only, no algorithm.
 //!
-//! `input` and `options` read what Python hands over, `watch` carries progress and signals, `arrays`
+//! `input` and `options` read what Python hands over, `watch` carries progress and signals, `process` finds threads after a fork, `arrays`
 //! and `reports` hand results back, `patch`, `surface`, `fill` and `cut` are the classes, `sketch`, `body` and `map` make them
 //! of drawings, `batch` is the parallel map, `combine` unites drawings.
 #![forbid(unsafe_code)]
@@ -17,6 +17,7 @@ mod map;
 mod mesh;
 mod options;
 mod patch;
+mod process;
 mod regrid;
 mod reports;
 mod sketch;

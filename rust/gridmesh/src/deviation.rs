@@ -65,8 +65,9 @@ pub(crate) fn beside(contours: &[ClosedCurve], vertices: &[DVec2], arcs: &[Vec<f
     contours.iter().zip(arcs).map(of).collect()
 }
 
-/// The greatest distance from the drawn curve to the mesh boundary, and the strays: the farthest
-/// point beside each edge from which the drawing is more than `limit` away.
+/// The greatest distance from the drawn curve to the mesh boundary, and the strays: the farthest drawn
+/// point beside each edge that is more than `limit` away from it; or the farthest point of the curve, if
+/// that is more than `lost` away.
 ///
 /// Each stretch of the curve is measured against the edge [`beside`] it: the distance from one edge is
 /// convex along a straight line, so that the drawn points bound all the curve between them. Only where
@@ -77,6 +78,7 @@ pub(crate) fn deviation(
     vertices: &[DVec2],
     arcs: &[Vec<f64>],
     limit: f64,
+    lost: f64,
 ) -> (f64, Vec<Stray>) {
     let is_near = |point: &Beside| point.squared <= limit * limit;
     let near = beside.iter().flatten().filter(|point| is_near(point));
@@ -96,10 +98,12 @@ pub(crate) fn deviation(
             let before = Beside { point: vertices[first], edge, arc: loop_arcs[edge], squared: 0.0 };
             let arc = stretch.last().map_or(0.0, |p| p.arc + p.point.distance(vertices[last]));
             let after = Beside { point: vertices[last], edge, arc, squared: 0.0 };
-            let mut farthest = Farthest { all, own: first, above: worst.min(limit), best: before, distance: 0.0 };
-            farthest.search(before, stretch, after);
+            let mut farthest =
+                Farthest { all, own: first, above: worst.min(limit), best: before, distance: 0.0 };
+            let (drawn, at_drawn) = farthest.search(before, stretch, after);
             let Farthest { best, distance, .. } = farthest;
             worst = worst.max(distance);
+            let (best, distance) = if distance > lost { (best, distance) } else { (drawn, at_drawn) };
             if distance > limit {
                 strays.push(Stray { contour, edge, arc: best.arc, point: best.point, distance });
             }
@@ -191,8 +195,9 @@ struct Farthest<'a> {
 }
 
 impl Farthest<'_> {
-    /// `before` and `after` are the ends of the edge, which lie on the curve.
-    fn search(&mut self, before: Beside, stretch: &[Beside], after: Beside) {
+    /// `before` and `after` are the ends of the edge, which lie on the curve. The farthest of the drawn
+    /// points, and its distance.
+    fn search(&mut self, before: Beside, stretch: &[Beside], after: Beside) -> (Beside, f64) {
         let mut known: Vec<Option<(f64, usize)>> = vec![None; stretch.len()];
         // The farthest from the edge beside them first: most of the others need not be measured then.
         let mut order: Vec<usize> = (0..stretch.len()).collect();
@@ -203,6 +208,7 @@ impl Farthest<'_> {
             }
             known[i] = Some(self.measure(stretch[i]));
         }
+        let drawn = (self.best, self.distance);
         let at = |i: usize| match i {
             0 => before,
             i => stretch.get(i - 1).copied().unwrap_or(after),
@@ -218,6 +224,7 @@ impl Farthest<'_> {
             });
             self.divide((from, near[0]), (to, near[1]));
         }
+        drawn
     }
 
     /// What need not be found out: a thousandth of the limit more than what is known.
@@ -238,9 +245,7 @@ impl Farthest<'_> {
         let mut pieces = vec![(from, to)];
         while let Some(((a, near_a), (b, near_b))) = pieces.pop() {
             let length = a.point.distance(b.point);
-            let along = |edge: usize| {
-                self.all.distance(a.point, edge).max(self.all.distance(b.point, edge))
-            };
+            let along = |edge: usize| self.all.distance(a.point, edge).max(self.all.distance(b.point, edge));
             let most = (0.5 * (near_a.0 + near_b.0 + length)).min(along(near_a.1)).min(along(near_b.1));
             if most <= self.enough() {
                 continue;
@@ -270,12 +275,50 @@ mod tests {
         let vertices: Vec<DVec2> = kept.iter().map(|&i| drawn[i]).collect();
         let arcs = vec![kept.iter().map(|&i| contour.arc()[i]).collect::<Vec<f64>>()];
         let contours = [contour];
-        let (worst, strays) = deviation(&beside(&contours, &vertices, &arcs), &vertices, &arcs, 2.0);
+        let (worst, strays) = deviation(&beside(&contours, &vertices, &arcs), &vertices, &arcs, 2.0, 2.0);
         assert_eq!(worst, 5.0);
         assert_eq!(strays.len(), 1);
         assert_eq!((strays[0].edge, strays[0].point), (3, drawn[4]));
-        let (worst, strays) = deviation(&beside(&contours, &vertices, &arcs), &vertices, &arcs, 6.0);
+        let (worst, strays) = deviation(&beside(&contours, &vertices, &arcs), &vertices, &arcs, 6.0, 6.0);
         assert_eq!((worst, strays.len()), (5.0, 0));
+        Ok(())
+    }
+
+    /// A needle whose tip ends beside another wall: its points are near the boundary without it, its middle is not.
+    #[test]
+    fn a_needle_is_missed_between_its_points() -> Result<()> {
+        let drawn = [
+            [0.0, 0.0],
+            [20.0, 0.0],
+            [20.0, 1.0],
+            [4.0, 1.0],
+            [4.0, 11.0],
+            [18.0, 1.2],
+            [4.2, 11.2],
+            [0.0, 12.0],
+        ];
+        let drawn = drawn.map(DVec2::from_array);
+        let contour = ClosedCurve::new(&drawn, Winding::CounterClockwise, "outline")?;
+        // All but the tip.
+        let own: Vec<usize> = (0..8).filter(|&i| contour.points()[i] != drawn[5]).collect();
+        let vertices: Vec<DVec2> = own.iter().map(|&i| contour.points()[i]).collect();
+        let arcs = vec![own.iter().map(|&i| contour.arc()[i]).collect()];
+        let beside = beside(&[contour], &vertices, &arcs);
+        let (worst, strays) = deviation(&beside, &vertices, &arcs, 0.7, 2.0);
+        // By brute force.
+        let n = vertices.len();
+        let nearest = |p: DVec2| {
+            let to = |i: usize| nearest_on_segment(p, vertices[i], vertices[(i + 1) % n]).1;
+            (0..n).map(to).fold(f64::INFINITY, f64::min).sqrt()
+        };
+        let sides = [[drawn[4], drawn[5]], [drawn[5], drawn[6]]];
+        let samples =
+            sides.into_iter().flat_map(|[a, b]| (0..=20_000).map(move |k| a.lerp(b, f64::from(k) / 2e4)));
+        let expected = samples.map(nearest).fold(0.0, f64::max);
+        assert!(nearest(drawn[5]) < 0.5 && expected > 3.0);
+        assert!((worst - expected).abs() < 2e-3, "{worst} {expected}");
+        assert_eq!(strays.len(), 1);
+        assert!((strays[0].distance - expected).abs() < 2e-3);
         Ok(())
     }
 
@@ -287,7 +330,7 @@ mod tests {
         let contour = ClosedCurve::new(&drawn, Winding::CounterClockwise, "outline")?;
         let vertices: Vec<DVec2> = (2..6).map(|i| drawn[i]).collect();
         let arcs = vec![contour.arc()[2..6].to_vec()];
-        let (worst, strays) = deviation(&beside(&[contour], &vertices, &arcs), &vertices, &arcs, 2.0);
+        let (worst, strays) = deviation(&beside(&[contour], &vertices, &arcs), &vertices, &arcs, 2.0, 2.0);
         assert_eq!(worst, 5.0);
         assert_eq!(strays.len(), 1);
         assert_eq!((strays[0].edge, strays[0].point), (3, drawn[0]));

@@ -298,7 +298,11 @@ impl fmt::Display for Error {
                 write!(f, "point {point} of the {what} is NaN or infinite; all coordinates must be finite")
             }
             Error::ExtremeSize { what, size } => {
-                write!(f, "the {what} is {size:.3e} across; allowed: 1e-60 to 1e60, scale the drawing")
+                write!(
+                    f,
+                    "the {what} is {size:.3e} across; allowed: 1e-30 to 1e30 (meshes and loops in space: 1e-60 to 1e60), \
+                     scale it"
+                )
             }
             Error::TooFewPoints { what, distinct } => {
                 write!(

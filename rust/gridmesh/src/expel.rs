@@ -3,7 +3,9 @@
 use glam::DVec2;
 
 use crate::curve::bounds;
+use crate::error::Result;
 use crate::pockets::{Fans, Pockets, depth_in};
+use crate::progress::Progress;
 use crate::segments::nearest_on_segment;
 
 /// No triangle is bent below this angle, unless it was so before: 10 degrees.
@@ -17,10 +19,18 @@ const BEYOND: [f64; 7] = [0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.6];
 ///
 /// `limit` as for [`pockets`](crate::pockets::pockets), `h` the length of an edge. True if any vertex
 /// moved.
-pub(crate) fn expel(pockets: &Pockets, vertices: &mut [DVec2], fans: &Fans<'_>, limit: f64, h: f64) -> bool {
+pub(crate) fn expel(
+    pockets: &Pockets,
+    vertices: &mut [DVec2],
+    fans: &Fans<'_>,
+    limit: f64,
+    h: f64,
+    progress: Progress<'_>,
+) -> Result<bool> {
     let boxes: Vec<(DVec2, DVec2)> = pockets.inlets.iter().map(|pocket| bounds(pocket)).collect();
     let mut moved = false;
     for &(v, inlet) in &pockets.inside {
+        progress.report(0.0)?;
         let at = vertices[v];
         let cotangent = |p: DVec2| {
             let with = |t: [u32; 3]| sharpness([p, vertices[t[1] as usize], vertices[t[2] as usize]]);
@@ -50,7 +60,7 @@ pub(crate) fn expel(pockets: &Pockets, vertices: &mut [DVec2], fans: &Fans<'_>, 
             moved = true;
         }
     }
-    moved
+    Ok(moved)
 }
 
 /// Cotangent of the least angle of a triangle; infinite if it is not counter-clockwise.
@@ -70,7 +80,7 @@ mod tests {
     const MIDDLE: DVec2 = DVec2::new(30.0, 50.0);
 
     #[test]
-    fn a_vertex_leaves_the_inlet_and_its_triangles_stay_in_shape() {
+    fn a_vertex_leaves_the_inlet_and_its_triangles_stay_in_shape() -> Result<()> {
         let rim: Vec<DVec2> =
             (0..6).map(|i| MIDDLE + DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
         let mut vertices = rim.clone();
@@ -79,15 +89,16 @@ mod tests {
         let inlet = vec![rim[1], MIDDLE - DVec2::new(0.0, 0.2), rim[2]];
         let pockets = Pockets { inlets: vec![inlet.clone()], occupied: vec![], inside: vec![(6, 0)] };
         assert!(depth_in(&inlet, vertices[6]).is_some_and(|depth| depth > 0.05));
-        assert!(expel(&pockets, &mut vertices, &Fans::new(7, &triangles), 0.05, 1.0));
+        assert!(expel(&pockets, &mut vertices, &Fans::new(7, &triangles), 0.05, 1.0, Progress::NONE)?);
         assert!(depth_in(&inlet, vertices[6]).is_none_or(|depth| depth <= 0.05), "{}", vertices[6]);
         for t in triangles {
             assert!(sharpness(t.map(|v| vertices[v as usize])) < 1.0 / LEAST_ANGLE.tan());
         }
+        Ok(())
     }
 
     #[test]
-    fn a_vertex_without_a_good_place_stays() {
+    fn a_vertex_without_a_good_place_stays() -> Result<()> {
         let rim: Vec<DVec2> =
             (0..6).map(|i| MIDDLE + DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
         let mut vertices = rim.clone();
@@ -95,7 +106,8 @@ mod tests {
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
         let inlet = vec![rim[1], MIDDLE + DVec2::new(2.0, -3.0), MIDDLE - DVec2::new(2.0, 3.0), rim[2]];
         let pockets = Pockets { inlets: vec![inlet], occupied: vec![], inside: vec![(6, 0)] };
-        assert!(!expel(&pockets, &mut vertices, &Fans::new(7, &triangles), 0.05, 1.0));
+        assert!(!expel(&pockets, &mut vertices, &Fans::new(7, &triangles), 0.05, 1.0, Progress::NONE)?);
         assert_eq!(vertices[6], MIDDLE);
+        Ok(())
     }
 }

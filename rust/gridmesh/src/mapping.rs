@@ -227,6 +227,33 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn corners_are_the_sharpest_apart(
+            turns in prop::collection::vec((0.0f64..3.0, 0.01f64..2.0), 1..80),
+            separation in 0.05f64..4.0,
+        ) {
+            let mut length = 0.0;
+            let arcs: Vec<f64> = turns.iter().map(|t| { length += t.1; length - t.1 }).collect();
+            let turning: Vec<f64> = turns.iter().map(|t| t.0).collect();
+            let kept = corners(&arcs, &turning, length, 0.5, separation);
+            let gap = |a: f64, b: f64| {
+                let d = (a - b).rem_euclid(length);
+                d.min(length - d)
+            };
+            let mut expected: Vec<Corner> = Vec::new();
+            let mut found: Vec<Corner> =
+                arcs.iter().zip(&turning).map(|(&arc, &angle)| Corner { arc, angle }).collect();
+            found.sort_by(|a, b| b.angle.total_cmp(&a.angle).then(a.arc.total_cmp(&b.arc)));
+            for corner in found.into_iter().filter(|corner| corner.angle > 0.5) {
+                if expected.iter().all(|other| gap(corner.arc, other.arc) >= separation) {
+                    expected.push(corner);
+                }
+            }
+            prop_assert_eq!(kept, expected);
+        }
+    }
+
     #[test]
     fn snapped_vertices_sit_on_corners_and_keep_the_order() {
         let mut arcs: Vec<f64> = (0..20).map(|i| 0.5 + f64::from(i)).collect();

@@ -71,8 +71,8 @@ pub struct SketchOptions {
     pub mirror: Option<Mirror>,
     /// What to do with an outline that crosses itself.
     pub self_crossing: SelfCrossing,
-    /// Search nodes spent on proving a boundary optimal whose first solution had conflicts; not
-    /// beside `mirror`.
+    /// Search nodes spent on proving a boundary optimal whose first solution had conflicts, at most; a proof ends
+    /// after 30 million states too, some seconds, whatever this number. Not beside `mirror`.
     pub proof_nodes: usize,
     /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and is
     /// refused ([`Error::Inverted`]) where that inverts triangles.

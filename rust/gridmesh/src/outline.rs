@@ -110,8 +110,7 @@ pub(crate) fn grown(
     let band = Band::new(&faired, reach);
     let raster = Raster::new(&widened, reach.ceil() as i32 + 2);
     progress.report(0.3)?;
-    let obstacle =
-        |reason: &str, at: DVec2| Ok(Err(Obstacle::new(reason, lattice.from_units(at))));
+    let obstacle = |reason: &str, at: DVec2| Ok(Err(Obstacle::new(reason, lattice.from_units(at))));
     let Some(mut boundary) = grow_inside(&raster, progress.part(0.3, 0.6))? else {
         return obstacle("no lattice hexagon fits inside the drawing", faired.points[0]);
     };

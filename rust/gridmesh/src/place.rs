@@ -123,14 +123,12 @@ pub(crate) fn place(
         let (loops, arcs, own) = loops(contours, &rims, &found, h, &mut vertices);
         if let Some(triangle) = first_inverted(&vertices, &region.triangles, lattice.origin) {
             let at = vertices[region.triangles[triangle][0] as usize];
-            obstacle = Obstacle {
-                is_inverted: !options.relax,
-                ..Obstacle::new("a triangle stays inverted", at)
-            };
+            obstacle =
+                Obstacle { is_inverted: !options.relax, ..Obstacle::new("a triangle stays inverted", at) };
             break;
         }
         let beside = beside(contours, &vertices, &arcs);
-        let (farthest, mut strays) = deviation(&beside, &vertices, &arcs, CLOSE * h);
+        let (farthest, mut strays) = deviation(&beside, &vertices, &arcs, CLOSE * h, STRAY * h);
         if farthest > STRAY * h {
             strays.retain(|stray| stray.distance > STRAY * h);
             obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
@@ -145,7 +143,7 @@ pub(crate) fn place(
         let mut bridged_inlets = occupied.len();
         if !occupied.is_empty() && options.relax {
             let mut expelled = vertices.clone();
-            if expel(&pockets_now, &mut expelled, &fans, INLET * h, h)
+            if expel(&pockets_now, &mut expelled, &fans, INLET * h, h, progress)?
                 && first_inverted(&expelled, &region.triangles, lattice.origin).is_none()
             {
                 let left = pockets(&beside, &expelled, &mut fans, &arcs, INLET * h);

@@ -38,8 +38,7 @@ pub(crate) fn symmetrised(
     let axis = reflection(symmetry, &lattice);
     let region = assemble(&outline.paths);
     let at = contours[0].points()[0];
-    let partner =
-        partners(&region, axis).ok_or(Obstacle::new("the boundary is not symmetric", at))?;
+    let partner = partners(&region, axis).ok_or(Obstacle::new("the boundary is not symmetric", at))?;
     let both = Both { contours, symmetry, region: &region, axis, partner, placed: &placed };
     let mut best: Option<(usize, f64, Placed)> = None;
     for side in [Side::Mean, Side::Left, Side::Right] {
@@ -115,7 +114,7 @@ impl Both<'_> {
         }
         let h = patch.lattice.edge_length;
         let beside = beside(self.contours, &vertices, &arcs);
-        let (farthest, _) = deviation(&beside, &vertices, &arcs, STRAY * h);
+        let (farthest, _) = deviation(&beside, &vertices, &arcs, STRAY * h, STRAY * h);
         if farthest > STRAY * h {
             return None;
         }
