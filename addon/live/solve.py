@@ -15,7 +15,7 @@ import numpy as np
 from ..api import Body, native, reason_of
 from ..outlines import Plane, Sketch, project
 
-ALGORITHM = 1
+ALGORITHM = 2
 """Raised when the same stroke and options give another body. A body made by another one is left alone until asked."""
 
 TILTED = 0.9999

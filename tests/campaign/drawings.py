@@ -3,7 +3,7 @@
     python tests/campaign/drawings.py CASES [--seed S]
 
 prints one line for each finding, the counts by outcome, and the ten slowest cases. A case is its seed: it can be
-run again alone with `CASES` 1 and its seed.
+run again alone with `CASES` 1 and its seed. Ctrl-C ends the run with its summary.
 """
 
 from __future__ import annotations
@@ -262,17 +262,20 @@ def main() -> int:
     outcomes: Counter[str] = Counter()
     slowest: list[tuple[float, int, str]] = []
     findings = 0
-    for seed in range(arguments.seed, arguments.seed + arguments.cases):
-        one = case(seed)
-        since = time.process_time()
-        outcome, wrong = check(one)
-        slowest = sorted(
-            [*slowest, (time.process_time() - since, seed, f"{one.kind} {outcome} {one.options}")]
-        )[-10:]
-        outcomes[outcome] += 1
-        if wrong is not None:
-            findings += 1
-            print(f"seed {seed}: {one.kind} {one.options}: {wrong}", flush=True)
+    try:
+        for seed in range(arguments.seed, arguments.seed + arguments.cases):
+            one = case(seed)
+            since = time.process_time()
+            outcome, wrong = check(one)
+            slowest = sorted(
+                [*slowest, (time.process_time() - since, seed, f"{one.kind} {outcome} {one.options}")]
+            )[-10:]
+            outcomes[outcome] += 1
+            if wrong is not None:
+                findings += 1
+                print(f"seed {seed}: {one.kind} {one.options}: {wrong}", flush=True)
+    except KeyboardInterrupt:
+        print(f"stopped after {sum(outcomes.values())} cases")
     print(dict(outcomes.most_common()), f"{findings} findings")
     for seconds, seed, what in reversed(slowest):
         print(f"{seconds:8.2f} s CPU, seed {seed}: {what}")
