@@ -250,7 +250,10 @@ impl Job<'_> {
             }
             return Ok(Ok(self.report(&outline, placed, mirror_error)));
         }
-        obstacle.map(Err).map(Ok).unwrap_or(Err(Error::Internal { reason: "no lattice was tried" }))
+        match obstacle {
+            Some(obstacle) => Ok(Err(obstacle)),
+            None => Err(Error::Internal { reason: "no lattice was tried" }),
+        }
     }
 
     /// The patch of an outline, symmetric if that was asked for; and by how much it is not.
