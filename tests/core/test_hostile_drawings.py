@@ -198,7 +198,7 @@ def test_every_question_can_be_answered_with_no(name):
         gridmesh.mesh_sketch(points, progress=count, **options)
     except gridmesh.GridMeshError as error:
         assert error.kind in {"too_coarse", "no_patch"}
-    for stop in np.unique(np.geomspace(1, asked[0], 12).astype(int)):
+    for stop in np.unique(np.geomspace(1, asked[0], 6).astype(int)):
         left = [int(stop)]
 
         def until(_, left=left):
@@ -303,7 +303,7 @@ def test_a_forked_process_hears_of_interrupts():
     assert run.stdout.strip() == "0", run.stderr
 
 
-@pytest.mark.parametrize("start", range(0, 160, 20))
+@pytest.mark.parametrize("start", range(0, 80, 20))
 def test_random_drawings(start):
     """A short run of the campaign; `python tests/campaign/drawings.py` makes longer ones."""
     for seed in range(start, start + 20):
