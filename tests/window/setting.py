@@ -149,12 +149,18 @@ def begin():
     yield from tool("gridmesh.draw")
 
 
-def stroke(path, *, picture=None, at=0.7, end="LEFTMOUSE", **held):
-    """Draw with the left button, as a hand does: several points for each that the window is drawn for."""
+def stroke(path, *, picture=None, at=0.7, end="LEFTMOUSE", keys=(), **held):
+    """Draw with the left button, as a hand does: several points for each that the window is drawn for.
+
+    keys : pressed in the middle of the stroke. held : keys that are held all along.
+    """
     yield from stage.move(*path[0])
     yield from stage.press("LEFTMOUSE", "PRESS", **held)
     for k in range(1, len(path), 3):
-        yield from stage.glide(path[k : k + 3])
+        yield from stage.glide(path[k : k + 3], **held)
+        if k <= len(path) // 2 < k + 3:
+            for key in keys:
+                yield from stage.key(key)
         if picture and k <= int(at * len(path)) < k + 3:
             yield from stage.picture(picture)
     if end == "LEFTMOUSE":
