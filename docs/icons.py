@@ -53,14 +53,12 @@ def draw() -> list[Triangle]:
     """A grid inside an outline, and the pencil that draws it."""
     outline = blob(112, 112, 78)
     out = fan(outline, FILL)
-    for k in range(-2, 3):
-        height = 112 + 30 * k
-        reach = max(0.0, 70**2 - (30 * k) ** 2) ** 0.5
-        out += line([(112 - reach, height), (112 + reach, height)], 5, GREEN)
-        for slope in (1, -1):
-            x = 112 + 36 * k
-            half = max(0.0, 68**2 - (31 * k) ** 2) ** 0.5
-            out += line([(x - slope * half / 2, 112 - 0.87 * half), (x + slope * half / 2, 112 + 0.87 * half)], 5, GREEN)
+    row, step = 46, 54
+    for x, y in ((112, 112 + row), (112 - step / 2, 112), (112 + step / 2, 112), (112, 112 - row)):
+        for k in range(3):
+            side = cos(k * pi / 3), sin(k * pi / 3)
+            ends = [(x + s * step / 2 * side[0], y + s * step / 2 * side[1]) for s in (-1, 1)]
+            out += line(ends, 7, GREEN)
     out += line([*blob(112, 112, 78, 0.9, 2 * pi + 0.25)], 13, WHITE)
     out += fan([(168, 150), (186, 132), (240, 186), (222, 204)], WHITE)
     out += fan([(150, 114), (182, 128), (164, 146)], GREY)

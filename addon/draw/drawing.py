@@ -24,6 +24,9 @@ from .memory import Memory
 from .pencil import layer_of, renumber
 
 
+NOTHING = "the stroke encloses nothing"
+
+
 class DrawError(ValueError):
     """A stroke was refused; nothing was changed. The message says why."""
 
@@ -70,7 +73,7 @@ def carry_out(
     try:
         plans = [_planned(decision, bodies, options, apply_options) for decision in decisions]
     except native("combine").GridMeshError as error:
-        raise DrawError(_of_stroke(str(error))) from error
+        raise _refused(error) from error
     made: list[bpy.types.Object] = []
     survivors: dict[str, str] = {}
     for number, plan in enumerate(plans):
@@ -89,11 +92,16 @@ def carry_out(
     return made
 
 
-def _of_stroke(text: str) -> str:
+def _refused(error: Any) -> DrawError:
     """Say of a stroke what the library says of an outline."""
-    return text.replace("the other outline", "the stroke").replace(
-        "draw each of them as an outline of its own", "draw each of them as a stroke of its own"
-    )
+    if error.kind == "zero_area":
+        return DrawError(NOTHING)
+    return DrawError(_of_stroke(reason_of(error)))
+
+
+def _of_stroke(text: str) -> str:
+    text = text.replace("the other outline", "the stroke").replace("the outline", "the stroke")
+    return text.replace("draw each of them as an outline", "draw each of them as a stroke")
 
 
 def _ink(memory: Memory, decision: Decision) -> _Ink:
@@ -113,7 +121,7 @@ def _planned(
     if decision.action in {"NEW", "PART"}:
         parts = decision.parts()
         if not parts:
-            raise DrawError("the stroke encloses nothing")
+            raise DrawError(NOTHING)
         _try(parts, options)
         return _Plan(decision, parts)
     plan = _combined(decision, bodies)
@@ -164,7 +172,7 @@ def _try(parts: list[Part], options: Any) -> None:
         try:
             gridmesh.mesh_sketch(outline, holes, progress=Patience(), **wanted)
         except gridmesh.GridMeshError as error:
-            raise DrawError(_of_stroke(reason_of(error))) from error
+            raise _refused(error) from error
 
 
 def _new(
@@ -220,7 +228,7 @@ def _make(
         raise DrawError(TOO_THIN) from error
     failures += refused
     if failures or not bodies:
-        raise DrawError(_of_stroke(failures[0].reason) if failures else "the stroke encloses nothing")
+        raise DrawError(_of_stroke(failures[0].reason) if failures else NOTHING)
     made: list[bpy.types.Object] = []
     meshes.place(
         context, bodies, update=False, collection="SOURCE", crease_angle=options.corner_angle, made=made

@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from .. import frames
 from ..live import engine
 from ..strokes import selected
 from . import planes, shapes
@@ -38,7 +39,7 @@ def shown(text: str) -> str:
 def mirror_place(context: bpy.types.Context) -> np.ndarray:
     """Point (3,) that the mirror goes through: the origin of the active live body, else the 3D cursor."""
     active = context.view_layer.objects.active
-    if active is not None and active.type == "MESH" and engine.is_linked(active):
+    if active is not None and active.type == "MESH" and frames.is_linked(active):
         return np.array(active.matrix_world.translation, float)
     return np.array(context.scene.cursor.location, float)
 

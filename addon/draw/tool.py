@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from ..live import engine
+from .. import frames
 from . import interaction
 from .operator import OBJECT_OT_gridmesh_draw
 
@@ -67,7 +67,7 @@ class GridMeshDrawTool(bpy.types.WorkSpaceTool):
 def chosen_body(context: bpy.types.Context) -> bpy.types.Object | None:
     """Return the live body whose options the header shows: the active one, if it is selected."""
     active = context.view_layer.objects.active
-    if active is None or active.type != "MESH" or not engine.is_linked(active) or not active.select_get():
+    if active is None or active.type != "MESH" or not frames.is_linked(active) or not active.select_get():
         return None
     return active
 

@@ -96,14 +96,22 @@ def numbers_of(hud, name, value):
         yield from stage.move(hud.x + int(hud.width * 0.72), y)
         yield 0.1
         yield from stage.key("C", ctrl=True)
-        if manager.clipboard == f"{getattr(manager.operators[-1], name)}":
+        if _same(manager.clipboard, getattr(manager.operators[-1], name)):
             yield from stage.click(*stage.mouse)
             yield from stage.key("A", ctrl=True)
             yield from stage.write(value)
             yield from stage.key("RET")
             yield 1.5
-            return f"{getattr(manager.operators[-1], name)}" == value
+            return _same(value, getattr(manager.operators[-1], name))
     return False
+
+
+def _same(text, value):
+    """Whether a text is a number, to six digits after the point."""
+    try:
+        return abs(float(text) - value) < 1e-6
+    except ValueError:
+        return False
 
 
 def modules(name):
