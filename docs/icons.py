@@ -6,12 +6,18 @@ an unused origin), then three corners (x, y) of each triangle, then their colour
 
 from __future__ import annotations
 
+import itertools
 from math import cos, pi, sin
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent.parent / "addon" / "draw" / "icons"
 
-WHITE, GREY, GREEN, RED = (229, 229, 229, 255), (155, 155, 155, 255), (117, 255, 175, 255), (245, 107, 91, 255)
+WHITE, GREY, GREEN, RED = (
+    (229, 229, 229, 255),
+    (155, 155, 155, 255),
+    (117, 255, 175, 255),
+    (245, 107, 91, 255),
+)
 """Those of Blender's own tools."""
 FILL = (117, 255, 175, 70)
 
@@ -22,25 +28,27 @@ Triangle = tuple[tuple[Point, Point, Point], tuple[int, int, int, int]]
 def fan(points: list[Point], color: tuple[int, int, int, int]) -> list[Triangle]:
     """Triangles of a region that is seen whole from the middle of its corners."""
     middle = sum(x for x, _ in points) / len(points), sum(y for _, y in points) / len(points)
-    return [
-        ((middle, a, b), color) for a, b in zip(points, points[1:] + points[:1], strict=True)
-    ]
+    return [((middle, a, b), color) for a, b in zip(points, points[1:] + points[:1], strict=True)]
 
 
 def line(points: list[Point], width: float, color: tuple[int, int, int, int]) -> list[Triangle]:
     """Triangles of a line with round joints."""
     out: list[Triangle] = []
-    for (ax, ay), (bx, by) in zip(points, points[1:], strict=False):
+    for (ax, ay), (bx, by) in itertools.pairwise(points):
         length = ((bx - ax) ** 2 + (by - ay) ** 2) ** 0.5
         x, y = -(by - ay) / length * width / 2, (bx - ax) / length * width / 2
         a, b, c, d = (ax + x, ay + y), (ax - x, ay - y), (bx - x, by - y), (bx + x, by + y)
         out += [((a, b, c), color), ((a, c, d), color)]
     for x, y in points[1:-1]:
-        out += fan([(x + width / 2 * cos(k * pi / 3), y + width / 2 * sin(k * pi / 3)) for k in range(6)], color)
+        out += fan(
+            [(x + width / 2 * cos(k * pi / 3), y + width / 2 * sin(k * pi / 3)) for k in range(6)], color
+        )
     return out
 
 
-def blob(x: float, y: float, size: float, begin: float = 0.0, end: float = 2 * pi, n: int = 22) -> list[Point]:
+def blob(
+    x: float, y: float, size: float, begin: float = 0.0, end: float = 2 * pi, n: int = 22
+) -> list[Point]:
     """Points on a round outline that is no circle."""
     angles = [begin + (end - begin) * k / n for k in range(n + (end - begin < 2 * pi - 1e-6))]
     return [
@@ -53,12 +61,10 @@ def draw() -> list[Triangle]:
     """A grid inside an outline, and the pencil that draws it."""
     outline = blob(112, 112, 78)
     out = fan(outline, FILL)
-    row, step = 46, 54
-    for x, y in ((112, 112 + row), (112 - step / 2, 112), (112 + step / 2, 112), (112, 112 - row)):
-        for k in range(3):
-            side = cos(k * pi / 3), sin(k * pi / 3)
-            ends = [(x + s * step / 2 * side[0], y + s * step / 2 * side[1]) for s in (-1, 1)]
-            out += line(ends, 7, GREEN)
+    rim = [(112 + 52 * cos(k * pi / 3), 112 + 52 * sin(k * pi / 3)) for k in range(7)]
+    out += line(rim, 8, GREEN)
+    for x, y in rim[:3]:
+        out += line([(x, y), (224 - x, 224 - y)], 8, GREEN)
     out += line([*blob(112, 112, 78, 0.9, 2 * pi + 0.25)], 13, WHITE)
     out += fan([(168, 150), (186, 132), (240, 186), (222, 204)], WHITE)
     out += fan([(150, 114), (182, 128), (164, 146)], GREY)

@@ -214,7 +214,10 @@ def _hidden(trace: Trace, own: np.ndarray, shapes: list[Shape]) -> str:
     world = trace.plane.world(np.column_stack([own, np.zeros(len(own))]))
     for shape in shapes:
         place = shape.plane.local(world)
-        if abs(place[:, 2].mean()) > shape.thickness or abs(trace.plane.axes[2] @ shape.plane.axes[2]) < TURNED:
+        if (
+            abs(place[:, 2].mean()) > shape.thickness
+            or abs(trace.plane.axes[2] @ shape.plane.axes[2]) < TURNED
+        ):
             continue
         how = _lies(shape, place[:, :2])
         if how == "inside":

@@ -23,7 +23,6 @@ from .joining import absorb, adopt, indices, same_layer
 from .memory import Memory
 from .pencil import layer_of, renumber
 
-
 NOTHING = "the stroke encloses nothing"
 
 
@@ -114,20 +113,18 @@ def _ink(memory: Memory, decision: Decision) -> _Ink:
     return _Ink(world, np.tile(memory.trace.pressures, 2))
 
 
-def _planned(
-    decision: Decision, bodies: dict[str, shapes.Drawn], options: Any, apply_options: bool
-) -> _Plan:
+def _planned(decision: Decision, bodies: dict[str, shapes.Drawn], options: Any, apply_options: bool) -> _Plan:
     """Find out what outlines come of a decision, and whether they have a body."""
     if decision.action in {"NEW", "PART"}:
         parts = decision.parts()
         if not parts:
             raise DrawError(NOTHING)
-        _try(parts, options)
+        refuse(parts, options)
         return _Plan(decision, parts)
     plan = _combined(decision, bodies)
     drawn = bodies[decision.body]
     flat = [(drawn.back(outline), [drawn.back(hole) for hole in holes]) for outline, holes in plan.parts]
-    _try(flat, options if apply_options else drawn.ob.gridmesh_live)
+    refuse(flat, options if apply_options else drawn.ob.gridmesh_live)
     return plan
 
 
@@ -142,7 +139,9 @@ def _combined(decision: Decision, bodies: dict[str, shapes.Drawn]) -> _Plan:
             parts = united(parts[0], (stroke, []))
         else:
             parts = [
-                rest for part in parts for rest in gridmesh.combine(part[0], stroke, part[1], how="difference")
+                rest
+                for part in parts
+                for rest in gridmesh.combine(part[0], stroke, part[1], how="difference")
             ]
     for name in decision.joined:
         parts = united(parts[0], bodies[name].shape.on(shape.plane))
@@ -164,7 +163,7 @@ def _again(plan: _Plan, bodies: dict[str, shapes.Drawn], survivors: dict[str, st
     return _combined(replace(old, plane=plane, strokes=laid, body=name, joined=joined), bodies)
 
 
-def _try(parts: list[Part], options: Any) -> None:
+def refuse(parts: list[Part], options: Any) -> None:
     """Refuse what would have no body before anything is changed."""
     gridmesh = native("mesh_sketch")
     wanted = {**options.sketch_options(), "self_crossing": "union"}
@@ -189,7 +188,9 @@ def _new(
         plane = prepare(Stroke(rings[0], True, "", "", 0, 1), close_gaps=1.0).plane
         size = float(np.linalg.norm(np.ptp(outline, axis=0)))
         widths = [radii(nearest(ring, ink.points, ink.pressures), size) for ring in rings]
-        body = outlined.make(context, [plane.local(ring)[:, :2] for ring in rings], widths, plane.matrix, options)
+        body = outlined.make(
+            context, [plane.local(ring)[:, :2] for ring in rings], widths, plane.matrix, options
+        )
     except (OutlineError, StrokeError) as error:
         raise DrawError(_of_stroke(str(error))) from error
     finally:
@@ -201,7 +202,11 @@ def _new(
 
 
 def _hang(
-    context: bpy.types.Context, body: bpy.types.Object, parent: bpy.types.Object, kind: str = "OBJECT", bone: str = ""
+    context: bpy.types.Context,
+    body: bpy.types.Object,
+    parent: bpy.types.Object,
+    kind: str = "OBJECT",
+    bone: str = "",
 ) -> None:
     """Make a body the child of another object; it stays where it is."""
     place = body.matrix_world.copy()

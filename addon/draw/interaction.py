@@ -157,7 +157,9 @@ class Interaction:
     def is_click(self, context: bpy.types.Context) -> bool:
         """Whether the mouse was not dragged yet."""
         inputs = context.preferences.inputs
-        return self._gesture.across < max(3, inputs.drag_threshold_mouse) * context.preferences.system.ui_scale
+        return (
+            self._gesture.across < max(3, inputs.drag_threshold_mouse) * context.preferences.system.ui_scale
+        )
 
     def click(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Select what is under the mouse, with Shift too; an outline stands for its body."""

@@ -37,7 +37,9 @@ def absorb(others: list[Drawn], kept: Drawn) -> list[Place]:
         gone = other.ob
         source, layer = gone.gridmesh_live.source, gone.gridmesh_live.layer
         own = frames.owned(gone) is not None
-        orphans += [(child, child.matrix_world.copy()) for child in gone.children if child not in (source, ob)]
+        orphans += [
+            (child, child.matrix_world.copy()) for child in gone.children if child not in (source, ob)
+        ]
         for child in (ob, source):
             if child.parent == gone and not (own and child == source):
                 place = child.matrix_world.copy()

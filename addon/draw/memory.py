@@ -88,6 +88,8 @@ def given(text: str, matrix: list[float], wanted: Wanted, *, free: bool, place: 
     frame = np.array(matrix, float).reshape(4, 4)
     plane = Plane(frame[:3, 3], frame[:3, :3].T)
     if not np.allclose(plane.axes @ plane.axes.T, np.eye(3), atol=1e-4):
-        raise ForgottenError("the matrix of the stroke is no frame: its axes must be unit vectors at right angles")
+        raise ForgottenError(
+            "the matrix of the stroke is no frame: its axes must be unit vectors at right angles"
+        )
     mirror = Mirror(np.array(place, float), plane.axes[0])
     return Memory(flat(plane, points, pressures, free=free), wanted, mirror)

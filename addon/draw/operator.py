@@ -15,7 +15,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 
 from ..native import NativeError, native
 from ..operators.messages import counted
-from . import drawing, memory, options, planes, shapes
+from . import drawing, memory, options, planes, shapes, simplifying
 from .decision import Decision, DecisionError, Wanted, decide
 from .interaction import Interaction, mirror_place
 
@@ -259,7 +259,9 @@ class OBJECT_OT_gridmesh_draw(options.StrokeOptions, bpy.types.Operator):  # noq
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Draw a stroke that a script gives, as text of `gesture.pack` in the plane of a matrix."""
         if not self.stroke:
-            return self._told("WARNING", "nothing is drawn; use the GridMesh Draw tool in a 3D view", {"CANCELLED"})
+            return self._told(
+                "WARNING", "nothing is drawn; use the GridMesh Draw tool in a 3D view", {"CANCELLED"}
+            )
         try:
             remembered = _remembered(self, context)
             remembered.options = options.of_operator(self)
@@ -316,4 +318,4 @@ def _remembered(operator: Any, context: bpy.types.Context) -> memory.Memory:
     return memory.given(operator.stroke, list(operator.matrix), wanted, free=free, place=place)
 
 
-classes = (OBJECT_OT_gridmesh_draw, *OPERATORS.values())
+classes = (OBJECT_OT_gridmesh_draw, *OPERATORS.values(), *simplifying.classes)

@@ -10,9 +10,17 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 from ..properties import CurveOption, ShapeOptions, SketchOptions
 
 ACTIONS = [
-    ("AUTO", "Automatic", "As the stroke lies: across an outline it extends the body, elsewhere it is a new one"),
+    (
+        "AUTO",
+        "Automatic",
+        "As the stroke lies: across an outline it extends the body, elsewhere it is a new one",
+    ),
     ("NEW", "New", "A new body, whatever the stroke meets"),
-    ("EXTEND", "Extend", "Add to the body that the stroke meets; others that it reaches in the same plane join in"),
+    (
+        "EXTEND",
+        "Extend",
+        "Add to the body that the stroke meets; others that it reaches in the same plane join in",
+    ),
     ("TRIM", "Trim", "Take away from the body that the stroke meets"),
     ("HOLE", "Hole", "Make a hole in the body that the stroke lies in"),
     ("PART", "Part", "A body of its own though it meets another one, whose child it becomes"),
@@ -23,7 +31,11 @@ class StrokeOptions(SketchOptions, CurveOption):
     """What is done with a stroke. Mixed into operators."""
 
     action: EnumProperty(
-        name="Action", description="What the stroke does", items=ACTIONS, default="AUTO", options={"SKIP_SAVE"}
+        name="Action",
+        description="What the stroke does",
+        items=ACTIONS,
+        default="AUTO",
+        options={"SKIP_SAVE"},
     )
     use_mirror: BoolProperty(
         name="Mirror Stroke",

@@ -82,4 +82,3 @@ def on_plane(context: bpy.types.Context, plane: Plane, pixel: tuple[float, float
     if along < 0 and context.region_data.is_perspective:
         return None
     return plane.local(origin + along * direction)[:2]
-

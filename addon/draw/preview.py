@@ -59,7 +59,9 @@ class Preview:
             for part in _parts(decision):
                 grid = gesture.preview(part)
                 if grid is not None:
-                    self._grids.append((_world(decision.plane, grid[0]), np.ascontiguousarray(grid[1], np.int32)))
+                    self._grids.append(
+                        (_world(decision.plane, grid[0]), np.ascontiguousarray(grid[1], np.int32))
+                    )
         self._area.tag_redraw()
 
     def say(self, word: str, hint: str, mouse: tuple[float, float]) -> None:

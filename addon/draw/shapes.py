@@ -58,7 +58,7 @@ def _drawn(ob: bpy.types.Object, sketch: Sketch) -> Drawn | None:
     """Lay a sketch into the world; None if it is squeezed to nothing there."""
     matrix = np.array(ob.matrix_world)
     own = sketch.plane
-    x, y, z = (matrix[:3, :3] @ axis for axis in own.axes)
+    x, y, _z = (matrix[:3, :3] @ axis for axis in own.axes)
     origin = matrix[:3, :3] @ own.origin + matrix[:3, 3]
     normal = np.cross(x, y)
     if not np.linalg.norm(normal) or not np.linalg.norm(x):

@@ -11,6 +11,7 @@ import bpy
 from .. import frames
 from . import interaction
 from .operator import OBJECT_OT_gridmesh_draw
+from .simplifying import OBJECT_OT_gridmesh_simplify
 
 ICONS = Path(__file__).parent / "icons"
 """Pictures for the toolbar, made by `docs/icons.py`."""
@@ -62,6 +63,8 @@ class GridMeshDrawTool(bpy.types.WorkSpaceTool):
             layout.prop(shown, "curve")
         layout.prop(shown, "depth")
         layout.prop(shown, "pen")
+        if body is not None:
+            layout.operator(OBJECT_OT_gridmesh_simplify.bl_idname, text="", icon="MOD_SIMPLIFY")
 
 
 def chosen_body(context: bpy.types.Context) -> bpy.types.Object | None:

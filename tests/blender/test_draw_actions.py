@@ -97,13 +97,16 @@ def test_each_action_is_one_undo_step_of_its_own_name(action, capfd):
     before = state()
     draw(ACTIONS[action], action=action)
     after = state()
-    assert last().name == {
-        "NEW": "Draw Body",
-        "EXTEND": "Extend Body",
-        "TRIM": "Trim Body",
-        "HOLE": "Make Hole",
-        "PART": "Add Part",
-    }[action]
+    assert (
+        last().name
+        == {
+            "NEW": "Draw Body",
+            "EXTEND": "Extend Body",
+            "TRIM": "Trim Body",
+            "HOLE": "Make Hole",
+            "PART": "Add Part",
+        }[action]
+    )
     assert last().action == action
     bpy.ops.ed.undo()
     assert state() == before
@@ -249,7 +252,7 @@ def test_a_bridge_joins_bodies_with_outlines_of_their_own(way):
 
 
 def test_bodies_at_different_depth_are_not_joined():
-    left, right = apart()
+    _, right = apart()
     right.location.z += 2
     bpy.context.view_layer.update()
     draw(BAR)
@@ -327,7 +330,10 @@ def test_a_mirrored_stroke_that_reaches_two_bodies_extends_both():
     ("points", "said"),
     [
         ([(x, 0) for x in range(20)], "The stroke encloses nothing"),
-        ([(np.sin(t), np.sin(2 * t)) for t in np.linspace(0, 2 * np.pi, 40, endpoint=False)], "The stroke encloses 2 parts"),
+        (
+            [(np.sin(t), np.sin(2 * t)) for t in np.linspace(0, 2 * np.pi, 40, endpoint=False)],
+            "The stroke encloses 2 parts",
+        ),
         (circle(4), "The stroke is too short"),
     ],
 )

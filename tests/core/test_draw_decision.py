@@ -7,6 +7,7 @@ import pytest
 
 from addon.draw import memory
 from addon.draw.decision import DecisionError, Shape, Wanted, decide, inside, relation
+from addon.draw.fewer import simplified
 from addon.draw.gesture import Gesture
 from addon.draw.trace import Mirror, Trace, closed, flat, pack, unpack
 from addon.outlines import Plane
@@ -174,7 +175,12 @@ def test_mirrored_across_the_axis_it_is_one_symmetric_body():
 
 
 def test_half_a_ring_mirrored_has_a_hole():
-    half = np.concatenate([ring(2.0, start=-np.pi / 2 - 0.1, turn=np.pi + 0.2), ring(1.0, start=-np.pi / 2 - 0.1, turn=np.pi + 0.2)[::-1]])
+    half = np.concatenate(
+        [
+            ring(2.0, start=-np.pi / 2 - 0.1, turn=np.pi + 0.2),
+            ring(1.0, start=-np.pi / 2 - 0.1, turn=np.pi + 0.2)[::-1],
+        ]
+    )
     ((_, holes),) = one(seen(half), [], MIRROR).parts()
     assert len(holes) == 1
 
@@ -195,7 +201,15 @@ def test_the_mirror_is_the_same_through_an_eye():
     eye = np.array([0.0, 0.0, 10.0])
     world = np.column_stack([ring(0.5, (1, 0)), np.zeros(60)])
     rays = world - eye
-    trace = Trace(FLOOR, np.tile(eye, (60, 1)), rays / np.linalg.norm(rays, axis=1)[:, None], np.ones(60), True, True, True)
+    trace = Trace(
+        FLOOR,
+        np.tile(eye, (60, 1)),
+        rays / np.linalg.norm(rays, axis=1)[:, None],
+        np.ones(60),
+        True,
+        True,
+        True,
+    )
     first, second = decide(trace, [], Wanted(), MIRROR)
     assert np.allclose(first.strokes[0] * [-1, 1], second.strokes[0])
     assert trace.on(Plane(np.array([0, 0, 20.0]), np.eye(3))) is None, "behind the eye"
@@ -234,7 +248,9 @@ def test_a_stabilized_stroke_stays_behind_and_is_smoother():
 
 
 def test_strokes_are_remembered_by_a_short_name():
-    kept = memory.given(pack(ring(), np.ones(60)), np.eye(4).ravel().tolist(), Wanted(), free=True, place=np.zeros(3))
+    kept = memory.given(
+        pack(ring(), np.ones(60)), np.eye(4).ravel().tolist(), Wanted(), free=True, place=np.zeros(3)
+    )
     name = memory.keep(kept)
     assert len(name) < 8
     assert memory.recall(name) is kept
@@ -254,7 +270,30 @@ def test_a_stroke_as_text():
     assert np.array_equal(again[1], pressure)
 
 
-@pytest.mark.parametrize("text", ["x", "AAAA", pack(np.full((3, 2), np.nan), np.ones(3))])
-def test_a_text_that_is_no_stroke_is_refused(text):
-    with pytest.raises(ValueError):
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x", "base64|padding"),
+        ("AAAA", "three columns"),
+        (pack(np.full((3, 2), np.nan), np.ones(3)), "not finite"),
+    ],
+)
+def test_a_text_that_is_no_stroke_is_refused(text, said):
+    with pytest.raises(ValueError, match=said):
         unpack(text)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 1e-3, 0.02, 10.0])
+def test_an_outline_with_fewer_points_stays_within_the_tolerance(tolerance):
+    random = np.random.default_rng(5)
+    t = np.sort(random.uniform(0, 2 * np.pi, 300))
+    line = (1 + 0.3 * np.cos(3 * t))[:, None] * np.stack([np.cos(t), np.sin(t)], axis=1)
+    kept = simplified(line, tolerance)
+    assert len(kept) == len(set(kept)) >= 3
+    assert list(kept) == sorted(kept)
+    assert len(kept) == 300 if tolerance == 0.0 else len(kept) < 150
+    a, b = line[kept], np.roll(line[kept], -1, axis=0)
+    along = b - a
+    part = np.clip(((line[:, None] - a) * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
+    off = np.linalg.norm(line[:, None] - a - part[..., None] * along, axis=2).min(axis=1)
+    assert off.max() <= tolerance + 1e-12

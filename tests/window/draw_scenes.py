@@ -242,7 +242,9 @@ def draw_redo():
     (body,) = bodies()
     wide, thick = extent(body), extent(body, 2)
     assert bpy.context.window_manager.operators[-1].name == "Extend Body"
-    assert abs(bpy.context.window_manager.operators[-1].depth - 0.8) < 1e-6, "the panel has not the body's depth"
+    assert abs(bpy.context.window_manager.operators[-1].depth - 0.8) < 1e-6, (
+        "the panel has not the body's depth"
+    )
     hud = yield from stage.open_redo_panel()
     yield from stage.picture("draw_redo_1")
     done = yield from numbers_of(hud, "depth", "0.3")
@@ -385,7 +387,9 @@ def draw_mirrored():
     assert apart < 1e-4, f"not symmetric: {apart}"
     wide = extent(body)
     said = words()
-    yield from stroke(ring((x + 150, y + 20), 60, 30, start=np.pi), keys=("X",), picture="draw_mirrored_2", at=0.9)
+    yield from stroke(
+        ring((x + 150, y + 20), 60, 30, start=np.pi), keys=("X",), picture="draw_mirrored_2", at=0.9
+    )
     assert said[-1][0].startswith("Extend"), said[-1]
     (body,) = bodies()
     across = np.array([vertex.co[0] for vertex in body.data.vertices])
@@ -466,6 +470,16 @@ def pen():
 
 
 SCENES = (
-    *(draw_body, draw_left, draw_hole, draw_across, draw_apart, draw_head, draw_redo, draw_click, draw_turned),
+    *(
+        draw_body,
+        draw_left,
+        draw_hole,
+        draw_across,
+        draw_apart,
+        draw_head,
+        draw_redo,
+        draw_click,
+        draw_turned,
+    ),
     *(draw_bridge, draw_eye, draw_mirrored, draw_idle, draw_planes, draw_pressed, pen),
 )
