@@ -7,6 +7,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from bpy.app.translations import pgettext_iface
 
 from .. import frames
 from ..live import engine
@@ -18,22 +19,20 @@ from .memory import Memory
 from .preview import Preview
 from .trace import Mirror, Trace
 
-WORDS = {
-    "NEW": "New Body",
-    "EXTEND": "Extend",
-    "TRIM": "Trim",
-    "HOLE": "Hole in",
-    "PART": "Part of",
-    "": "Nothing",
-}
-
 drawing_now = False
 """Whether a stroke is being drawn."""
 
 
-def shown(text: str) -> str:
-    """Return a text in the user's language."""
-    return bpy.app.translations.pgettext_iface(text)
+def _words() -> dict[str, str]:
+    """What a stroke does, in the user's language."""
+    return {
+        "NEW": pgettext_iface("New Body"),
+        "EXTEND": pgettext_iface("Extend"),
+        "TRIM": pgettext_iface("Trim"),
+        "HOLE": pgettext_iface("Hole in"),
+        "PART": pgettext_iface("Part of"),
+        "": pgettext_iface("Nothing"),
+    }
 
 
 def mirror_place(context: bpy.types.Context) -> np.ndarray:
@@ -136,7 +135,7 @@ class Interaction:
         try:
             decisions = self.decided(event)
         except DecisionError as error:
-            decisions, word, hint = [], shown(WORDS[""]), str(error)
+            decisions, word, hint = [], _words()[""], str(error)
         else:
             word, hint = _word(decisions[0]), decisions[0].hint
         plane = decisions[0].plane if decisions else self._plane
@@ -147,10 +146,10 @@ class Interaction:
 
     def _tell(self, context: bpy.types.Context, text: str) -> None:
         keys = (
-            shown("Shift, Ctrl: Take Away"),
-            shown("P: Part"),
-            shown("X: Mirror"),
-            shown("Esc, Right Click: Leave"),
+            pgettext_iface("Shift, Ctrl: Take Away"),
+            pgettext_iface("P: Part"),
+            pgettext_iface("X: Mirror"),
+            pgettext_iface("Esc, Right Click: Leave"),
         )
         context.workspace.status_text_set(text + "    ".join(keys))
 
@@ -196,7 +195,7 @@ class Interaction:
 def _word(decision: Decision) -> str:
     """Say what would be done, and to which body."""
     names = " + ".join(f"'{name}'" for name in (decision.body, *decision.joined) if name)
-    return f"{shown(WORDS[decision.action])} {names}".strip()
+    return f"{_words()[decision.action]} {names}".strip()
 
 
 def _pixel(context: bpy.types.Context, event: bpy.types.Event) -> tuple[float, float]:

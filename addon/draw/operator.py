@@ -165,7 +165,7 @@ class OBJECT_OT_gridmesh_draw(options.StrokeOptions, bpy.types.Operator):  # noq
     bl_idname = "object.gridmesh_draw"
     bl_label = "GridMesh Draw"
     # Without undo and redo: what it calls has both.
-    bl_options = {"INTERNAL"}  # noqa: RUF012
+    bl_options = set()  # noqa: RUF012
 
     plane: EnumProperty(
         name="Plane",

@@ -183,11 +183,6 @@ def words():
     return said
 
 
-def history():
-    """Names of the undo steps, as the operators that are listed have them."""
-    return [operator.name for operator in bpy.context.window_manager.operators]
-
-
 def draw_head():
     """A head drawn over a body from its top extends it, and is said to; with Shift, pressed on the way, it trims."""
     yield from begin()
