@@ -44,6 +44,8 @@ class Shape:
     holes: list[np.ndarray]
     thickness: float = 0.0
     """From its plane to where it ends, on the thicker side."""
+    surface: np.ndarray | None = None
+    """(k, 3) points of its surface, in the frame of its plane."""
     low: np.ndarray = field(init=False)
     high: np.ndarray = field(init=False)
 
@@ -60,6 +62,15 @@ class Shape:
     def size(self) -> float:
         """Diagonal of its bounds."""
         return float(np.linalg.norm(self.high - self.low))
+
+    def height(self, place: np.ndarray) -> float:
+        """How far its surface is from its plane near a point (3,) of the plane's frame, on the side of that."""
+        if self.surface is None or not len(self.surface):
+            return self.thickness
+        apart = self.surface[:, :2] - place[:2]
+        near = np.argsort((apart * apart).sum(axis=1), kind="stable")[:12]
+        side = -1.0 if place[2] < 0 else 1.0
+        return float((side * self.surface[near, 2]).max())
 
     def on(self, plane: Plane) -> Part:
         """Outline and holes in the frame of another plane."""
@@ -214,13 +225,13 @@ def _hidden(trace: Trace, own: np.ndarray, shapes: list[Shape]) -> str:
     world = trace.plane.world(np.column_stack([own, np.zeros(len(own))]))
     for shape in shapes:
         place = shape.plane.local(world)
-        if (
-            abs(place[:, 2].mean()) > shape.thickness
-            or abs(trace.plane.axes[2] @ shape.plane.axes[2]) < TURNED
-        ):
+        middle = place.mean(axis=0)
+        turned = abs(trace.plane.axes[2] @ shape.plane.axes[2]) < TURNED
+        if turned or abs(middle[2]) > shape.thickness:
             continue
         how = _lies(shape, place[:, :2])
-        if how == "inside":
+        # As thick as a ball of its area: that is the most that sticks out.
+        if how == "inside" and abs(middle[2]) + np.sqrt(area(own) / np.pi) < shape.height(middle):
             return f"inside '{shape.name}': not visible; use Plane: Surface"
         if how == "around":
             return f"'{shape.name}' will be inside it: not visible"

@@ -13,7 +13,7 @@ from .. import frames
 from ..live import engine
 from ..strokes import selected
 from . import planes, shapes
-from .decision import Decision, DecisionError, Wanted, decide
+from .decision import Decision, DecisionError, Shape, Wanted, decide
 from .gesture import Gesture
 from .memory import Memory
 from .preview import Preview
@@ -64,7 +64,7 @@ class Interaction:
             # A click selects all the same.
             self._problem = str(error)
             self._plane = planes.chosen(context, "VIEW", pixel)
-        self._bodies = [drawn.shape for drawn in shapes.read(context).values()]
+        self._bodies: list[Shape] | None = None
         self._mirror = _mirror(context)
         length = options.edge_length if options.resolution == "EDGE_LENGTH" else None
         self._gesture = Gesture(options.triangles, length)
@@ -121,7 +121,10 @@ class Interaction:
             raise DecisionError(self._problem)
         if not len(self._gesture):
             raise DecisionError("the stroke is too short; drag to draw an outline")
-        return decide(self.trace(), self._bodies, self.wanted(event), self._mirror if self.mirrored else None)
+        if self._bodies is None:  # once, and not for a click
+            self._bodies = [drawn.shape for drawn in shapes.read(bpy.context).values()]
+        mirror = self._mirror if self.mirrored else None
+        return decide(self.trace(), self._bodies, self.wanted(event), mirror)
 
     def memory(self, event: bpy.types.Event, options: dict[str, Any]) -> Memory:
         """Return what is to be remembered of the stroke."""

@@ -112,19 +112,37 @@ class Preview:
         if bpy.context.region != self._region or not self._word:
             return
         scale = bpy.context.preferences.system.ui_scale
-        x, y = self._mouse
-        blf.enable(0, blf.SHADOW)
-        blf.shadow(0, 3, 0.0, 0.0, 0.0, 0.9)
-        for text, size, below, color in (
-            (self._word, 14.0, 0.0, tuple(0.35 + 0.65 * value for value in self._color)),
-            (self._hint, 11.0, 18.0, (1.0, 0.85, 0.5)),
-        ):
-            blf.size(0, size * scale)
+        light = tuple(0.35 + 0.65 * value for value in self._color)
+        rows = [(self._word, 14.0 * scale, light), (self._hint, 11.0 * scale, (1.0, 0.85, 0.5))]
+        rows = [row for row in rows if row[0]]
+        width = 0.0
+        for text, size, _ in rows:
+            blf.size(0, size)
+            width = max(width, blf.dimensions(0, text)[0])
+        margin = 6 * scale
+        left = min(self._mouse[0] + 18 * scale, self._region.width - width - 2 * margin)
+        top = self._mouse[1] + 28 * scale
+        height = sum(1.5 * size for _, size, _ in rows)
+        _box(left - margin, top - height - margin / 2, left + width + margin, top + margin / 2)
+        for text, size, color in rows:
+            top -= 1.5 * size
+            blf.size(0, size)
             blf.color(0, *color, 1.0)
-            left = min(x + 18 * scale, self._region.width - blf.dimensions(0, text)[0] - 8 * scale)
-            blf.position(0, left, y + (14 - below) * scale, 0)
+            blf.position(0, left, top + 0.45 * size, 0)
             blf.draw(0, text)
-        blf.disable(0, blf.SHADOW)
+
+
+def _box(left: float, bottom: float, right: float, top: float) -> None:
+    """Draw a dark box behind words, which may be over anything."""
+    import gpu
+    from gpu_extras.batch import batch_for_shader
+
+    gpu.state.blend_set("ALPHA")
+    plain = gpu.shader.from_builtin("UNIFORM_COLOR")
+    plain.uniform_float("color", (0.06, 0.06, 0.06, 0.8))
+    corners = [(left, bottom), (right, bottom), (right, top), (left, top)]
+    batch_for_shader(plain, "TRIS", {"pos": corners}, indices=[(0, 1, 2), (0, 2, 3)]).draw(plain)
+    gpu.state.blend_set("NONE")
 
 
 def _parts(decision: Decision) -> list[Any]:

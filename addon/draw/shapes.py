@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from mathutils import Vector
 
 from ..live import engine
 from ..live.reading import LostError, sketch_of
 from ..outlines import Plane, Sketch, project
 from .decision import Shape
+
+SAMPLES = 2000
+"""About how many points of a body's surface are looked at."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +70,10 @@ def _drawn(ob: bpy.types.Object, sketch: Sketch) -> Drawn | None:
     plane = Plane(origin, np.stack([x_axis, np.cross(normal, x_axis), normal]))
     to_world = np.stack([plane.axes[:2] @ x, plane.axes[:2] @ y], axis=1)
     holes = [project(hole, own)[:, :2] @ to_world.T for hole in sketch.holes]
-    corners = np.array([ob.matrix_world @ Vector(corner) for corner in ob.bound_box])
-    thickness = float(np.abs(plane.local(corners)[:, 2]).max())
-    shape = Shape(ob.name, plane, sketch.outline @ to_world.T, holes, thickness)
+    points = np.empty(len(ob.data.vertices) * 3, np.float32)
+    ob.data.vertices.foreach_get("co", points)
+    some = points.reshape(-1, 3)[:: max(1, len(ob.data.vertices) // SAMPLES)]
+    surface = plane.local(some @ matrix[:3, :3].T + matrix[:3, 3])
+    thickness = float(np.abs(surface[:, 2]).max(initial=0.0))
+    shape = Shape(ob.name, plane, sketch.outline @ to_world.T, holes, thickness, surface)
     return Drawn(ob, sketch, shape, np.linalg.inv(to_world), matrix)

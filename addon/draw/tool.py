@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 
 from .. import frames
-from . import interaction
+from . import interaction, renaming
 from .operator import OBJECT_OT_gridmesh_draw
 from .simplifying import OBJECT_OT_gridmesh_simplify
 
@@ -100,3 +100,4 @@ def unregister() -> None:
     if hasattr(GridMeshDrawTool, "_bl_tool"):
         bpy.utils.unregister_tool(GridMeshDrawTool)
     bpy.types.STATUSBAR_HT_header.remove(_hint)
+    renaming.unregister()

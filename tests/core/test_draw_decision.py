@@ -100,6 +100,9 @@ def test_it_is_decided_from_the_first_point_on():
 
 def test_what_would_not_be_seen_is_said():
     assert one(seen(WITHIN), [body()]).hint == "inside 'Body': not visible; use Plane: Surface"
+    ball = replace(body(), surface=np.array([(x, y, z) for x, y in ring(0.5) for z in (-0.6, 0.6)]))
+    assert one(seen(ring(0.3)), [ball]).hint.startswith("inside")
+    assert one(seen(ring(0.3), z=0.6), [ball]).hint == "", "on its surface"
     assert one(seen(WITHIN, z=2.5), [body(thickness=2.0)]).hint == "", "in front of it"
     assert one(seen(WITHIN, free=False, turned=90.0), [body()]).hint == "", "across it"
     assert "'Body' will be inside it" in one(seen(ring(5.0)), [body()]).hint

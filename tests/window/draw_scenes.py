@@ -114,14 +114,14 @@ def draw_across():
 
 
 def draw_apart():
-    """A stroke right across leaves two bodies of one outline object."""
+    """With Shift a stroke right across leaves two bodies, each with its outline."""
     yield from begin()
     x, y = stage.middle()
     yield from stroke(ring((x, y), 150, 48))
     bar = [(x - 15, y - 200 + 20 * k) for k in range(21)] + [(x + 15, y + 200 - 20 * k) for k in range(21)]
     yield from stroke(bar, shift=True)
     assert [euler(ob) for ob in bodies()] == [2, 2]
-    assert len(outlines()) == 1
+    assert len(outlines()) == 2
     yield from stage.picture("draw_apart")
 
 
@@ -257,8 +257,16 @@ def draw_redo():
         last = bpy.context.window_manager.operators[-1]
         assert last.action == action, (last.action, action)
         assert len(bodies()) == count, action
+        names = {"TRIM": "Trim Body", "NEW": "Draw Body", "EXTEND": "Extend Body"}
+        assert last.name == names[action], "the undo step has another name"
     (body,) = bodies()
     assert abs(extent(body) - wide) < 0.02
+    yield from stage.picture("draw_redo_3")
+    yield from stage.move(*stage.middle())
+    yield from stage.key("Z", ctrl=True)
+    yield 0.5
+    (body,) = bodies()
+    assert extent(body) < 0.9 * wide, "more than one step for a stroke"
 
 
 def draw_click():
