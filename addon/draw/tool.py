@@ -16,6 +16,9 @@ from .simplifying import OBJECT_OT_gridmesh_simplify
 ICONS = Path(__file__).parent / "icons"
 """Pictures for the toolbar, made by `docs/icons.py`."""
 
+FINENESS = {"TRIANGLES": "triangles", "EDGE_LENGTH": "edge_length"}
+"""Option that gives the fineness."""
+
 _PRESS = {"type": "LEFTMOUSE", "value": "PRESS"}
 
 
@@ -57,7 +60,9 @@ class GridMeshDrawTool(bpy.types.WorkSpaceTool):
         else:
             layout.label(text="New Bodies", icon="ADD")
         shown = options if body is None else body.gridmesh_live
-        layout.prop(shown, "triangles" if shown.resolution == "TRIANGLES" else "edge_length")
+        layout.prop(shown, "resolution", text="")
+        if shown.resolution in FINENESS:
+            layout.prop(shown, FINENESS[shown.resolution])
         layout.prop(shown, "profile")
         if body is None:
             layout.prop(shown, "curve")
