@@ -15,7 +15,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 
 from ..native import NativeError, native
 from ..operators.messages import counted
-from . import drawing, memory, options, planes, renaming, shapes, simplifying
+from . import drawing, memory, options, planes, shapes, simplifying
 from .decision import Decision, DecisionError, Wanted, decide
 from .interaction import Interaction, mirror_place
 
@@ -60,8 +60,6 @@ class _Action(options.StrokeOptions):
         triangles = sum(len(ob.data.polygons) for ob in made)
         sides = "" if self.shape == "SHEET" else f", {triangles // 2} a side"
         milliseconds = 1000 * (perf_counter() - started)
-        if type(self) is not OPERATORS[self.action]:
-            renaming.later(self, OPERATORS[self.action].bl_idname)
         text = f"{_DONE[self.action]} {counted(len(made), 'body')}: {triangles} triangles{sides}, {milliseconds:.0f} ms"
         return self._say("INFO", f"{text}\n{hint}" if hint else text, {"FINISHED"})
 

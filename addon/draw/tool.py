@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 
 from .. import frames
-from . import interaction, renaming
+from . import interaction
 from .operator import OBJECT_OT_gridmesh_draw
 from .simplifying import OBJECT_OT_gridmesh_simplify
 
@@ -105,4 +105,3 @@ def unregister() -> None:
     if hasattr(GridMeshDrawTool, "_bl_tool"):
         bpy.utils.unregister_tool(GridMeshDrawTool)
     bpy.types.STATUSBAR_HT_header.remove(_hint)
-    renaming.unregister()
