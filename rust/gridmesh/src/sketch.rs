@@ -299,7 +299,8 @@ impl Job<'_> {
     /// there must be.
     fn is_settled(&self, found: &Found) -> bool {
         const FEW: usize = 12;
-        found.faults <= SLIGHT && found.outline.turns() <= FEW * self.contours.len()
+        let price = found.bent.as_ref().map_or(0.0, |bent| bent.price);
+        found.faults <= SLIGHT && price < 1.0 && found.outline.turns() <= FEW * self.contours.len()
     }
 
     /// The patch of an outline, symmetric if that was asked for; and by how much it is not.

@@ -125,10 +125,12 @@ fn is_same(a: &[f64], b: &[f64]) -> bool {
 }
 
 /// What unequal sizes cost, in turns: nothing while the longest edges are less than half longer than
-/// most.
+/// most, nor a few of them up to twice as long.
 fn price_of_size(ground: &Ground, u: &[f64]) -> f64 {
     const FREE: f64 = 0.45;
-    const EACH: f64 = 20.0;
+    const EACH: f64 = 30.0;
+    const RARE: f64 = 0.8;
+    const LONGEST: f64 = 5.0;
     // Log edge lengths, each counted by the lattice edges that have it.
     let mut sizes: Vec<(f64, f64)> = ground
         .carrier
@@ -152,5 +154,7 @@ fn price_of_size(ground: &Ground, u: &[f64]) -> f64 {
             })
             .map_or(0.0, |s| s.0)
     };
-    EACH * (quantile(0.99) - quantile(0.5) - FREE).max(0.0).powi(2)
+    let middle = quantile(0.5);
+    let longest = sizes.last().map_or(0.0, |s| s.0);
+    EACH * (quantile(0.99) - middle - FREE).max(0.0).powi(2) + LONGEST * (longest - middle - RARE).max(0.0)
 }

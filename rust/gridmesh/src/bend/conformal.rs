@@ -7,6 +7,7 @@ use glam::DVec2;
 use super::carrier::Carrier;
 use super::directions::{Directions, directions};
 use super::tangents::Tangents;
+use super::width::room;
 use crate::error::Result;
 use crate::inflate::laplace::{Factor, Pattern, cotangent_weights};
 use crate::inflate::topology::Topology;
@@ -23,6 +24,8 @@ pub struct Operators {
     pattern: Pattern,
     /// Length of contour that each boundary vertex stands for.
     lengths: Vec<f64>,
+    /// The part of it that wants to run along a lattice direction.
+    pulls: Vec<f64>,
     /// Smoothed tangent angle at each boundary vertex.
     tangents: Vec<f64>,
     /// Per contour: first vertex, number of vertices, sixths of a circle that the tangent turns.
@@ -56,12 +59,14 @@ impl Operators {
         }
         let contours =
             carrier.rims.iter().zip(tangents).map(|(rim, t)| (rim.start, rim.len(), t.total())).collect();
-        Ok(Self { topology, weights, pattern, lengths: carrier.lengths(), tangents: at_rim, contours })
+        let lengths = carrier.lengths();
+        let pulls = lengths.iter().zip(room(carrier)).map(|(length, room)| length * room).collect();
+        Ok(Self { topology, weights, pattern, lengths, pulls, tangents: at_rim, contours })
     }
 
-    /// The Laplacian with `beta` times the length of contour on its diagonal.
+    /// The Laplacian with `beta` times the length of contour that wants a direction on its diagonal.
     pub fn robin(&self, beta: f64) -> Result<Factor<'_>> {
-        let diagonal = |v: usize| self.lengths.get(v).map_or(0.0, |length| beta * length);
+        let diagonal = |v: usize| self.pulls.get(v).map_or(0.0, |pull| beta * pull);
         self.pattern.factor(&self.topology, &self.weights, diagonal)
     }
 
@@ -78,7 +83,7 @@ impl Operators {
             let range = start..start + n;
             let turned: Vec<f64> =
                 self.tangents[range.clone()].iter().zip(&v[range.clone()]).map(|(t, v)| t + v).collect();
-            directions(&turned, &self.lengths[range], total, price)
+            directions(&turned, &self.pulls[range], total, price)
         };
         self.contours.iter().map(of).collect()
     }
@@ -109,7 +114,7 @@ impl Operators {
                 let sum: f64 = slots
                     .map(|slot| self.weights[slot] * (of[v] - of[self.topology.near[slot] as usize]))
                     .sum();
-                sum + self.lengths.get(v).map_or(0.0, |length| beta * length * of[v])
+                sum + self.pulls.get(v).map_or(0.0, |pull| beta * pull * of[v])
             })
             .collect()
     }
@@ -142,7 +147,7 @@ impl Operators {
                 for (&(start, ..), found) in self.contours.iter().zip(&found[k].1) {
                     for (i, &m) in found.steps.iter().enumerate() {
                         let wish = FRAC_PI_3 * f64::from(m) - self.tangents[start + i];
-                        side[start + i] = beta * self.lengths[start + i] * wish;
+                        side[start + i] = beta * self.pulls[start + i] * wish;
                     }
                 }
             }
