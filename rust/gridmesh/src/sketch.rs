@@ -37,6 +37,11 @@ const ENOUGH: (f64, f64) = (14.0 * std::f64::consts::PI / 180.0, 1.0);
 const SLIGHT: f64 = 0.1;
 const TURNS_OF_FAULT: f64 = 12.0;
 
+/// Where a patch on a bent lattice has triangles below this angle, 20 degrees, others are placed too; and
+/// how many turns it outweighs that an angle is zero.
+const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
+const TURNS_OF_ANGLE: f64 = 16.0;
+
 /// A flat patch with the numbers of its making.
 #[derive(Clone, Debug)]
 pub struct Sketch {
@@ -162,10 +167,15 @@ struct Found {
 }
 
 impl Found {
-    /// Cost and faults in turns.
+    /// How far the least angle is from a good one: 0 to 1.
+    fn starved(&self) -> f64 {
+        (1.0 - min_angle(&self.placed.patch) / GOOD_ANGLE).max(0.0)
+    }
+
+    /// Cost, faults and starved triangles in turns.
     fn score(&self) -> f64 {
         let price = self.bent.as_ref().map_or(0.0, |bent| bent.price);
-        self.outline.cost + price + TURNS_OF_FAULT * self.faults
+        self.outline.cost + price + TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved()
     }
 
     /// True if a part of the drawing is lost in the mesh.
@@ -300,7 +310,10 @@ impl Job<'_> {
     fn is_settled(&self, found: &Found) -> bool {
         const FEW: usize = 12;
         let price = found.bent.as_ref().map_or(0.0, |bent| bent.price);
-        found.faults <= SLIGHT && price < 1.0 && found.outline.turns() <= FEW * self.contours.len()
+        found.faults <= SLIGHT
+            && found.starved() == 0.0
+            && price < 1.0
+            && found.outline.turns() <= FEW * self.contours.len()
     }
 
     /// The patch of an outline, symmetric if that was asked for; and by how much it is not.

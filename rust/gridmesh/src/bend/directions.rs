@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn small_wiggles_do_not_turn() {
         let tangents: Vec<f64> =
-            (0..60).map(|i| FRAC_PI_3 * f64::from(i / 10) + if i % 2 == 0 { 0.6 } else { -0.6 }).collect();
+            (0..60).map(|i| FRAC_PI_3 * f64::from(i / 10) + if i % 2 == 0 { 0.45 } else { -0.45 }).collect();
         let found = directions(&tangents, &[1.0; 60], 6, 1.0);
         assert_eq!(found.turns, 6);
     }

@@ -6,24 +6,18 @@ use std::time::Instant;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::{Asked, Effort, Found, Job, SLIGHT, TURNS_OF_FAULT, centroid, faults};
+use super::{Asked, Effort, Found, Job, SLIGHT, centroid, faults};
 use crate::bend::{Bent, Ground, choose};
 use crate::curve::ClosedCurve;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
 use crate::options::{BoundaryMethod, Mirror, SketchOptions};
 use crate::outline::Outline;
-use crate::place::min_angle;
 use crate::progress::Progress;
 use crate::symmetry::Symmetry;
 
 /// So many bends are traced.
 const TRACED: usize = 2;
-
-/// Where a patch on a bent lattice has triangles below this angle, 20 degrees, another bend is placed; and
-/// how many turns it outweighs that an angle is zero.
-const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
-const TURNS_OF_ANGLE: f64 = 8.0;
 
 impl Job<'_> {
     /// True if the lattice may bend.
@@ -54,7 +48,7 @@ impl Job<'_> {
         };
         outlines.sort_by(|a, b| (a.0.price + a.2.cost).total_cmp(&(b.0.price + b.2.cost)));
         self.lap("bend", started);
-        let mut best: Option<(f64, Found)> = None;
+        let mut best: Option<Found> = None;
         for (bent, lattice, outline) in outlines {
             self.placements += 1;
             let started = Instant::now();
@@ -65,16 +59,16 @@ impl Job<'_> {
                 continue;
             }
             let faults = faults(&placed);
-            let starved = (1.0 - min_angle(&placed.patch) / GOOD_ANGLE).max(0.0);
-            let rank = outline.cost + bent.price + TURNS_OF_FAULT * faults + TURNS_OF_ANGLE * starved;
-            if best.as_ref().is_none_or(|(least, _)| rank < *least) {
-                best = Some((rank, Found { faults, bent: Some(bent), outline, placed, mirror_error }));
+            let found = Found { faults, bent: Some(bent), outline, placed, mirror_error };
+            let is_good = found.faults <= SLIGHT && found.starved() == 0.0;
+            if best.as_ref().is_none_or(|best| found.score() < best.score()) {
+                best = Some(found);
             }
-            if faults <= SLIGHT && starved == 0.0 {
+            if is_good {
                 break;
             }
         }
-        Ok(best.map(|(_, found)| found))
+        Ok(best)
     }
 
     /// The boundaries on the most promising bent lattices.
