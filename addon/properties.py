@@ -118,8 +118,6 @@ class SketchOptions:
             "corner_angle": self.corner_angle,
             "mirror": "auto" if self.mirror == "AUTO" else None,
             "self_crossing": "union" if self.use_union else "error",
-            # A stroke that is dragged keeps its lattice, and only a straight one can be kept.
-            "bend": 0.0,
         }
 
     def draw_sketch_options(self, layout: bpy.types.UILayout) -> None:

@@ -7,6 +7,10 @@ from checks import check_patch
 from sketches import DRAWINGS, SHAPES, blob, circle
 
 
+def mesh_sketch(*drawing, bend=1.0, **options):
+    return gridmesh.mesh_sketch(*drawing, bend=bend, **options)
+
+
 def blobs(count):
     random = np.random.default_rng(5)
     return [
@@ -35,7 +39,7 @@ def test_drawings_have_fewer_irregular_vertices_than_on_straight_lattices(triang
     irregular = []
     for drawing in DRAWINGS.values():
         points = drawing["points"]
-        straight, bent = (gridmesh.mesh_sketch(points, triangles=triangles, bend=b) for b in (0, 1))
+        straight, bent = (mesh_sketch(points, triangles=triangles, bend=b) for b in (0, 1))
         check_patch(bent, [points])
         assert straight.report["bend"] == 0
         assert straight.report["scale_range"] == 1
@@ -46,14 +50,14 @@ def test_drawings_have_fewer_irregular_vertices_than_on_straight_lattices(triang
 
 def test_the_number_of_irregular_vertices_hardly_grows_with_the_triangles():
     few, many = (
-        np.median([gridmesh.mesh_sketch(points, triangles=n).report["irregular"] for points in blobs(9)])
+        np.median([mesh_sketch(points, triangles=n).report["irregular"] for points in blobs(9)])
         for n in (2000, 16000)
     )
     assert many <= few * 4 / 3
 
 
 def test_limbs_askew_are_followed_without_steps():
-    straight, bent = (gridmesh.mesh_sketch(with_a_foot(0.9), triangles=3000, bend=b) for b in (0, 1))
+    straight, bent = (mesh_sketch(with_a_foot(0.9), triangles=3000, bend=b) for b in (0, 1))
     assert bent.report["irregular"] <= 0.75 * straight.report["irregular"]
     assert bent.report["bend"] > 0
     assert bent.report["scale_range"] > 1
@@ -61,13 +65,13 @@ def test_limbs_askew_are_followed_without_steps():
 
 def test_a_straight_bar_needs_no_bend():
     for angle in (0.0, 0.4, 1.0):
-        report = gridmesh.mesh_sketch(limb(angle), triangles=1500).report
+        report = mesh_sketch(limb(angle), triangles=1500).report
         assert report["irregular"] <= 6 + 2
 
 
 def test_outlines_with_holes_bend_too():
     outline, hole = 4 * blobs(3)[2], circle(60, 0.6)[::-1] + [0.3, 0.2]
-    straight, bent = (gridmesh.mesh_sketch(outline, [hole], triangles=4000, bend=b) for b in (0, 1))
+    straight, bent = (mesh_sketch(outline, [hole], triangles=4000, bend=b) for b in (0, 1))
     check_patch(bent, [outline, hole])
     assert bent.report["bend"] > 0
     assert bent.report["irregular"] < straight.report["irregular"]
@@ -78,18 +82,18 @@ def test_a_drawing_whose_bent_image_overlaps_itself_is_meshed():
     t = np.linspace(0.4, 3.4 * np.pi, 160)
     wall = [np.column_stack([r * np.cos(t), r * np.sin(t)]) for r in (0.4 * t, 0.4 * t + 0.9)]
     spiral = np.vstack([wall[0], wall[1][::-1]])
-    check_patch(gridmesh.mesh_sketch(spiral, triangles=3000), [spiral])
+    check_patch(mesh_sketch(spiral, triangles=3000), [spiral])
 
 
 def test_straight_is_what_is_asked_for_by_an_angle_an_origin_or_growth():
     points = blobs(1)[0]
     for options in ({"angle": 0.2}, {"origin": (0.0, 0.0), "angle": 0.1}, {"boundary": "grown"}, {"bend": 0}):
-        assert gridmesh.mesh_sketch(points, triangles=1000, **options).report["bend"] == 0
+        assert mesh_sketch(points, triangles=1000, **options).report["bend"] == 0
 
 
 def test_half_a_bend_is_less_of_one():
     points = with_a_foot(0.9)
-    ranges = [gridmesh.mesh_sketch(points, triangles=3000, bend=b).report["scale_range"] for b in (0.02, 1)]
+    ranges = [mesh_sketch(points, triangles=3000, bend=b).report["scale_range"] for b in (0.02, 1)]
     assert 1 <= ranges[0] < ranges[1]
 
 
@@ -97,10 +101,10 @@ def test_half_a_bend_is_less_of_one():
 def test_the_same_drawing_bends_the_same_way_however_it_lies(name):
     points = {**SHAPES, **DRAWINGS}[name]["points"]
     try:
-        expected = gridmesh.mesh_sketch(points, triangles=1500)
+        expected = mesh_sketch(points, triangles=1500)
     except gridmesh.GridMeshError:
         return
-    small = gridmesh.mesh_sketch(points[::-1] * 0.125, triangles=1500)
+    small = mesh_sketch(points[::-1] * 0.125, triangles=1500)
     assert (small.vertices * 8).tobytes() == expected.vertices.tobytes()
     assert small.report["scale_range"] == expected.report["scale_range"]
 
@@ -112,7 +116,7 @@ def test_symmetric_drawings_bend_symmetrically(turn):
     right = np.column_stack([radius * np.sin(half), -radius * np.cos(half)])[1:-1]
     points = np.vstack([[[0, -radius[0]]], right, [[0, radius[-1]]], right[::-1] * [-1, 1]])
     points = points @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
-    straight, bent = (gridmesh.mesh_sketch(points, triangles=4000, mirror="auto", bend=b) for b in (0, 1))
+    straight, bent = (mesh_sketch(points, triangles=4000, mirror="auto", bend=b) for b in (0, 1))
     check_patch(bent, [points])
     assert bent.report["bend"] > 0
     assert bent.report["irregular"] < straight.report["irregular"]
@@ -129,10 +133,10 @@ def lengths_near(patch, at, radius):
 def test_density_makes_triangles_smaller_where_it_is_asked_for():
     points = circle(120)
     density = np.where(points[:, 0] > 0.3, 4.0, 1.0)
-    patch = gridmesh.mesh_sketch(points, triangles=2000, density=density)
+    patch = mesh_sketch(points, triangles=2000, density=density)
     check_patch(patch, [points])
     assert lengths_near(patch, [0.8, 0], 0.3) < 0.8 * lengths_near(patch, [-0.8, 0], 0.3)
-    again = gridmesh.mesh_sketch(points[::-1], triangles=2000, density=density[::-1])
+    again = mesh_sketch(points[::-1], triangles=2000, density=density[::-1])
     assert again.vertices.tobytes() == patch.vertices.tobytes()
 
 
@@ -140,14 +144,14 @@ def test_density_reaches_holes():
     points, hole = circle(120), circle(40, 0.2)[::-1] + [0.4, 0]
     # Not all around: the lattice has as many turns there as anywhere.
     density = [np.ones(120), np.where(hole[:, 0] > 0.45, 8.0, 1.0)]
-    plain, dense = (gridmesh.mesh_sketch(points, [hole], triangles=3000, density=d) for d in (None, density))
+    plain, dense = (mesh_sketch(points, [hole], triangles=3000, density=d) for d in (None, density))
     check_patch(dense, [points, hole])
     assert lengths_near(dense, [0.65, 0], 0.15) < 0.9 * lengths_near(plain, [0.65, 0], 0.15)
 
 
 def test_narrow_parts_get_more_triangles_by_width():
     points = with_a_foot(1.4)
-    plain, wide = (gridmesh.mesh_sketch(points, triangles=1500, density=d) for d in (None, "width"))
+    plain, wide = (mesh_sketch(points, triangles=1500, density=d) for d in (None, "width"))
     tip = points[np.argmax(points[:, 0])] - [0.4, 0]
     assert lengths_near(wide, tip, 0.5) <= lengths_near(plain, tip, 0.5)
 
@@ -160,10 +164,11 @@ def test_narrow_parts_get_more_triangles_by_width():
         ({"density": np.ones(99)}, "invalid_option"),
         ({"density": -np.ones(100)}, "invalid_option"),
         ({"density": "height"}, "invalid_option"),
+        ({"density": "width", "bend": 0}, "invalid_option"),
         ({"density": np.ones(100), "self_crossing": "union"}, "invalid_option"),
     ],
 )
 def test_what_is_not_allowed_is_refused(options, kind):
     with pytest.raises(gridmesh.GridMeshError) as refused:
-        gridmesh.mesh_sketch(circle(), triangles=500, **options)
+        mesh_sketch(circle(), triangles=500, **options)
     assert refused.value.kind == kind

@@ -55,10 +55,11 @@ use crate::{options, reports};
 /// bend : float
 ///     How far the lattice may bend with the outline, from 0 (straight) to 1: a conformal map takes the
 ///     outline to where it runs along lattice directions, which leaves far fewer irregular vertices and lets the
-///     size of the triangles vary a little. Several bends are tried, and straight lattices where they do not serve.
+///     size of the triangles vary a little. Several bends are tried, and straight lattices where they do not serve. The least
+///     angles can be smaller than on a straight lattice, and some thin parts coarser.
 ///     Without effect beside `angle` or `origin` and with boundary="grown".
 /// density : "width", (n,) array of positive numbers, or a sequence of such arrays, optional
-///     Where a bent lattice should have more triangles: "width": in narrow parts; numbers: at each point of the
+///     With `bend` above 0: where there should be more triangles: "width": in narrow parts; numbers: at each point of the
 ///     outline so many times the triangles of elsewhere, as a sequence for the outline and its holes. It is a wish:
 ///     the map stays conformal, so that neighbouring triangles differ little in size. Numbers not together with
 ///     self_crossing="union".
@@ -107,7 +108,7 @@ use crate::{options, reports};
 #[pyfunction]
 #[pyo3(
     signature = (outline, holes = None, *, progress = None, **options),
-    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, bend=1.0, density=None, relax=True, least=True, progress=None)"
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, bend=0.0, density=None, relax=True, least=True, progress=None)"
 )]
 pub fn mesh_sketch(
     py: Python<'_>,

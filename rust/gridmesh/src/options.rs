@@ -87,7 +87,7 @@ pub struct SketchOptions {
     /// How far the lattice may bend with the drawing, 0 to 1; 0 is a straight lattice. Without effect
     /// beside a given `angle` or `origin` and with `boundary` grown.
     pub bend: f64,
-    /// The wish for more triangles in some parts; it needs a lattice that bends.
+    /// The wish for more triangles in some parts; only with `bend` above 0.
     pub density: Option<Density>,
     /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and is
     /// refused ([`Error::Inverted`]) where that inverts triangles.
@@ -111,7 +111,7 @@ impl Default for SketchOptions {
             mirror: None,
             self_crossing: SelfCrossing::Error,
             proof_nodes: 0,
-            bend: 1.0,
+            bend: 0.0,
             density: None,
             relax: true,
             least: true,
@@ -156,6 +156,13 @@ impl SketchOptions {
         }
         if !(0.0..=1.0).contains(&self.bend) {
             return refuse("bend", self.bend, "0 to 1");
+        }
+        if self.density.is_some() && self.bend == 0.0 {
+            return Err(Error::InvalidOption {
+                name: "density",
+                value: "given, with bend 0".to_owned(),
+                allowed: "none, or bend above 0: triangles of a straight lattice have one size",
+            });
         }
         if let Some(Density::PerPoint(given)) = &self.density {
             if let Some(&wrong) = given.iter().flatten().find(|&&d| !(d.is_finite() && d > 0.0)) {

@@ -136,7 +136,7 @@ def mesh_sketch(
     mirror: _Axis | Literal["auto"] | None = None,
     self_crossing: Literal["error", "union"] = "error",
     proof_nodes: int = 0,
-    bend: float = 1.0,
+    bend: float = 0.0,
     density: Literal["width"] | npt.ArrayLike | Sequence[npt.ArrayLike] | None = None,
     relax: bool = True,
     least: bool = True,
