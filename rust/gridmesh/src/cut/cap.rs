@@ -258,7 +258,7 @@ impl Capper<'_> {
         let n = polygon.len();
         let roll = Roll::new(self.sheet, polygon);
         let base = self.first + self.caps.vertices.len() as u32;
-        let name = |v: u32| polygon.get(v as usize).map_or(base + v.wrapping_sub(n as u32), |s| s.node);
+        let name = |v: u32| polygon.get(v as usize).map_or_else(|| base + (v - n as u32), |s| s.node);
         let mut flat = polygon.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
         flat.extend(&patch.interior);
         let near = sources::nearest_on_rim(n, &flat, &patch.triangles);
