@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the interface says in other languages.
+"""What the interface says in other languages: labels, names and tooltips here, messages in `german_messages`.
 
 A language is a dictionary from the English text. Blender takes what it finds here, and English for the rest; a test
 holds every language to be complete.
@@ -10,6 +10,8 @@ from __future__ import annotations
 import inspect
 
 import bpy
+
+from .german_messages import MESSAGES as GERMAN_MESSAGES
 
 GERMAN = {
     # Operators and the sidebar
@@ -383,14 +385,17 @@ GERMAN = {
 CONTEXT = "GridMesh"
 """Of the names of options."""
 
-LANGUAGES: dict[str, dict[str, str]] = {"de_DE": GERMAN}
+LANGUAGES: dict[str, dict[str, str]] = {"de_DE": GERMAN | GERMAN_MESSAGES}
 
 
 def table() -> dict[str, dict[tuple[str, str], str]]:
     """Translations as Blender wants them: operators' names have a context of their own, and so have our options."""
     return {
         locale: {
-            (context, text): said for text, said in texts.items() for context in ("*", "Operator", CONTEXT)
+            (context, text): said
+            for text, said in texts.items()
+            for context in ("*", "Operator", CONTEXT)
+            if "{}" not in text  # templates are found by `telling`
         }
         for locale, texts in LANGUAGES.items()
     }
