@@ -35,8 +35,9 @@ def strokes_of(
     if failure:
         return [], [Failure(f"'{ob.name}'", failure)], []
     if not lines:
-        what = "text" if ob.type == "FONT" else "splines of two or more points"
-        return [], [], [f"'{ob.name}' has no {what}; draw a closed shape in it"]
+        if ob.type == "FONT":
+            return [], [], [f"'{ob.name}' has no text; draw a closed shape in it"]
+        return [], [], [f"'{ob.name}' has no splines of two or more points; draw a closed shape in it"]
     with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name later
         points = points @ np.array(ob.matrix_world.to_3x3()).T + np.array(ob.matrix_world.translation)
     splines = _splines(ob, lines)

@@ -4,8 +4,553 @@
 See `telling`. The German numbers the values, `{0}`, `{1}`; names in single quotes are values like others.
 """
 
-MESSAGES = {
-    # Waiting
-    "{}: {}%   Esc: Stop": "{0}: {1}%   Esc: Abbrechen",
-    "{}: {}%   Stopping": "{0}: {1}%   Wird abgebrochen",
+_COUNTED = {
+    "{} body": "{0} Körper",
+    "{} bodies": "{0} Körper",
+    "{} cap": "{0} Deckel",
+    "{} caps": "{0} Deckel",
+    "{} cut line": "{0} Schnittlinie",
+    "{} cut lines": "{0} Schnittlinien",
+    "{} face": "{0} Fläche",
+    "{} faces": "{0} Flächen",
+    "{} gap": "{0} Lücke",
+    "{} gaps": "{0} Lücken",
+    "{} hidden hole": "{0} ausgeblendetes Loch",
+    "{} hidden holes": "{0} ausgeblendete Löcher",
+    "{} hole": "{0} Loch",
+    "{} holes": "{0} Löcher",
+    "{} irregular vertex": "{0} unregelmäßiger Punkt",
+    "{} irregular vertices": "{0} unregelmäßige Punkte",
+    "{} layer": "{0} Ebene",
+    "{} layers": "{0} Ebenen",
+    "{} patch": "{0} Flicken",
+    "{} patches": "{0} Flicken",
+    "{} piece": "{0} Stück",
+    "{} pieces": "{0} Stücke",
+    "{} quad": "{0} Viereck",
+    "{} quads": "{0} Vierecke",
+    "{} selection": "{0} Auswahl",
+    "{} selections": "{0} Auswahlen",
+    "{} sheet": "{0} Blatt",
+    "{} sheets": "{0} Blätter",
+    "{} stroke": "{0} Strich",
+    "{} strokes": "{0} Striche",
+    "{} triangle": "{0} Dreieck",
+    "{} triangles": "{0} Dreiecke",
 }
+
+_COMMON = {
+    "... and {} more": "... und {0} weitere",
+    "{} (and {} more)": "{0} (und {1} weitere)",
+    "{} and {}": "{0} und {1}",
+    "{} and {} more": "{0} und {1} weitere",
+    "{} left open": "{0} offen gelassen",
+    "{} left out:": "{0} weggelassen:",
+    "{} ms": "{0} ms",
+    "{}   Esc: Stop": "{0}   Esc: Abbrechen",
+    "{}   Stopping": "{0}   Wird abgebrochen",
+}
+
+_STROKES = {
+    "'{}' has no curves; draw a closed shape in it": "'{0}' hat keine Kurven; eine geschlossene Form darin zeichnen",
+    "'{}' has no drawing at the current frame; go to a frame that has one": (
+        "'{0}' hat im aktuellen Bild keine Zeichnung; zu einem Bild gehen, das eine hat"
+    ),
+    "'{}' has no layers; draw a closed shape in it": "'{0}' hat keine Ebenen; eine geschlossene Form darin zeichnen",
+    "'{}' has no splines of two or more points; draw a closed shape in it": (
+        "'{0}' hat keine Splines aus zwei oder mehr Punkten; eine geschlossene Form darin zeichnen"
+    ),
+    "'{}' has no text; draw a closed shape in it": "'{0}' hat keinen Text; eine geschlossene Form darin zeichnen",
+    "'{}' has shape keys, which fit no new mesh; remove them or turn off Update Existing": (
+        "'{0}' hat Formschlüssel, die zu keinem neuen Mesh passen; sie entfernen oder „Vorhandene aktualisieren“ "
+        "ausschalten"
+    ),
+    "'{}' is being edited; leave its mode or turn off Update Existing": (
+        "'{0}' wird gerade bearbeitet; den Modus verlassen oder „Vorhandene aktualisieren“ ausschalten"
+    ),
+    "'{}' is linked from another file; make it local or turn off Update Existing": (
+        "'{0}' ist aus einer anderen Datei verknüpft; lokal machen oder „Vorhandene aktualisieren“ ausschalten"
+    ),
+    "'{}', layer '{}'": "'{0}', Ebene '{1}'",
+    "'{}', layer '{}', stroke {} of {}": "'{0}', Ebene '{1}', Strich {2} von {3}",
+    "'{}', stroke {} of {}": "'{0}', Strich {1} von {2}",
+    "Cancelled; nothing was made": "Abgebrochen; nichts wurde gemacht",
+    "Select a grease pencil, curve or text object with closed strokes": (
+        "Ein Grease-Pencil-, Kurven- oder Textobjekt mit geschlossenen Strichen auswählen"
+    ),
+    "a stroke is painted; bodies have the colour of the material instead": (
+        "Ein Strich ist bemalt; Körper haben stattdessen die Farbe des Materials"
+    ),
+    "{} strokes are painted; bodies have the colour of the material instead": (
+        "{0} Striche sind bemalt; Körper haben stattdessen die Farbe des Materials"
+    ),
+    "all layers of '{}' are hidden; show the one to use": "alle Ebenen von '{0}' sind ausgeblendet; die gemeinte zeigen",
+    "all splines of '{}' are hidden; show the one to use": (
+        "alle Splines von '{0}' sind ausgeblendet; den gemeinten zeigen"
+    ),
+    "it has 1 distinct point, at least 3 are needed; draw a closed shape": (
+        "er hat nur 1 Punkt, mindestens 3 sind nötig; eine geschlossene Form zeichnen"
+    ),
+    "it has no points; draw a closed shape": "er hat keine Punkte; eine geschlossene Form zeichnen",
+    "it has {} distinct points, at least 3 are needed; draw a closed shape": (
+        "er hat {0} verschiedene Punkte, mindestens 3 sind nötig; eine geschlossene Form zeichnen"
+    ),
+    "it is a Bezier stroke without handles; set its handle type to Automatic or its type to Poly": (
+        "er ist ein Bézier-Strich ohne Griffe; den Grifftyp auf Automatisch oder den Typ auf Poly setzen"
+    ),
+    "it is a straight line; draw a closed shape": "er ist eine gerade Linie; eine geschlossene Form zeichnen",
+    "it is open: its ends are {} apart; make the stroke cyclic or raise Close Gaps from {} to {}": (
+        "er ist offen: seine Enden sind {0} voneinander entfernt; den Strich zyklisch machen oder „Lücken schließen“ "
+        "von {1} auf {2} erhöhen"
+    ),
+    "it is {} across, at least {} is needed; scale it up": (
+        "er ist {0} groß, mindestens {1} ist nötig; ihn größer skalieren"
+    ),
+    "it lies inside another stroke and is a hole there; turn off Holes to make a body of it": (
+        "er liegt in einem anderen Strich und ist dort ein Loch; „Löcher“ ausschalten, um einen Körper daraus zu machen"
+    ),
+    "it reaches to {}, coordinates up to {} are supported; scale it down or move it to the world origin": (
+        "er reicht bis {0}, Koordinaten bis {1} werden unterstützt; ihn kleiner skalieren oder zum Weltursprung rücken"
+    ),
+    "its NURBS knots are of a kind that is not read; set the curve type to Poly or Bezier": (
+        "NURBS-Knoten dieser Art werden nicht gelesen; den Kurventyp auf Poly oder Bézier setzen"
+    ),
+    "its edges branch; turn off the modifiers or options that make faces of it": (
+        "seine Kanten verzweigen sich; die Modifikatoren oder Optionen ausschalten, die Flächen daraus machen"
+    ),
+    "its modifiers make a closed surface of it, which has no outline; turn them off": (
+        "seine Modifikatoren machen eine geschlossene Fläche daraus, die keinen Umriss hat; sie ausschalten"
+    ),
+    "its stroke ({}, stroke {}) is gone or hidden; select the drawing instead": (
+        "sein Strich ({0}, Strich {1}) fehlt oder ist ausgeblendet; stattdessen die Zeichnung auswählen"
+    ),
+    "material '{}' was there and is used with its own colour": (
+        "Material '{0}' gab es schon; es wird mit seiner eigenen Farbe verwendet"
+    ),
+    "modifiers hide which strokes are selected; set Use to All, or apply the modifiers": (
+        "Modifikatoren verdecken, welche Striche ausgewählt sind; „Verwenden“ auf „Alle“ setzen oder die "
+        "Modifikatoren anwenden"
+    ),
+    "no object with strokes is selected; select a drawing or a curve": (
+        "kein Objekt mit Strichen ist ausgewählt; eine Zeichnung oder Kurve auswählen"
+    ),
+    "none of the strokes is selected or closed; select one in Edit Mode, or set Use to All": (
+        "keiner der Striche ist ausgewählt oder geschlossen; im Bearbeitungsmodus einen auswählen oder „Verwenden“ "
+        "auf „Alle“ setzen"
+    ),
+    "point {} of {} is not a finite number; delete it": "Punkt {0} von {1} ist keine endliche Zahl; ihn löschen",
+    "the active collection '{}' is hidden, excluded or linked; what was made is in '{}'": (
+        "die aktive Sammlung '{0}' ist ausgeblendet, ausgeschlossen oder verknüpft; das Gemachte ist in '{1}'"
+    ),
+    "the collection '{}' of '{}' is hidden, excluded or linked; what was made of it is in '{}'": (
+        "die Sammlung '{0}' von '{1}' ist ausgeblendet, ausgeschlossen oder verknüpft; das daraus Gemachte ist in '{2}'"
+    ),
+    "the scene has no annotations; draw some with the Annotate tool": (
+        "die Szene hat keine Anmerkungen; welche mit dem Werkzeug „Anmerken“ zeichnen"
+    ),
+    "the visible layers of '{}' have no strokes; draw a closed shape in one": (
+        "die sichtbaren Ebenen von '{0}' haben keine Striche; eine geschlossene Form in einer zeichnen"
+    ),
+    "the visible layers of the annotations have no strokes; draw with the Annotate tool": (
+        "die sichtbaren Ebenen der Anmerkungen haben keine Striche; mit dem Werkzeug „Anmerken“ zeichnen"
+    ),
+    "{} cuts through itself; use a smaller depth or more triangles": (
+        "{0} schneidet sich selbst; eine kleinere Tiefe oder mehr Dreiecke nehmen"
+    ),
+    "{} cut through themselves; use a smaller depth or more triangles": (
+        "{0} schneiden sich selbst; eine kleinere Tiefe oder mehr Dreiecke nehmen"
+    ),
+    "{}: it crosses stroke {} and is no hole in it": "{0}: er kreuzt Strich {1} und ist kein Loch darin",
+    "{}: it is a hole now; '{}' was made from it and is left as it is": (
+        "{0}: er ist jetzt ein Loch; '{1}' wurde daraus gemacht und bleibt, wie es ist"
+    ),
+    "{}: not flat, up to {} from its plane; it was projected onto the plane": (
+        "{0}: nicht eben, bis {1} von seiner Ebene entfernt; er wurde auf die Ebene projiziert"
+    ),
+    "{}: {} triangles, {}, {} ms": "{0}: {1} Dreiecke, {2}, {3} ms",
+    "{}; {} closed": "{0}; {1} geschlossen",
+}
+
+_LIVE = {
+    "'{}' has a bevel, an extrusion or an offset; set them to 0 to let bodies follow it": (
+        "'{0}' hat eine Fase, eine Extrusion oder einen Versatz; sie auf 0 setzen, damit Körper ihm folgen"
+    ),
+    "'{}' has no layer '{}' with strokes": "'{0}' hat keine Ebene '{1}' mit Strichen",
+    "'{}' is empty": "'{0}' ist leer",
+    "'{}' is no drawing": "'{0}' ist keine Zeichnung",
+    "'{}': it is linked from another file": "'{0}': es ist aus einer anderen Datei verknüpft",
+    "Select a body that is linked to its drawing": "Einen Körper auswählen, der mit seiner Zeichnung verknüpft ist",
+    "it has shape keys, which fit no new mesh": "er hat Formschlüssel, die zu keinem neuen Mesh passen",
+    "it is being edited; leave its mode": "er wird gerade bearbeitet; den Modus verlassen",
+    "it is linked from another file": "er ist aus einer anderen Datei verknüpft",
+    "it was made by another version of GridMesh; press Adopt to make it anew with this one": (
+        "er wurde von einer anderen Version von GridMesh gemacht; „Übernehmen“ drücken, um ihn mit dieser neu zu machen"
+    ),
+    "its drawing is gone": "seine Zeichnung fehlt",
+    "its stroke is gone": "sein Strich fehlt",
+    "its stroke is hidden, or lies inside another and is a hole there": (
+        "sein Strich ist ausgeblendet, oder er liegt in einem anderen und ist dort ein Loch"
+    ),
+    "the stroke has left its plane": "der Strich hat seine Ebene verlassen",
+    "the stroke is too thin for a mesh this coarse; use more triangles or shorter edges": (
+        "der Strich ist zu dünn für ein so grobes Netz; mehr Dreiecke oder kürzere Kanten nehmen"
+    ),
+}
+
+_DRAW = {
+    "Draw in a 3D view": "In einer 3D-Ansicht zeichnen",
+    "Leave the mode: bodies are drawn in Object Mode": (
+        "Den Modus verlassen: Körper werden im Objektmodus gezeichnet"
+    ),
+    "Nothing is drawn; use the GridMesh Draw tool in a 3D view": (
+        "Nichts ist gezeichnet; das Werkzeug „GridMesh Zeichnen“ in einer 3D-Ansicht verwenden"
+    ),
+    "Release: make the body    Esc, Right Click: leave it": (
+        "Loslassen: den Körper machen    Esc, Rechtsklick: verwerfen"
+    ),
+    "The stroke cannot be read: {}": "Der Strich ist nicht lesbar: {0}",
+    "nothing would be left; delete the body instead": "nichts bliebe übrig; stattdessen den Körper löschen",
+    "the plane is seen edge on; turn the view or choose another plane": (
+        "die Ebene wird genau von der Kante gesehen; die Ansicht drehen oder eine andere Ebene wählen"
+    ),
+    "the stroke encloses nothing": "der Strich umschließt nichts",
+    "the stroke is too short; drag to draw an outline": "der Strich ist zu kurz; ziehen, um einen Umriss zu zeichnen",
+    "there is no body under the stroke; begin inside or beside one in the same plane": (
+        "unter dem Strich ist kein Körper; in oder neben einem in derselben Ebene beginnen"
+    ),
+}
+
+_CUTS = {
+    "'{}' has no faces to cut": "'{0}' hat keine Flächen zum Schneiden",
+    "'{}' has no thickness, since a scale of it is zero; set its scale": (
+        "'{0}' hat keine Dicke, da eine Skalierung null ist; die Skalierung setzen"
+    ),
+    "'{}' is linked from another file; make it local first": (
+        "'{0}' ist aus einer anderen Datei verknüpft; es erst lokal machen"
+    ),
+    "'{}' reaches farther than {}; scale it down": "'{0}' reicht weiter als {1}; kleiner skalieren",
+    "A cut is drawn in a 3D view; start it from there": (
+        "Ein Schnitt wird in einer 3D-Ansicht gezeichnet; von dort aus beginnen"
+    ),
+    "Cancelled; nothing was cut": "Abgebrochen; nichts wurde geschnitten",
+    "Click: keep this side    Enter or B: keep both    D: draw again    Esc: cancel": (
+        "Klick: diese Seite behalten    Enter oder B: beide behalten    D: neu zeichnen    Esc: abbrechen"
+    ),
+    "Drag: draw the cut    Ctrl: straight line    Back to the start: closed cut    Esc: cancel": (
+        "Ziehen: den Schnitt zeichnen    Strg: gerade Linie    Zurück zum Anfang: geschlossener Schnitt    "
+        "Esc: abbrechen"
+    ),
+    "Make a mesh the active object, in Object or Edit Mode": (
+        "Ein Mesh zum aktiven Objekt machen, im Objekt- oder Bearbeitungsmodus"
+    ),
+    "a cap would lie on a face of the mesh; move the stroke a little": (
+        "ein Deckel läge auf einer Fläche des Mesh; den Strich etwas verschieben"
+    ),
+    "a side of the stroke has nothing of the mesh; draw the stroke across it": (
+        "auf einer Seite des Strichs liegt nichts vom Mesh; den Strich quer darüber zeichnen"
+    ),
+    "a straight stroke lies in no plane of its own; set Direction to View or to the axis to cut along": (
+        "ein gerader Strich liegt in keiner eigenen Ebene; „Richtung“ auf „Ansicht“ oder auf die Achse setzen, entlang "
+        "der geschnitten wird"
+    ),
+    "cut along {}, the last one; set Stroke to use another": (
+        "geschnitten an {0}, dem letzten; „Strich“ setzen, um einen anderen zu nehmen"
+    ),
+    "no stroke is selected; select a grease pencil or curve object, then the mesh, or draw the cut": (
+        "kein Strich ist ausgewählt; ein Grease-Pencil- oder Kurvenobjekt auswählen, dann das Mesh, oder den Schnitt "
+        "zeichnen"
+    ),
+    "point {} of the stroke is not a finite number; delete it": (
+        "Punkt {0} des Strichs ist keine endliche Zahl; ihn löschen"
+    ),
+    "seen along the direction of the cut the stroke is a point; set Direction to another axis, or draw a longer stroke": (
+        "in Richtung des Schnitts gesehen ist der Strich ein Punkt; „Richtung“ auf eine andere Achse setzen oder einen "
+        "längeren Strich zeichnen"
+    ),
+    "smallest angle {}°": "kleinster Winkel {0}°",
+    "the mesh of '{}' is being edited in another object; leave Edit Mode first": (
+        "das Mesh von '{0}' wird gerade in einem anderen Objekt bearbeitet; erst den Bearbeitungsmodus verlassen"
+    ),
+    "the selected objects have no strokes; draw one": "die ausgewählten Objekte haben keine Striche; einen zeichnen",
+    "the stroke has no points; call this operator from a 3D view to draw one": (
+        "der Strich hat keine Punkte; von einer 3D-Ansicht aus aufrufen, um einen zu zeichnen"
+    ),
+    "the stroke reaches behind the view; move the view back, or set Direction to an axis": (
+        "der Strich reicht hinter die Ansicht; die Ansicht zurückbewegen oder „Richtung“ auf eine Achse setzen"
+    ),
+    "the stroke reaches farther than {}; scale it down": "der Strich reicht weiter als {0}; ihn kleiner skalieren",
+    "there is no material '{}'; choose another one, or none for an empty slot": (
+        "es gibt kein Material '{0}'; ein anderes wählen, oder keines für einen leeren Platz"
+    ),
+    "there is no stroke {}: the selected objects have {}; lower Stroke": (
+        "es gibt keinen Strich {0}: die ausgewählten Objekte haben {1}; „Strich“ verringern"
+    ),
+    "there is no view here: cut along the normal of the stroke's plane": (
+        "hier ist keine Ansicht: geschnitten entlang der Normalen der Ebene des Strichs"
+    ),
+    "vertex {} of '{}' has a coordinate that is not a finite number; move or delete it": (
+        "Punkt {0} von '{1}' hat eine Koordinate, die keine endliche Zahl ist; ihn verschieben oder löschen"
+    ),
+    "view_direction is zero; give the direction in which the view looks": (
+        "view_direction ist null; die Blickrichtung angeben"
+    ),
+    "{} folded, since the mesh cuts through itself there": (
+        "{0} gefaltet, da das Mesh sich dort selbst schneidet"
+    ),
+    "{} left open at the border of the mesh; close the mesh first (Grid Patch Fill) to get a cap": (
+        "{0} am Rand des Mesh offen gelassen; für einen Deckel erst das Mesh schließen (Loch mit Gitter füllen)"
+    ),
+    "{} left open, since nothing of the mesh lies inside": "{0} offen gelassen, da nichts vom Mesh darin liegt",
+}
+
+_FILLS = {
+    "'{}': {}": "'{0}': {1}",
+    "Cancelled; nothing was filled": "Abgebrochen; nichts wurde gefüllt",
+    "Edit a mesh and select the edges of a hole": "Ein Mesh bearbeiten und die Kanten eines Lochs auswählen",
+    "Filled {}": "Gefüllt: {0}",
+    "There are no holes": "Es gibt keine Löcher",
+    "UVs or colours are torn at {}: continued from the longest stretch of each": (
+        "UVs oder Farben sind gerissen ({0}): vom jeweils längsten Stück fortgesetzt"
+    ),
+    "in another shape key {}": "in einem anderen Formschlüssel: {0}",
+    "it has no thickness, since a scale of it is zero; set its scale and try again": (
+        "es hat keine Dicke, da eine Skalierung null ist; die Skalierung setzen und es noch einmal versuchen"
+    ),
+    "none of the selected vertices lies on a hole; select a vertex or an edge of one": (
+        "keiner der ausgewählten Punkte liegt an einem Loch; einen Punkt oder eine Kante eines Lochs auswählen"
+    ),
+    "nothing is selected; select the edges around a hole, or a vertex or an edge of it": (
+        "nichts ist ausgewählt; die Kanten um ein Loch auswählen, oder einen Punkt oder eine Kante davon"
+    ),
+    "select the missing edges or select at least three edges": (
+        "die fehlenden Kanten auswählen oder mindestens drei Kanten auswählen"
+    ),
+    "select the missing edges or turn on Close Chains": (
+        "die fehlenden Kanten auswählen oder „Ketten schließen“ einschalten"
+    ),
+    "the edge between vertices {} and {}": "die Kante zwischen den Punkten {0} und {1}",
+    "the edge between vertices {} and {} has no length; merge the vertices by distance": (
+        "die Kante zwischen den Punkten {0} und {1} hat keine Länge; die Punkte nach Abstand zusammenfügen"
+    ),
+    "the hole of {} edges is hidden in part; reveal it first": (
+        "das Loch aus {0} Kanten ist teils ausgeblendet; es erst einblenden"
+    ),
+    "the rim from vertex {} to {} does not close: more than two faces meet there; delete the surplus face": (
+        "der Rand von Punkt {0} bis {1} schließt sich nicht: mehr als zwei Flächen treffen sich dort; die überzählige "
+        "Fläche löschen"
+    ),
+    "the selected edges branch at vertex {}; deselect what does not belong to the loop": (
+        "die ausgewählten Kanten verzweigen sich an Punkt {0}; abwählen, was nicht zur Schleife gehört"
+    ),
+    "the selected edges do not close: they end at vertices {} and {}; {}": (
+        "die ausgewählten Kanten schließen sich nicht: sie enden an den Punkten {0} und {1}; {2}"
+    ),
+    "the selected edges form a figure eight that meets itself at vertex {}; fill its two loops one after the other": (
+        "die ausgewählten Kanten bilden eine Acht, die sich an Punkt {0} trifft; ihre zwei Schleifen nacheinander füllen"
+    ),
+    "the selected loop touches itself at vertices {}; select one simple loop at a time": (
+        "die ausgewählte Schleife berührt sich an den Punkten {0}; je eine einfache Schleife auswählen"
+    ),
+    "the wires close no loop": "die losen Kanten schließen keine Schleife",
+    "two edges join vertices {} and {}; merge them": (
+        "zwei Kanten verbinden die Punkte {0} und {1}; sie zusammenfügen"
+    ),
+    "vertex {} has a coordinate that is not a finite number; move or delete it": (
+        "Punkt {0} hat eine Koordinate, die keine endliche Zahl ist; ihn verschieben oder löschen"
+    ),
+    "vertex {} is {} away, up to {} is supported; move or delete it": (
+        "Punkt {0} ist {1} entfernt, bis {2} wird unterstützt; ihn verschieben oder löschen"
+    ),
+    "vertex {} lies on no hole; select a vertex or an edge of one": (
+        "Punkt {0} liegt an keinem Loch; einen Punkt oder eine Kante eines Lochs auswählen"
+    ),
+    "{} around the holes is turned the other way than most; recalculate the normals": (
+        "{0} um die Löcher ist anders herum gedreht als die meisten; die Normalen neu berechnen"
+    ),
+    "{} around the holes are turned the other way than most; recalculate the normals": (
+        "{0} um die Löcher sind anders herum gedreht als die meisten; die Normalen neu berechnen"
+    ),
+    "{} has faces on both sides; select open edges only, or delete the faces that the patch shall replace": (
+        "{0} hat Flächen auf beiden Seiten; nur offene Kanten auswählen, oder die Flächen löschen, die der Flicken "
+        "ersetzen soll"
+    ),
+    "{} made by a simpler method, since the smooth one failed": (
+        "{0} nach einem einfacheren Verfahren gemacht, da das glatte versagte"
+    ),
+    "{} meet the mesh or itself; check the shape": "{0} schneiden das Mesh oder sich selbst; die Form prüfen",
+    "{} meets the mesh or itself; check the shape": "{0} schneidet das Mesh oder sich selbst; die Form prüfen",
+    "{} of data not continued: a value at a hole is not finite": (
+        "{0} mit Daten nicht fortgesetzt: ein Wert an einem Loch ist nicht endlich"
+    ),
+    "{} with more than {} edges left open; raise Max Edges": (
+        "{0} mit mehr als {1} Kanten offen gelassen; „Höchstens Kanten“ erhöhen"
+    ),
+}
+
+_QUALITY = {
+    "4 edges or fewer": "4 Kanten oder weniger",
+    "5 edges": "5 Kanten",
+    "7 edges": "7 Kanten",
+    "8 edges or more": "8 Kanten oder mehr",
+    "Far too few edges": "Viel zu wenige Kanten",
+    "Far too many edges": "Viel zu viele Kanten",
+    "Irregular {}": "Unregelmäßig {0}",
+    "Non-manifold {}": "Nicht mannigfaltig {0}",
+    "Select a mesh object": "Ein Mesh-Objekt auswählen",
+    "Sharpest angle {}°": "Spitzester Winkel {0}°",
+    "Too few edges": "Zu wenige Kanten",
+    "Too many edges": "Zu viele Kanten",
+    "1 irregular vertex": "1 unregelmäßiger Punkt",
+    "sharpest angle {}°": "spitzester Winkel {0}°",
+    "{}  (least {})": "{0}  (mindestens {1})",
+    "{} (least {})": "{0} (mindestens {1})",
+    "{} non-manifold places": "{0} nicht mannigfaltige Stellen",
+}
+
+_MODULE = {
+    "Restart Blender to finish the update": "Blender neu starten, um die Aktualisierung abzuschließen",
+    "The native module 'gridmesh' could not be loaded ({}); this is {} with Python {}: install the GridMesh zip for "
+    "it again, and restart Blender": (
+        "Das Modul 'gridmesh' ließ sich nicht laden ({0}); dies ist {1} mit Python {2}: das GridMesh-Zip dafür neu "
+        "installieren und Blender neu starten"
+    ),
+    "The native module 'gridmesh' is missing; install the GridMesh zip for {} in Preferences > Get Extensions > "
+    "Install from Disk": (
+        "Das Modul 'gridmesh' fehlt; das GridMesh-Zip für {0} unter Einstellungen > Erweiterungen > Von Datenträger "
+        "installieren einrichten"
+    ),
+    "The native module 'gridmesh' is {}, this extension needs {}": (
+        "Das Modul 'gridmesh' ist {0}, diese Erweiterung braucht {1}"
+    ),
+    "The native module 'gridmesh' ({}, from {}) is an unfinished build without '{}'; install GridMesh {} again and "
+    "restart Blender": (
+        "Das Modul 'gridmesh' ({0}, aus {1}) ist unfertig, ihm fehlt '{2}'; GridMesh {3} neu installieren und Blender "
+        "neu starten"
+    ),
+    "an unknown place": "unbekannter Stelle",
+    "of unknown version": "von unbekannter Version",
+    "{}: files of two versions of the native module 'gridmesh' are mixed ({})": (
+        "{0}: Dateien zweier Versionen des Moduls 'gridmesh' sind vermischt ({1})"
+    ),
+    "{}: version {} of the native module 'gridmesh' is still loaded, this extension needs {}": (
+        "{0}: Version {1} des Moduls 'gridmesh' ist noch geladen, diese Erweiterung braucht {2}"
+    ),
+    "{}; another extension has brought a newer one: update GridMesh, then restart Blender": (
+        "{0}; eine andere Erweiterung hat eine neuere gebracht: GridMesh aktualisieren, dann Blender neu starten"
+    ),
+    "{}; install GridMesh {} again, then restart Blender": (
+        "{0}; GridMesh {1} neu installieren, dann Blender neu starten"
+    ),
+}
+
+# Errors of the Rust library.
+_LIBRARY = {
+    "point {} of the {} is NaN or infinite; all coordinates must be finite": (
+        "Punkt {0} ({1}) ist keine Zahl oder unendlich; alle Koordinaten müssen endlich sein"
+    ),
+    "the {} is {} across; allowed: 1e-60 to 1e60, scale the drawing": (
+        "{0}: {1} groß; erlaubt: 1e-60 bis 1e60, die Zeichnung skalieren"
+    ),
+    "the {} has {} distinct points; at least 3 are needed, draw a closed shape": (
+        "{0}: {1} verschiedene Punkte; mindestens 3 sind nötig, eine geschlossene Form zeichnen"
+    ),
+    "the {} encloses no area: its points lie on one line; draw a closed shape": (
+        "{0} ohne Fläche: die Punkte liegen auf einer Linie; eine geschlossene Form zeichnen"
+    ),
+    "the {} meets itself: segments {} and {} cross or touch at ({}, {}); draw an outline that does not cross itself": (
+        "{0} trifft sich selbst: Abschnitt {1} und {2} kreuzen oder berühren sich bei ({3}, {4}); einen Umriss zeichnen, "
+        "der sich nicht selbst kreuzt"
+    ),
+    "the {} encloses {} parts that meet only where it crosses itself; draw each of them as an outline of its own": (
+        "{0} umschließt {1} Teile, die sich nur an Kreuzungen treffen; jeden davon als eigenen Umriss zeichnen"
+    ),
+    "hole {} {}; each hole must lie inside the outline and apart from the others": (
+        "Loch {0} {1}; jedes Loch muss im Umriss und getrennt von den anderen liegen"
+    ),
+    "the {} is not its own mirror image: near ({}, {}) it is {} off; allowed: {} (2 % of the drawing's size, 1.5 edge "
+    "lengths); give another axis, or mesh it without mirror": (
+        "{0} ist nicht das eigene Spiegelbild: bei ({1}, {2}) um {3} daneben; erlaubt: {4} (2 % der Größe der Zeichnung, "
+        "1,5 Kantenlängen); eine andere Achse angeben, oder ohne „Spiegeln“ vernetzen"
+    ),
+    "the {} is not its own mirror image: near ({}, {}) it has no partner across the axis; allowed: {} (2 % of the "
+    "drawing's size, 1.5 edge lengths); give another axis, or mesh it without mirror": (
+        "{0} ist nicht das eigene Spiegelbild: bei ({1}, {2}) ohne Gegenstück jenseits der Achse; erlaubt: {3} (2 % der "
+        "Größe der Zeichnung, 1,5 Kantenlängen); eine andere Achse angeben, oder ohne „Spiegeln“ vernetzen"
+    ),
+    "{} is {}; allowed: {}": "{0} ist {1}; erlaubt: {2}",
+    "{} triangles are too few to follow this drawing; {} work (or a smaller edge length)": (
+        "{0} Dreiecke sind zu wenige für diese Zeichnung; {1} reichen (oder eine kleinere Kantenlänge)"
+    ),
+    "about {} triangles were asked for; at most {} are supported, use a larger edge length": (
+        "rund {0} Dreiecke wurden verlangt; höchstens {1} werden unterstützt, eine größere Kantenlänge nehmen"
+    ),
+    "no valid mesh was found: {} near ({}, {}); simplify the drawing there": (
+        "kein gültiges Mesh gefunden: {0} bei ({1}, {2}); die Zeichnung dort vereinfachen"
+    ),
+    "the linear solve of the {} failed: {}": "das Gleichungssystem ({0}) war nicht lösbar: {1}",
+    "cancelled": "abgebrochen",
+    "the {} names vertex {}; allowed: 0 to {}, one of the {} vertices given": (
+        "{0} nennt Punkt {1}; erlaubt: 0 bis {2}, einer der {3} gegebenen Punkte"
+    ),
+    "the loop names vertex {} twice in a row (places {} and {}); name each vertex once": (
+        "die Schleife nennt Punkt {0} zweimal hintereinander (Stellen {1} und {2}); jeden Punkt einmal nennen"
+    ),
+    "the loop passes through vertex {} twice, like a figure eight; fill its parts one by one": (
+        "die Schleife geht zweimal durch Punkt {0}, wie eine Acht; ihre Teile einzeln füllen"
+    ),
+    "{} of the edges meet in vertex {}; a loop has two at each vertex, deselect the others": (
+        "{0} der Kanten treffen sich in Punkt {1}; eine Schleife hat zwei an jedem Punkt, die anderen abwählen"
+    ),
+    "the edges form an open chain from vertex {} to vertex {}; join its ends to a closed loop": (
+        "die Kanten bilden eine offene Kette von Punkt {0} zu Punkt {1}; ihre Enden zu einer Schleife verbinden"
+    ),
+    "the loop's edge from vertex {} to vertex {} has no length; merge the two vertices": (
+        "die Kante der Schleife von Punkt {0} zu Punkt {1} hat keine Länge; die zwei Punkte zusammenfügen"
+    ),
+    "the loop touches itself at vertices {} and {}, near ({}, {}, {}); merge or move apart what meets there": (
+        "die Schleife berührt sich an den Punkten {0} und {1}, bei ({2}, {3}, {4}); zusammenfügen oder "
+        "auseinanderrücken, was sich dort trifft"
+    ),
+    "the loop's edge from vertex {} to vertex {} has faces on both sides; there is no hole, choose edges of one face": (
+        "die Kante der Schleife von Punkt {0} zu Punkt {1} hat Flächen auf beiden Seiten; dort ist kein Loch, Kanten "
+        "mit einer Fläche wählen"
+    ),
+    "the border stops at vertex {} after the edge from vertex {} to vertex {}: an edge there joins more than two "
+    "faces; delete the surplus ones": (
+        "der Rand endet an Punkt {0} nach der Kante von Punkt {1} zu Punkt {2}: eine Kante dort verbindet mehr als zwei "
+        "Flächen; die überzähligen löschen"
+    ),
+    "loop {} uses the edge from vertex {} to vertex {} like loop {}; give each loop edge to one loop": (
+        "Schleife {0} benutzt die Kante von Punkt {1} zu Punkt {2} wie Schleife {3}; jede Kante nur einer Schleife geben"
+    ),
+    "the faces have {} borders or touch themselves; choose one connected region without holes": (
+        "die Flächen haben {0} Ränder oder berühren sich selbst; ein zusammenhängendes Gebiet ohne Löcher wählen"
+    ),
+    "the fill would meet itself or the mesh in {} pairs of triangles, first near ({}, {}, {}); split the loop there, "
+    "or allow it": (
+        "die Füllung träfe sich selbst oder das Mesh in {0} Paaren von Dreiecken, zuerst bei ({1}, {2}, {3}); die "
+        "Schleife dort teilen, oder es erlauben"
+    ),
+    "face {} is not allowed: {}; each face needs three or more different vertices in order": (
+        "Fläche {0} ist nicht erlaubt: {1}; jede Fläche braucht drei oder mehr verschiedene Punkte der Reihe nach"
+    ),
+    "the stroke has {} distinct points as it is seen along the cut; an open one needs 2, a closed one 3: draw across "
+    "the model, or cut along another direction": (
+        "der Strich hat in Richtung des Schnitts gesehen {0} verschiedene Punkte; ein offener braucht 2, ein "
+        "geschlossener 3: quer über das Modell zeichnen, oder in einer anderen Richtung schneiden"
+    ),
+    "the stroke does not divide the mesh: all of it lies on one side, continued ends included; draw across the model": (
+        "der Strich teilt das Mesh nicht: alles liegt auf einer Seite, auch mit fortgesetzten Enden; quer über das "
+        "Modell zeichnen"
+    ),
+    "point {} of the {} is not in front of the eye; move the eye back, or cut along a direction": (
+        "Punkt {0} ({1}) liegt nicht vor dem Auge; das Auge zurückbewegen, oder entlang einer Richtung schneiden"
+    ),
+    "the mesh cannot be cut here: {}, near ({}, {}, {}); move the stroke a little, or merge vertices that nearly "
+    "coincide there": (
+        "das Mesh lässt sich hier nicht schneiden: {0}, bei ({1}, {2}, {3}); den Strich etwas verschieben, oder Punkte "
+        "zusammenfügen, die dort fast aufeinanderliegen"
+    ),
+}
+
+MESSAGES = _COUNTED | _COMMON | _STROKES | _LIVE | _DRAW | _CUTS | _FILLS | _QUALITY | _MODULE | _LIBRARY

@@ -23,6 +23,9 @@ from .translations import LANGUAGES
 _NAME = re.compile(r"(?<![^\W_])'(.*?)'(?![^\W_])", re.DOTALL)
 """A name in single quotes; an apostrophe inside a word is none."""
 
+_PIECES = re.compile(rf"({_NAME.pattern.replace('(.*?)', '.*?')}|\{{\}})", re.DOTALL)
+"""The values and names of a template."""
+
 _KEPT = re.compile("\0[0-9]+\0")
 """A name that was put aside."""
 
@@ -92,17 +95,20 @@ def _value(text: str, locale: str) -> str:
 @cache
 def _entries(locale: str) -> tuple[dict[str, str], list[tuple[re.Pattern[str], str]]]:
     """Texts without values, and patterns of those with values: those with the most of their own first."""
-    plain = {text: said for text, said in LANGUAGES[locale].items() if "{}" not in text}
-    made = sorted((text for text in LANGUAGES[locale] if "{}" in text), key=lambda text: (-len(text), text))
-    return plain, [(_pattern(text), LANGUAGES[locale][text]) for text in made]
+    made = LANGUAGES[locale]
+    templates = sorted((text for text in made if _PIECES.search(text)), key=lambda text: (-len(text), text))
+    plain = {text: said for text, said in made.items() if text not in templates}
+    return plain, [(_pattern(text), made[text]) for text in templates]
 
 
 def _pattern(template: str) -> re.Pattern[str]:
     """Pattern of what a template makes, names put aside."""
     parts = []
-    for piece in re.split(r"('\{\}'|\{\})", template):
+    for piece in _PIECES.split(template):
         if piece == "'{}'":
             parts.append("(\0[0-9]+\0)")
+        elif _NAME.fullmatch(piece):
+            parts.append("\0[0-9]+\0")
         elif piece == "{}":
             parts.append("(.+?)")
         else:

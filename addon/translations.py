@@ -24,10 +24,8 @@ GERMAN = {
     "Make a smooth body with a clean triangle mesh from each closed stroke": (
         "Aus jedem geschlossenen Strich einen glatten Körper mit sauberem Dreiecksnetz machen"
     ),
-    "Esc: Stop": "Esc: Abbrechen",
     "Presets": "Vorgaben",
     "Select a drawing or a curve": "Zeichnung oder Kurve auswählen",
-    "Stopping": "Wird abgebrochen",
     "Strokes to Mesh": "Striche zu Mesh",
     "Update Bodies": "Körper aktualisieren",
     # Presets

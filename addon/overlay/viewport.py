@@ -115,8 +115,9 @@ def _draw_dots() -> None:
 
 def lines(found: Quality) -> list[str]:
     """What is written in the corner."""
-    least = "" if found.least is None else f"  (least {found.least})"
-    rows = [f"{found.faces} faces", f"Irregular {len(found.irregular)}{least}"]
+    rows = [f"{found.faces} faces", f"Irregular {len(found.irregular)}"]
+    if found.least is not None:
+        rows[1] = f"{rows[1]}  (least {found.least})"
     if found.worst_face >= 0:
         rows.append(f"Sharpest angle {np.degrees(found.worst_angle):.1f}°")
     if found.non_manifold:
