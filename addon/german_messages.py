@@ -553,4 +553,129 @@ _LIBRARY = {
     ),
 }
 
-MESSAGES = _COUNTED | _COMMON | _STROKES | _LIVE | _DRAW | _CUTS | _FILLS | _QUALITY | _MODULE | _LIBRARY
+# What errors of the library name: things, reasons, what is allowed.
+_LIBRARY_PARTS = {
+    "flattened loop": "flach gelegte Schleife",
+    "face {}": "Fläche {0}",
+    "hole {}": "Loch {0}",
+    "loop": "Schleife",
+    "mesh": "Mesh",
+    "other outline": "Der andere Umriss",
+    "outline": "Umriss",
+    "selection (of faces)": "Auswahl (von Flächen)",
+    "stroke": "Strich",
+    "stroke, continued straight on,": "gerade fortgesetzter Strich",
+    "triangle {}": "Dreieck {0}",
+    "values": "Werte",
+    "fill": "Füllung",
+    "inflation": "Aufblasen",
+    "triangulation of the hole": "Triangulierung des Lochs",
+    "lies inside hole {}": "liegt in Loch {0}",
+    "lies outside the outline": "liegt außerhalb des Umrisses",
+    "meets hole {}": "trifft Loch {0}",
+    "meets the outline": "trifft den Umriss",
+    "a face has no area": "eine Fläche hat keinen Inhalt",
+    "a face is on both sides": "eine Fläche liegt auf beiden Seiten",
+    "a face is turned over": "eine Fläche ist umgestülpt",
+    "a part of a face has no area": "ein Teil einer Fläche hat keinen Inhalt",
+    "a part of the drawing is lost": "ein Teil der Zeichnung geht verloren",
+    "a point of the cut is missing": "ein Punkt des Schnitts fehlt",
+    "a triangle stays inverted": "ein Dreieck bleibt umgestülpt",
+    "an edge has its ends on the wrong sides": "eine Kante hat ihre Enden auf den falschen Seiten",
+    "an edge of a face is missing": "eine Kante einer Fläche fehlt",
+    "an inlet is narrower than the grid": "eine Bucht ist schmaler als das Gitter",
+    "cut lines touch each other": "Schnittlinien berühren sich",
+    "edge {} of the loop passes through another vertex": "Kante {0} der Schleife geht durch einen anderen Punkt",
+    "every patch repeats an edge of the mesh": "jeder Flicken wiederholt eine Kante des Mesh",
+    "it has fewer than 3 corners": "sie hat weniger als 3 Ecken",
+    "it names a vertex twice": "sie nennt einen Punkt zweimal",
+    "no lattice hexagon fits inside the drawing": "kein Sechseck des Gitters passt in die Zeichnung",
+    "no lattice was tried": "kein Gitter wurde versucht",
+    "no patch without an edge that the mesh has already": "kein Flicken ohne eine Kante, die das Mesh schon hat",
+    "offsets must begin with 0 and end with the number of corners": (
+        "die Anfänge müssen mit 0 beginnen und mit der Zahl der Ecken enden"
+    ),
+    "out of memory": "zu wenig Speicher",
+    "stretches of the cut meet where they should not": "Stücke des Schnitts treffen sich, wo sie es nicht sollten",
+    "the boundary is not symmetric": "der Rand ist nicht symmetrisch",
+    "the cut does not divide a face": "der Schnitt teilt eine Fläche nicht",
+    "the drawing is too thin for two rows of triangles": "die Zeichnung ist zu dünn für zwei Reihen von Dreiecken",
+    "the line enters a face and does not leave it": "die Linie tritt in eine Fläche ein und nicht wieder aus",
+    "the line never enters a face": "die Linie tritt in keine Fläche ein",
+    "the loop is not counter-clockwise": "die Schleife läuft nicht gegen den Uhrzeigersinn",
+    "the loop meets itself at edge {}": "die Schleife trifft sich an Kante {0}",
+    "the matrix is not positive definite ({})": "die Matrix ist nicht positiv definit ({0})",
+    "the number of triangles is not reached": "die Zahl der Dreiecke wird nicht erreicht",
+    "the patch has no interior vertex": "der Flicken hat keinen inneren Punkt",
+    "the rim of a tunnel is too rough to be capped": "der Rand eines Tunnels ist für einen Deckel zu rau",
+    "the solution is not finite": "die Lösung ist nicht endlich",
+    "the triangle of the vertices {} of the patch is not positive": (
+        "das Dreieck der Punkte {0} des Flickens ist nicht positiv"
+    ),
+    "two parts of the boundary stay one edge apart": "zwei Teile des Rands bleiben nur eine Kante auseinander",
+    "two points of the cut coincide": "zwei Punkte des Schnitts fallen zusammen",
+    "two walls of the drawing are too near to each other": "zwei Wände der Zeichnung sind einander zu nah",
+    "unknown {} is in no equation": "Unbekannte {0} steht in keiner Gleichung",
+    "vertices {} and {} of the loop coincide": "die Punkte {0} und {1} der Schleife fallen zusammen",
+    "0 at first, for the body is closed there": "0 am Anfang, denn dort ist der Körper geschlossen",
+    "0 to 100": "0 bis 100",
+    "0 to pi radians": "0 bis pi im Bogenmaß",
+    "0, or no mirror: symmetric boundaries are proved only where none conflicts": (
+        "0, oder ohne Spiegeln: symmetrische Ränder sind nur bewiesen, wo keiner im Widerspruch steht"
+    ),
+    "0.5 to 4 edge lengths": "0.5 bis 4 Kantenlängen",
+    "a depth above 0 where the front's is 0, or the body is flat": (
+        "eine Tiefe über 0, wo die der Vorderseite 0 ist, sonst ist der Körper flach"
+    ),
+    "a finite angle in radians, or none": "ein endlicher Winkel im Bogenmaß, oder keiner",
+    "a finite length above 0": "eine endliche Länge über 0",
+    "a finite number above 0": "eine endliche Zahl über 0",
+    "a finite number above 0, or None": "eine endliche Zahl über 0, oder None",
+    "a finite number, 0 or more": "eine endliche Zahl ab 0",
+    'a finite point and a finite direction that is not zero, or "auto"': (
+        'ein endlicher Punkt und eine endliche Richtung, die nicht null ist, oder "auto"'
+    ),
+    "a point with finite coordinates, or none": "ein Punkt mit endlichen Koordinaten, oder keiner",
+    "a point within a million edge lengths of the outline, or none": (
+        "ein Punkt innerhalb von einer Million Kantenlängen um den Umriss, oder keiner"
+    ),
+    "an angle in radians, 0 or more": "ein Winkel im Bogenmaß ab 0",
+    "as many vertices as the filled mesh has": "so viele Punkte, wie das gefüllte Mesh hat",
+    "at least 6": "mindestens 6",
+    "finite numbers, 0 or more": "endliche Zahlen ab 0",
+    "given beside edge_length": "neben edge_length gegeben",
+    "given, with boundary grown": "gegeben, mit gewachsenem Rand",
+    "grown, with holes": "gewachsen, mit Löchern",
+    "none, or boundary optimal: growth has no symmetric form": (
+        "keins, oder optimaler Rand: Wachstum hat keine symmetrische Form"
+    ),
+    "none, or the angle of the axis or 30 degrees from it, modulo 60 degrees": (
+        "keiner, oder der Winkel der Achse oder 30 Grad daneben, modulo 60 Grad"
+    ),
+    "none, with mirror: the lattice lies on the axis": "keiner, mit Spiegeln: das Gitter liegt auf der Achse",
+    "numbers from 0.000001 to 1000000 after the first": "Zahlen von 0.000001 bis 1000000 nach der ersten",
+    "of different fills": "von verschiedenen Füllungen",
+    "of length {}": "von der Länge {0}",
+    "one counter-clockwise fan of triangles around each vertex": (
+        "ein Fächer von Dreiecken gegen den Uhrzeigersinn um jeden Punkt"
+    ),
+    "one number for each triangle, or none": "eine Zahl je Dreieck, oder keine",
+    "one number, or one per point of the outline": "eine Zahl, oder eine je Punkt des Umrisses",
+    "one of edge_length and triangles, or neither": "eins von edge_length und triangles, oder keins",
+    "one rim for each contour, numbered in a row, with increasing arc positions": (
+        "ein Rand je Kontur, der Reihe nach nummeriert, mit wachsenden Bogenlängen"
+    ),
+    "one row for each vertex of the loop": "eine Zeile je Punkt der Schleife",
+    "optimal, if there are holes": "optimal, wenn Löcher da sind",
+    "the parts of one fill": "die Teile einer Füllung",
+    "three finite numbers": "drei endliche Zahlen",
+    "three finite numbers, not all zero": "drei endliche Zahlen, nicht alle null",
+    "two values or more, the first of them 0": "zwei Werte oder mehr, der erste davon 0",
+    "not a patch at vertex {}": "kein Flicken an Punkt {0}",
+    "{} at first": "{0} am Anfang",
+    "{} rims with {} vertices": "{0} Ränder mit {1} Punkten",
+    "{} values": "{0} Werte",
+    "{}, beside mirror": "{0}, neben Spiegeln",
+}
+
+MESSAGES = _COUNTED | _COMMON | _STROKES | _LIVE | _DRAW | _CUTS | _FILLS | _QUALITY | _MODULE | _LIBRARY | _LIBRARY_PARTS
