@@ -612,6 +612,10 @@ _LIBRARY_PARTS = {
     "the triangle of the vertices {} of the patch is not positive": (
         "das Dreieck der Punkte {0} des Flickens ist nicht positiv"
     ),
+    "a contour is too thin to have an inside": "eine Kontur ist zu dünn, um ein Inneres zu haben",
+    "a part is too narrow for two rows of triangles": "ein Teil ist zu schmal für zwei Reihen von Dreiecken",
+    "no lattice path goes round a contour this small": "kein Weg im Gitter führt um eine so kleine Kontur",
+    "two walls are too close together to pass each other": "zwei Wände sind zu nah beisammen für zwei Wege",
     "two parts of the boundary stay one edge apart": "zwei Teile des Rands bleiben nur eine Kante auseinander",
     "two points of the cut coincide": "zwei Punkte des Schnitts fallen zusammen",
     "two walls of the drawing are too near to each other": "zwei Wände der Zeichnung sind einander zu nah",

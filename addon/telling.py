@@ -29,7 +29,7 @@ _PIECES = re.compile(rf"({_NAME.pattern.replace('(.*?)', '.*?')}|\{{\}})", re.DO
 _KEPT = re.compile("\0[0-9]+\0")
 """A name that was put aside."""
 
-_SEPARATORS = ("\n", "; ", ": ", ", ")
+_SEPARATOR = re.compile("\n|; |: |, ")
 
 
 def told(text: str, of: str = "reports") -> str:
@@ -49,8 +49,8 @@ def translate(text: str, locale: str) -> str:
     names: list[str] = []
 
     def put_aside(found: re.Match[str]) -> str:
-        names.append(found.group(0))
-        return f"\0{len(names) - 1}\0"
+        names.append(found.group(1))
+        return f"'\0{len(names) - 1}\0'"
 
     said = _translated(_NAME.sub(put_aside, text), locale)
     return _KEPT.sub(lambda found: names[int(found.group(0)[1:-1])], said)
@@ -61,11 +61,20 @@ def _translated(text: str, locale: str) -> str:
     said = _by_template(text, locale)
     if said is not None:
         return said
-    for separator in _SEPARATORS:
-        if separator in text:
-            first, rest = text.split(separator, 1)
-            return separator.join((_translated(first, locale), _translated(rest, locale)))
-    return text
+    cuts = [(cut.start(), cut.end()) for cut in _SEPARATOR.finditer(text)]
+    if not cuts:
+        return text
+    # A sentence may have separators of its own: the longest end, or else the longest beginning, that is known.
+    for end, start in cuts:
+        said = _by_template(text[start:], locale)
+        if said is not None:
+            return _translated(text[:end], locale) + text[end:start] + said
+    for end, start in reversed(cuts):
+        said = _by_template(text[:end], locale)
+        if said is not None:
+            return said + text[end:start] + _translated(text[start:], locale)
+    end, start = cuts[0]
+    return text[:end] + text[end:start] + _translated(text[start:], locale)
 
 
 def _by_template(text: str, locale: str) -> str | None:
@@ -106,9 +115,9 @@ def _pattern(template: str) -> re.Pattern[str]:
     parts = []
     for piece in _PIECES.split(template):
         if piece == "'{}'":
-            parts.append("(\0[0-9]+\0)")
+            parts.append("'(\0[0-9]+\0)'")
         elif _NAME.fullmatch(piece):
-            parts.append("\0[0-9]+\0")
+            parts.append("'\0[0-9]+\0'")
         elif piece == "{}":
             parts.append("(.+?)")
         else:

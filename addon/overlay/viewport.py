@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ..strokes import selected
+from ..telling import told
 from .quality import Quality, measure
 
 MARGIN, LINE, ABOVE = 14, 18, 36
@@ -147,8 +148,8 @@ def _draw_text() -> None:
     seen = [entry for entry, here in zip(_COLOURS, _present(found), strict=True) if here]
     kinds = [number if exact else words for _, number, words in seen]
     tints = [colour for colour, *_ in seen]
-    rows = [(row, (1.0, 1.0, 1.0, 1.0)) for row in lines(found)]
-    rows += [(f"● {kind}", tint) for kind, tint in zip(kinds, tints, strict=True)]
+    rows = [(told(row, "interface"), (1.0, 1.0, 1.0, 1.0)) for row in lines(found)]
+    rows += [(f"● {told(kind, 'interface')}", tint) for kind, tint in zip(kinds, tints, strict=True)]
     for text, tint in reversed(rows):
         blf.color(font, *tint)
         blf.position(font, x, y, 0)
