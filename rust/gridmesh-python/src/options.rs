@@ -34,9 +34,16 @@ pub fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyA
             options.edge_length = it.optional(|it| it.float())?;
         }
         "triangles" => {
-            let it = argument("a positive whole number, or None");
-            options.triangles = it.optional(|it| it.count())?;
+            let it = argument("a positive whole number, 'auto', or None");
+            options.triangles = None;
+            options.automatic = it.value.is_instance_of::<PyString>();
+            if options.automatic {
+                it.word(&[("auto", ())])?;
+            } else {
+                options.triangles = it.optional(|it| it.count())?;
+            }
         }
+        "max_triangles" => options.max_triangles = argument("a positive whole number").count()?,
         "boundary" => {
             let words = [("optimal", BoundaryMethod::Optimal), ("grown", BoundaryMethod::Grown)];
             options.boundary = argument("'optimal' or 'grown'").word(&words)?;

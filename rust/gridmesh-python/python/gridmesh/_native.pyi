@@ -28,6 +28,7 @@ __all__ = [
     "mesh_sketch",
     "regrid",
     "stitch",
+    "thickness",
 ]
 
 __version__: str
@@ -39,7 +40,8 @@ _Progress = Callable[[float], object]
 
 class _Options(TypedDict, total=False):
     edge_length: float | None
-    triangles: int | None
+    triangles: int | Literal["auto"] | None
+    max_triangles: int
     boundary: Literal["optimal", "grown"]
     max_distance: float
     closeness: float
@@ -118,7 +120,8 @@ def mesh_sketch(
     holes: Sequence[_Points] = (),
     *,
     edge_length: float | None = None,
-    triangles: int | None = None,
+    triangles: int | Literal["auto"] | None = None,
+    max_triangles: int = 20000,
     boundary: Literal["optimal", "grown"] = "optimal",
     max_distance: float = 1.5,
     closeness: float = 0.3,
@@ -138,6 +141,7 @@ def combine(
     *,
     how: Literal["union", "difference"] = "union",
 ) -> list[tuple[npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]]: ...
+def thickness(outline: _Points, holes: Sequence[_Points] = ()) -> npt.NDArray[np.float64]: ...
 def stitch(patch: Patch) -> Surface: ...
 def flat(patch: Patch) -> Surface: ...
 def inflate(
