@@ -171,6 +171,38 @@ _STROKES = {
     "{}; {} closed": "{0}; {1} geschlossen",
 }
 
+_ENTRIES = {
+    "Make a smooth body with a clean triangle mesh from each closed annotation": (
+        "Aus jeder geschlossenen Anmerkung einen glatten Körper mit sauberem Dreiecksnetz machen"
+    ),
+    "Make the bodies anew from their strokes as they are now; name, material, modifiers and place stay": (
+        "Die Körper aus ihren Strichen, wie sie jetzt sind, neu machen; Name, Material, Modifikatoren und Ort bleiben"
+    ),
+    "Make a flat body with a rounded rim of each closed stroke, like a badge": (
+        "Aus jedem geschlossenen Strich einen flachen Körper mit rundem Rand machen, wie eine Plakette"
+    ),
+    "Make a body of each closed stroke whose long limbs are round tubes": (
+        "Aus jedem geschlossenen Strich einen Körper machen, dessen lange Glieder runde Röhren sind"
+    ),
+    "Make a round body of each closed stroke; a circle becomes a sphere": (
+        "Aus jedem geschlossenen Strich einen runden Körper machen; ein Kreis wird zur Kugel"
+    ),
+    "Make a flat sheet of each closed stroke, fine enough to be bent much": (
+        "Aus jedem geschlossenen Strich ein flaches Blatt machen, fein genug für starkes Biegen"
+    ),
+    "Make a flat sheet of each closed stroke, coarse, for little bending": (
+        "Aus jedem geschlossenen Strich ein flaches Blatt machen, grob, für wenig Biegen"
+    ),
+    "Make a flat sheet of each closed stroke whose halves are alike, for faces": (
+        "Aus jedem geschlossenen Strich ein flaches Blatt machen, dessen Hälften gleich sind, für Gesichter"
+    ),
+    "Make a flat sheet of each closed stroke, for cut-out animation": (
+        "Aus jedem geschlossenen Strich ein flaches Blatt machen, für Legetrick"
+    ),
+    "thinnest part: {} across": "dünnster Teil: {0} quer",
+    "{} triangles of each side for 4": "{0} Dreiecke jeder Seite für 4",
+}
+
 _LIVE = {
     "'{}' has a bevel, an extrusion or an offset; set them to 0 to let bodies follow it": (
         "'{0}' hat eine Fase, eine Extrusion oder einen Versatz; sie auf 0 setzen, damit Körper ihm folgen"
@@ -682,4 +714,4 @@ _LIBRARY_PARTS = {
     "{}, beside mirror": "{0}, neben Spiegeln",
 }
 
-MESSAGES = _COUNTED | _COMMON | _STROKES | _LIVE | _DRAW | _CUTS | _FILLS | _QUALITY | _MODULE | _LIBRARY | _LIBRARY_PARTS
+MESSAGES = _COUNTED | _COMMON | _STROKES | _ENTRIES | _LIVE | _DRAW | _CUTS | _FILLS | _QUALITY | _MODULE | _LIBRARY | _LIBRARY_PARTS

@@ -4,14 +4,17 @@
 from __future__ import annotations
 
 from time import perf_counter
+from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
-from .. import api, meshes, outlines, profilecurve, strokes
+from .. import api, entries, meshes, outlines, profilecurve, strokes
+from ..density import measure
 from ..live import engine
 from ..progress import Pointer
 from ..properties import CurveOption, SketchOptions
+from ..telling import told
 from .messages import counted, listed
 from .waiting import Waiting
 
@@ -81,6 +84,11 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         default=False,
     )
     result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def description(cls, _context: bpy.types.Context, properties: Any) -> str:
+        """Say what the entry does that is pointed at."""
+        return told(entries.described(properties), "tooltips")
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -294,9 +302,21 @@ def _warnings(bodies: list[api.Body], failures: list[api.Failure]) -> list[str]:
         warnings.append(
             f"{whose[0].upper()}{whose[1:]} painted; bodies have the colour of the material instead"
         )
+    warnings += _thin(bodies)
     if failures:
         warnings.append(f"{counted(len(failures), 'stroke')} left out:\n{listed(map(str, failures))}")
     return warnings
+
+
+def _thin(bodies: list[api.Body]) -> list[str]:
+    """Name the body with the fewest triangles across a limb, if those are too few."""
+    found = []
+    for body in bodies:
+        sides = 1 if not body.report["watertight"] else 2
+        density = measure(body.sketch, len(body.triangles) // sides)
+        if density is not None and density.is_low:
+            found.append((density.across, body.sketch.stroke.label, density.text))
+    return [f"{label}: {text}" for _, label, text in sorted(found)[:1]]
 
 
 classes = (OBJECT_OT_gridmesh_from_strokes,)

@@ -8,6 +8,8 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ..live import engine
+from ..operators import refine
 from ..strokes import selected
 from ..telling import told
 from .quality import Quality, measure
@@ -148,7 +150,11 @@ def _draw_text() -> None:
     seen = [entry for entry, here in zip(_COLOURS, _present(found), strict=True) if here]
     kinds = [number if exact else words for _, number, words in seen]
     tints = [colour for colour, *_ in seen]
-    rows = [(told(row, "interface"), (1.0, 1.0, 1.0, 1.0)) for row in lines(found)]
+    written = lines(found)
+    if engine.is_linked(active):
+        across = refine.of_body(active, context.evaluated_depsgraph_get())
+        written += across.text.split("; ") if across is not None and across.is_low else []
+    rows = [(told(row, "interface"), (1.0, 1.0, 1.0, 1.0)) for row in written]
     rows += [(f"● {told(kind, 'interface')}", tint) for kind, tint in zip(kinds, tints, strict=True)]
     for text, tint in reversed(rows):
         blf.color(font, *tint)

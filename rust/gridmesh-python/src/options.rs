@@ -2,6 +2,7 @@
 
 use gridmesh::inflate::{InflateOptions, Profile, Side};
 use gridmesh::options::{BoundaryMethod, Mirror, SelfCrossing, SketchOptions};
+use gridmesh::surface::UvLayout;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt, PyString};
@@ -92,6 +93,10 @@ pub fn set_inflate(options: &mut InflateOptions, name: &str, value: &Bound<'_, P
         "curve" => {
             let it = argument("numbers, the first 0 and the others positive, or None");
             options.curve = it.optional(|it| it.numbers())?;
+        }
+        "uv" => {
+            let words = [("apart", UvLayout::Apart), ("shared", UvLayout::Shared)];
+            options.uv = argument("'apart' or 'shared'").word(&words)?;
         }
         "front" => options.front = argument(side).optional(depths)?,
         "back" => options.back = argument(side).optional(depths)?,

@@ -23,7 +23,7 @@ use crate::lattice::ROW_HEIGHT;
 pub const ACROSS: f64 = 4.0;
 
 /// Samples along a drawing, beside its own points.
-const SAMPLES: f64 = 1200.0;
+const SAMPLES: f64 = 600.0;
 
 /// A branch is left out if it is shorter than this times its width at the root.
 const SALIENT: f64 = 0.9;

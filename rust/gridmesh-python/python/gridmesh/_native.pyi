@@ -56,6 +56,7 @@ class _Options(TypedDict, total=False):
     curve: npt.ArrayLike | None
     front: _Side
     back: _Side
+    uv: Literal["apart", "shared"]
 
 class GridMeshError(ValueError):
     kind: str
@@ -153,6 +154,7 @@ def inflate(
     front: _Side = None,
     back: _Side = None,
     corner_angle: float = 0.6981317007977318,
+    uv: Literal["apart", "shared"] = "apart",
     progress: _Progress | None = None,
 ) -> Surface: ...
 
