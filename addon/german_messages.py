@@ -78,7 +78,7 @@ _STROKES = {
     "Select a grease pencil, curve or text object with closed strokes": (
         "Ein Grease-Pencil-, Kurven- oder Textobjekt mit geschlossenen Strichen auswählen"
     ),
-    "a stroke is painted; bodies have the colour of the material instead": (
+    "A stroke is painted; bodies have the colour of the material instead": (
         "Ein Strich ist bemalt; Körper haben stattdessen die Farbe des Materials"
     ),
     "{} strokes are painted; bodies have the colour of the material instead": (
@@ -336,7 +336,6 @@ _CUTS = {
 }
 
 _FILLS = {
-    "'{}': {}": "'{0}': {1}",
     "Cancelled; nothing was filled": "Abgebrochen; nichts wurde gefüllt",
     "Edit a mesh and select the edges of a hole": "Ein Mesh bearbeiten und die Kanten eines Lochs auswählen",
     "Filled {}": "Gefüllt: {0}",

@@ -117,7 +117,8 @@ class SketchOptions:
 
     def settle_resolution(self) -> None:
         """Who gives a number of triangles, and does not say how the fineness is given, means that number."""
-        if self.is_property_set("triangles") and not self.is_property_set("resolution"):
+        given = getattr(self, "properties", self)  # an operator's
+        if given.is_property_set("triangles") and not given.is_property_set("resolution"):
             self.resolution = "TRIANGLES"
 
     def sketch_options(self) -> dict[str, Any]:
