@@ -230,6 +230,11 @@ _LIVE = {
 }
 
 _DRAW = {
+    "Drew {}": "{0} gezeichnet",
+    "Extended {}": "{0} erweitert",
+    "Made a hole in {}": "Loch gemacht in {0}",
+    "Trimmed {}": "{0} beschnitten",
+    "{}: {} triangles, {} ms": "{0}: {1} Dreiecke, {2} ms",
     "Draw in a 3D view": "In einer 3D-Ansicht zeichnen",
     "Leave the mode: bodies are drawn in Object Mode": (
         "Den Modus verlassen: Körper werden im Objektmodus gezeichnet"
@@ -264,6 +269,7 @@ _CUTS = {
     "A cut is drawn in a 3D view; start it from there": (
         "Ein Schnitt wird in einer 3D-Ansicht gezeichnet; von dort aus beginnen"
     ),
+    "That was a click. {}": "Das war ein Klick. {0}",
     "Cancelled; nothing was cut": "Abgebrochen; nichts wurde geschnitten",
     "Click: keep this side    Enter or B: keep both    D: draw again    Esc: cancel": (
         "Klick: diese Seite behalten    Enter oder B: beide behalten    D: neu zeichnen    Esc: abbrechen"
@@ -326,11 +332,20 @@ _CUTS = {
     "view_direction is zero; give the direction in which the view looks": (
         "view_direction ist null; die Blickrichtung angeben"
     ),
-    "{} folded, since the mesh cuts through itself there": (
-        "{0} gefaltet, da das Mesh sich dort selbst schneidet"
+    "close the mesh first (Grid Patch Fill) to get one": (
+        "für einen Deckel erst das Mesh schließen (Loch mit Gitter füllen)"
     ),
-    "{} left open at the border of the mesh; close the mesh first (Grid Patch Fill) to get a cap": (
-        "{0} am Rand des Mesh offen gelassen; für einen Deckel erst das Mesh schließen (Loch mit Gitter füllen)"
+    "{} are folded, since the mesh cuts through itself there": (
+        "{0} sind gefaltet, da das Mesh sich dort selbst schneidet"
+    ),
+    "{} end at the border of the mesh and have no cap; {}": (
+        "{0} enden am Rand des Mesh und haben keinen Deckel; {1}"
+    ),
+    "{} ends at the border of the mesh and has no cap; {}": (
+        "{0} endet am Rand des Mesh und hat keinen Deckel; {1}"
+    ),
+    "{} is folded, since the mesh cuts through itself there": (
+        "{0} ist gefaltet, da das Mesh sich dort selbst schneidet"
     ),
     "{} left open, since nothing of the mesh lies inside": "{0} offen gelassen, da nichts vom Mesh darin liegt",
 }
@@ -338,7 +353,7 @@ _CUTS = {
 _FILLS = {
     "Cancelled; nothing was filled": "Abgebrochen; nichts wurde gefüllt",
     "Edit a mesh and select the edges of a hole": "Ein Mesh bearbeiten und die Kanten eines Lochs auswählen",
-    "Filled {}": "Gefüllt: {0}",
+    "Filled {}: {}, {}, {} ms": "{0} gefüllt: {1}, {2}, {3} ms",
     "There are no holes": "Es gibt keine Löcher",
     "UVs or colours are torn at {}: continued from the longest stretch of each": (
         "UVs oder Farben sind gerissen ({0}): vom jeweils längsten Stück fortgesetzt"
@@ -600,7 +615,10 @@ _LIBRARY_PARTS = {
     "values": "Werte",
     "fill": "Füllung",
     "inflation": "Aufblasen",
+    "triangulation of the drawing": "Triangulierung der Zeichnung",
     "triangulation of the hole": "Triangulierung des Lochs",
+    "automatic, and given": "automatisch, und gegeben",
+    "one of automatic, a number and an edge length": "eins von automatisch, einer Zahl und einer Kantenlänge",
     "lies inside hole {}": "liegt in Loch {0}",
     "lies outside the outline": "liegt außerhalb des Umrisses",
     "meets hole {}": "trifft Loch {0}",

@@ -21,8 +21,9 @@ from ..properties import CurveOption, SketchOptions
 from . import drawing, planes
 from .gesture import Gesture, pack, unpack
 from .preview import Preview
+from ..telling import told
 
-_DONE = {"new": "Drew", "hole": "Made a hole in", "extend": "Extended", "trim": "Trimmed"}
+_DONE = {"new": "Drew {}", "hole": "Made a hole in {}", "extend": "Extended {}", "trim": "Trimmed {}"}
 
 timing: list[float] = []
 """Seconds that the last mouse moves took, newest last."""
@@ -61,20 +62,20 @@ class OBJECT_OT_gridmesh_draw(SketchOptions, CurveOption, bpy.types.Operator):  
         """Ask for object mode."""
         if context.mode == "OBJECT":
             return True
-        cls.poll_message_set("Leave the mode: bodies are drawn in Object Mode")
+        cls.poll_message_set(told("Leave the mode: bodies are drawn in Object Mode", "tooltips"))
         return False
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Begin a stroke at the mouse."""
         if context.region_data is None:
-            self.report({"WARNING"}, "Draw in a 3D view")
+            self.report({"WARNING"}, told("Draw in a 3D view"))
             return {"CANCELLED"}
         try:
             native("mesh_sketch", "combine")
             pixel = (event.mouse_region_x, event.mouse_region_y)
             self._plane = planes.chosen(context, self.plane, pixel)
         except (NativeError, planes.PlaneError) as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, told(str(error)))
             return {"CANCELLED"}
         self.subtract = event.shift
         found = planes.body_under(context, pixel)
@@ -85,7 +86,7 @@ class OBJECT_OT_gridmesh_draw(SketchOptions, CurveOption, bpy.types.Operator):  
         self._button = event.type
         self._add(context, event)
         context.window_manager.modal_handler_add(self)
-        context.workspace.status_text_set("Release: make the body    Esc, Right Click: leave it")
+        context.workspace.status_text_set(told("Release: make the body    Esc, Right Click: leave it", "interface"))
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -128,12 +129,12 @@ class OBJECT_OT_gridmesh_draw(SketchOptions, CurveOption, bpy.types.Operator):  
         """Make of the remembered stroke what it was drawn for."""
         started = perf_counter()
         if not self.stroke:
-            self.report({"WARNING"}, "Nothing is drawn; use the GridMesh Draw tool in a 3D view")
+            self.report({"WARNING"}, told("Nothing is drawn; use the GridMesh Draw tool in a 3D view"))
             return {"CANCELLED"}
         try:
             points, pressures = unpack(self.stroke)
         except ValueError as error:
-            self.report({"ERROR"}, f"The stroke cannot be read: {error}")
+            self.report({"ERROR"}, told(f"The stroke cannot be read: {error}"))
             return {"CANCELLED"}
         self.resolve_curve(context)
         matrix = np.array(self.matrix, float).reshape(4, 4)
@@ -145,12 +146,13 @@ class OBJECT_OT_gridmesh_draw(SketchOptions, CurveOption, bpy.types.Operator):  
             )
         except (drawing.DrawError, NativeError) as error:
             text = str(error)
-            self.report({"WARNING"}, text[:1].upper() + text[1:])
+            self.report({"WARNING"}, told(text[:1].upper() + text[1:]))
             return {"CANCELLED"}
         triangles = sum(len(ob.data.polygons) for ob in drawn.bodies)
         what = counted(len(drawn.bodies), "body")
         milliseconds = 1000 * (perf_counter() - started)
-        self.report({"INFO"}, f"{_DONE[drawn.action]} {what}: {triangles} triangles, {milliseconds:.0f} ms")
+        done = _DONE[drawn.action].format(what)
+        self.report({"INFO"}, told(f"{done}: {triangles} triangles, {milliseconds:.0f} ms"))
         return {"FINISHED"}
 
     def draw(self, _context: bpy.types.Context) -> None:

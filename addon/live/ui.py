@@ -13,6 +13,7 @@ from ..strokes import selected
 from ..translations import CONTEXT
 from . import engine, watch
 from .solve import ALGORITHM
+from ..telling import told
 
 
 def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -27,7 +28,7 @@ class _OnBodies:
         """Ask for a body."""
         if _chosen(context):
             return True
-        cls.poll_message_set("Select a body that is linked to its drawing")
+        cls.poll_message_set(told("Select a body that is linked to its drawing", "tooltips"))
         return False
 
 
@@ -63,7 +64,7 @@ class OBJECT_OT_gridmesh_adopt(_OnBodies, bpy.types.Operator):  # noqa: N801
             if live.problem:
                 problems.append(f"'{ob.name}': {live.problem}")
         if problems:
-            self.report({"WARNING"}, "\n".join(problems[:3]))
+            self.report({"WARNING"}, told("\n".join(problems[:3])))
         return {"FINISHED"}
 
 
@@ -107,7 +108,7 @@ class OBJECT_OT_gridmesh_curve(_OnBodies, bpy.types.Operator):  # noqa: N801
             if ob.gridmesh_live.problem:
                 problems.append(f"'{ob.name}': {ob.gridmesh_live.problem}")
         if problems:
-            self.report({"WARNING"}, "\n".join(problems[:3]))
+            self.report({"WARNING"}, told("\n".join(problems[:3])))
         return {"FINISHED"}
 
 
@@ -139,7 +140,7 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
             column = layout.column(align=True)
             column.alert = True
             for at in range(0, len(live.problem), 40):
-                column.label(text=live.problem[at : at + 40], icon="ERROR" if at == 0 else "BLANK1")
+                column.label(text=told(live.problem[at : at + 40], "interface"), icon="ERROR" if at == 0 else "BLANK1")
         if live.algorithm != ALGORITHM:
             layout.operator(OBJECT_OT_gridmesh_adopt.bl_idname)
         layout.prop(live, "source")

@@ -24,6 +24,7 @@ from ..cutobject import Caps, Target
 from ..progress import Pointer
 from .cut_draw import DrawnCut
 from .messages import counted, listed
+from ..telling import told
 
 
 class GRIDMESH_PG_cut_point(bpy.types.PropertyGroup):  # noqa: N801
@@ -159,7 +160,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         ob = context.view_layer.objects.active
         if ob is not None and ob.type == "MESH" and context.mode in {"OBJECT", "EDIT_MESH"}:
             return True
-        cls.poll_message_set("Make a mesh the active object, in Object or Edit Mode")
+        cls.poll_message_set(told("Make a mesh the active object, in Object or Edit Mode", "tooltips"))
         return False
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -207,10 +208,10 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
                 together=self.pieces == "TOGETHER",
             )
         except (api.NativeError, cutsweep.CutError) as error:
-            self.report({"ERROR"}, listed([str(error)]))
+            self.report({"ERROR"}, told(listed([str(error)])))
             return {"CANCELLED"}
         except api.CancelledError:
-            self.report({"WARNING"}, "Cancelled; nothing was cut")
+            self.report({"WARNING"}, told("Cancelled; nothing was cut"))
             return {"CANCELLED"}
         if context.mode == "OBJECT":
             for source in cutline.stroke_objects(context):
@@ -228,7 +229,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             numbers = layout.column(align=True)
             parts = self.result.split(", ")
             for at in range(0, len(parts), 2):  # on one line they would be cut off
-                numbers.label(text=", ".join(parts[at : at + 2]))
+                numbers.label(text=told(", ".join(parts[at : at + 2]), "interface"))
         layout.prop(self, "keep")
         if self.keep == "BOTH":
             layout.prop(self, "pieces")
@@ -304,20 +305,20 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         triangles = sum(len(part.caps) for part in division.parts)
         sides = 1 if self.gap else n_parts
         caps = report["caps"] * sides
-        text = counted(n_parts, "piece")
+        parts = [counted(n_parts, "piece")]
         if triangles:
-            text += (
-                f", {counted(caps, 'cap')}: {counted(triangles, 'triangle')}, "
-                f"{counted(report['cap_irregular'] * sides, 'irregular vertex')}"
-            )
-            text += f", smallest angle {degrees(report['cap_min_angle']):.0f}°"
-        self.result = f"{text}, {1000 * seconds:.0f} ms"
-        self.report({"INFO"}, self.result)
+            parts += [
+                f"{counted(caps, 'cap')}: {counted(triangles, 'triangle')}",
+                counted(report["cap_irregular"] * sides, "irregular vertex"),
+                f"smallest angle {degrees(report['cap_min_angle']):.0f}°",
+            ]
+        self.result = ", ".join([*parts, f"{1000 * seconds:.0f} ms"])
+        self.report({"INFO"}, told(self.result))
         if notes:
-            self.report({"INFO"}, listed(notes))
+            self.report({"INFO"}, told(listed(notes)))
         warnings = warnings_of(report, capped=self.use_cap)
         if warnings:
-            self.report({"WARNING"}, listed(warnings))
+            self.report({"WARNING"}, told(listed(warnings)))
 
 
 def warnings_of(report: dict[str, Any], *, capped: bool) -> list[str]:
@@ -325,17 +326,23 @@ def warnings_of(report: dict[str, Any], *, capped: bool) -> list[str]:
     warnings = []
     if capped and report["open_lines"]:
         n = report["open_lines"]
+        lines = counted(n, "cut line")
+        to_do = "close the mesh first (Grid Patch Fill) to get one"
         warnings.append(
-            f"{counted(n, 'cut line')} {'ends' if n == 1 else 'end'} at the border of the mesh and "
-            f"{'has' if n == 1 else 'have'} no cap; close the mesh first (Grid Patch Fill) to get one"
+            f"{lines} ends at the border of the mesh and has no cap; {to_do}"
+            if n == 1
+            else f"{lines} end at the border of the mesh and have no cap; {to_do}"
         )
     if capped and report["uncapped"]:
         n = report["uncapped"]
         warnings.append(f"{counted(n, 'cut line')} left open, since nothing of the mesh lies inside")
     if report["folded"]:
         n = report["folded"]
+        caps = counted(n, "cap")
         warnings.append(
-            f"{counted(n, 'cap')} {'is' if n == 1 else 'are'} folded, since the mesh cuts through itself there"
+            f"{caps} is folded, since the mesh cuts through itself there"
+            if n == 1
+            else f"{caps} are folded, since the mesh cuts through itself there"
         )
     return warnings
 

@@ -12,6 +12,7 @@ from mathutils import Vector
 
 from .. import drawnline
 from ..cutline import View
+from ..telling import told
 
 _NAVIGATION = {
     "MIDDLEMOUSE",
@@ -27,7 +28,7 @@ _MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
 
 _DRAW = "Drag: draw the cut    Ctrl: straight line    Back to the start: closed cut    Esc: cancel"
 _CHOOSE = "Click: keep this side    Enter or B: keep both    D: draw again    Esc: cancel"
-_AGAIN = "That was a click. " + _DRAW
+_AGAIN = f"That was a click. {_DRAW}"
 
 _LINE, _AHEAD, _KEPT = (1.0, 0.75, 0.2, 1.0), (1.0, 0.75, 0.2, 0.35), (0.3, 0.75, 1.0, 0.45)
 _BAND = 56.0
@@ -105,14 +106,14 @@ class DrawnCut:
     def begin_drawing(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for a line; the tool of the toolbar begins it at once, with the press that called it."""
         if context.area is None or context.area.type != "VIEW_3D":
-            self.report({"ERROR"}, "A cut is drawn in a 3D view; start it from there")
+            self.report({"ERROR"}, told("A cut is drawn in a 3D view; start it from there"))
             return {"CANCELLED"}
         self._area, self._window = context.area, context.window
         self._preview = Preview()
         self._drawing = False
         context.window.cursor_modal_set("KNIFE")
-        context.workspace.status_text_set(_DRAW)
-        context.area.header_text_set(_DRAW)
+        context.workspace.status_text_set(told(_DRAW, "interface"))
+        context.area.header_text_set(told(_DRAW, "interface"))
         context.window_manager.modal_handler_add(self)
         pressed = event.type == "LEFTMOUSE" and event.value == "PRESS"
         if pressed and context.region is not None and context.region.type == "WINDOW":
@@ -184,11 +185,11 @@ class DrawnCut:
         points = np.array(preview.points, float)
         if drawnline.length(points) < drawnline.SHORTEST:
             preview.points = []
-            self._area.header_text_set(_AGAIN)
+            self._area.header_text_set(told(_AGAIN, "interface"))
             return
         preview.line = drawnline.smoothed(points)
-        self._area.header_text_set(_CHOOSE)
-        context.workspace.status_text_set(_CHOOSE)
+        self._area.header_text_set(told(_CHOOSE, "interface"))
+        context.workspace.status_text_set(told(_CHOOSE, "interface"))
 
     def _choose(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         preview = self._preview
@@ -203,8 +204,8 @@ class DrawnCut:
                 return self._cut(context, "BOTH")
             if event.type == "D":
                 preview.line, preview.left, preview.points = None, None, []
-                self._area.header_text_set(_DRAW)
-                context.workspace.status_text_set(_DRAW)
+                self._area.header_text_set(told(_DRAW, "interface"))
+                context.workspace.status_text_set(told(_DRAW, "interface"))
                 self._area.tag_redraw()
         return {"RUNNING_MODAL"}
 

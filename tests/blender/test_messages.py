@@ -25,7 +25,8 @@ NOT_SHOWN = {
     "Object Mode",
     "-1 where lattices have no say",  # hidden properties, for scripts
     "{} numbers are no table of three columns",  # an error of scripts
-    "grid of dots",
+    "irregular vertex",  # nouns, told with their numbers
+    "irregular vertices",
 }
 
 # Literals of the library that are no part of an error: debugging, and points in brackets.
@@ -72,9 +73,11 @@ def literals(tree):
                         yield "{}" + messages.counted(number, one.value)[1:]
     for node in ast.walk(tree):
         if isinstance(node, ast.JoinedStr | ast.Constant) and node not in aside:
-            text = template_of(node)
-            if re.search(r"[^\W\d_]{2}", text) and " " in text.strip():
-                yield text.strip()
+            whole = template_of(node)
+            # A message of several lines is told line by line.
+            for text in whole.split("\n") if isinstance(node, ast.JoinedStr) else [whole]:
+                if re.search(r"[^\W\d_]{2}", text) and " " in text.strip():
+                    yield text.strip()
 
 
 def library_literals():
@@ -83,7 +86,7 @@ def library_literals():
     for path in sorted(LIBRARY.rglob("*.rs")):
         if re.search("oracle|tests|svg", path.as_posix()):
             continue
-        code = path.read_text(encoding="utf-8").split("#[cfg(test)]")[0]
+        code = re.split(r"#\[cfg\(test\)\]\s*mod tests \{", path.read_text(encoding="utf-8"))[0]
         code = re.sub(r"//[^\n]*", "", code)
         code = re.sub(r"#!?\[(?:[^\[\]]|\[[^\]]*\])*\]", "", code)
         code = re.sub(r"(?:debug_)?assert\w*!\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)", "", code)
@@ -95,7 +98,8 @@ def library_literals():
 
 def own_words():
     """Messages without a space that are told somewhere, and things that errors of the library name."""
-    return {"cancelled", "fill", "inflation", "loop", "mesh", "outline", "stroke", "values"}
+    nouns = {f"{{}} {noun}" for noun in ("body", "bodies", "sheet", "sheets")}
+    return nouns | {"cancelled", "fill", "inflation", "loop", "mesh", "outline", "stroke", "values"}
 
 
 def all_messages():
@@ -121,8 +125,7 @@ def test_every_text_that_is_shown_is_told():
             if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
                 continue
             shown = [node.args[TOLD[node.func.attr]]] if node.func.attr in TOLD and node.args else []
-            if node.func.attr in {"label", "operator", "menu", "prop"}:
-                # Constants are translated by Blender.
+            if node.func.attr == "label":  # constants are translated by Blender
                 given = [keyword.value for keyword in node.keywords if keyword.arg == "text"]
                 shown = [value for value in given if not isinstance(value, ast.Constant)]
             for value in shown:
