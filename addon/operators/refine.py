@@ -12,6 +12,7 @@ from ..live import engine
 from ..live import ui as live_ui
 from ..live.reading import LostError, sketch_of
 from ..native import NativeError, native
+from ..overlay import viewport
 from ..strokes import selected
 from ..telling import told
 
@@ -89,14 +90,23 @@ def _offer(panel: Any, context: bpy.types.Context) -> None:
     column.operator(OBJECT_OT_gridmesh_refine.bl_idname)
 
 
+def _note(ob: bpy.types.Object, context: bpy.types.Context) -> list[str]:
+    """What the overlay writes of a body with too few triangles."""
+    found = of_body(ob, context.evaluated_depsgraph_get()) if engine.is_linked(ob) else None
+    return found.text.split("; ") if found is not None and found.is_low else []
+
+
 def register() -> None:
-    """Offer it in the panel of live bodies."""
+    """Offer it in the panel of live bodies, and tell of it in the overlay."""
     live_ui.VIEW3D_PT_gridmesh_live.append(_offer)
+    viewport.notes.append(_note)
 
 
 def unregister() -> None:
     """Take it away."""
     live_ui.VIEW3D_PT_gridmesh_live.remove(_offer)
+    if _note in viewport.notes:
+        viewport.notes.remove(_note)
     _known.clear()
 
 

@@ -8,8 +8,6 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..live import engine
-from ..operators import refine
 from ..strokes import selected
 from ..telling import told
 from .quality import Quality, measure
@@ -24,6 +22,9 @@ _COLOURS = (
     ((0.2, 0.68, 1.0, 1.0), "7 edges", "Too many edges"),
     ((0.35, 0.2, 0.95, 1.0), "8 edges or more", "Far too many edges"),
 )
+
+notes: list[Any] = []
+"""Functions from an object and the context to rows that are written below its numbers."""
 
 _handles: list[Any] = []
 _known: dict[int, tuple[Quality, np.ndarray, np.ndarray]] = {}
@@ -150,10 +151,7 @@ def _draw_text() -> None:
     seen = [entry for entry, here in zip(_COLOURS, _present(found), strict=True) if here]
     kinds = [number if exact else words for _, number, words in seen]
     tints = [colour for colour, *_ in seen]
-    written = lines(found)
-    if engine.is_linked(active):
-        across = refine.of_body(active, context.evaluated_depsgraph_get())
-        written += across.text.split("; ") if across is not None and across.is_low else []
+    written = [*lines(found), *(row for note in notes for row in note(active, context))]
     rows = [(told(row, "interface"), (1.0, 1.0, 1.0, 1.0)) for row in written]
     rows += [(f"● {told(kind, 'interface')}", tint) for kind, tint in zip(kinds, tints, strict=True)]
     for text, tint in reversed(rows):

@@ -209,9 +209,9 @@ impl Axis {
         let near = points.iter().map(near).map(|p| Point2::new(p.x, p.y)).collect();
         // Walls nearer to each other than rounding may cross here: then one of them is missing, no more.
         let mesh: ConstrainedDelaunayTriangulation<Point2<f64>> =
-            ConstrainedDelaunayTriangulation::try_bulk_load_cdt(near, edges.clone(), |_| ()).map_err(|error| {
-                Error::Solver { stage: "triangulation of the drawing", reason: error.to_string() }
-            })?;
+            ConstrainedDelaunayTriangulation::try_bulk_load_cdt(near, edges.clone(), |_| ()).map_err(
+                |error| Error::Solver { stage: "triangulation of the drawing", reason: error.to_string() },
+            )?;
         // Flooded from the left sides of the line.
         let mut number = vec![NONE; mesh.num_all_faces()];
         let mut stack = Vec::new();
