@@ -31,7 +31,10 @@ def described(properties: Any) -> str:
     if properties.is_property_set("source") and properties.source == "ANNOTATIONS":
         return ANNOTATIONS
     for label, values in preset_files.shipped(STROKES).items():
-        if all(properties.is_property_set(name) and _same(getattr(properties, name), value) for name, value in values.items()):
+        if all(
+            properties.is_property_set(name) and _same(getattr(properties, name), value)
+            for name, value in values.items()
+        ):
             return PRESETS.get(label, OWN)
     return OWN
 

@@ -731,4 +731,17 @@ _LIBRARY_PARTS = {
     "{}, beside mirror": "{0}, neben Spiegeln",
 }
 
-MESSAGES = _COUNTED | _COMMON | _STROKES | _ENTRIES | _LIVE | _DRAW | _CUTS | _FILLS | _QUALITY | _MODULE | _LIBRARY | _LIBRARY_PARTS
+MESSAGES = (
+    _COUNTED
+    | _COMMON
+    | _STROKES
+    | _ENTRIES
+    | _LIVE
+    | _DRAW
+    | _CUTS
+    | _FILLS
+    | _QUALITY
+    | _MODULE
+    | _LIBRARY
+    | _LIBRARY_PARTS
+)

@@ -18,10 +18,10 @@ from ..native import NativeError, native
 from ..operators.messages import counted
 from ..outlines import Plane
 from ..properties import CurveOption, SketchOptions
+from ..telling import told
 from . import drawing, planes
 from .gesture import Gesture, pack, unpack
 from .preview import Preview
-from ..telling import told
 
 _DONE = {"new": "Drew {}", "hole": "Made a hole in {}", "extend": "Extended {}", "trim": "Trimmed {}"}
 
@@ -86,7 +86,9 @@ class OBJECT_OT_gridmesh_draw(SketchOptions, CurveOption, bpy.types.Operator):  
         self._button = event.type
         self._add(context, event)
         context.window_manager.modal_handler_add(self)
-        context.workspace.status_text_set(told("Release: make the body    Esc, Right Click: leave it", "interface"))
+        context.workspace.status_text_set(
+            told("Release: make the body    Esc, Right Click: leave it", "interface")
+        )
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

@@ -10,10 +10,10 @@ from bpy.props import EnumProperty
 
 from .. import profilecurve
 from ..strokes import selected
+from ..telling import told
 from ..translations import CONTEXT
 from . import engine, watch
 from .solve import ALGORITHM
-from ..telling import told
 
 
 def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -140,7 +140,9 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
             column = layout.column(align=True)
             column.alert = True
             for at in range(0, len(live.problem), 40):
-                column.label(text=told(live.problem[at : at + 40], "interface"), icon="ERROR" if at == 0 else "BLANK1")
+                column.label(
+                    text=told(live.problem[at : at + 40], "interface"), icon="ERROR" if at == 0 else "BLANK1"
+                )
         if live.algorithm != ALGORITHM:
             layout.operator(OBJECT_OT_gridmesh_adopt.bl_idname)
         layout.prop(live, "source")

@@ -22,9 +22,9 @@ from bpy.props import (
 from .. import api, cutline, cutsweep, cutting
 from ..cutobject import Caps, Target
 from ..progress import Pointer
+from ..telling import told
 from .cut_draw import DrawnCut
 from .messages import counted, listed
-from ..telling import told
 
 
 class GRIDMESH_PG_cut_point(bpy.types.PropertyGroup):  # noqa: N801

@@ -13,8 +13,8 @@ from .. import api
 from ..editmesh import Added, EditMesh, MeshError, Patch, Snapshot
 from ..holes import Found, Problem
 from ..progress import Pointer
-from .messages import counted, listed
 from ..telling import told
+from .messages import counted, listed
 
 
 class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
@@ -144,7 +144,9 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         for warning in warnings_of(reports):
             self.report({"WARNING"}, told(warning))
         if problems:
-            self.report({"WARNING"}, told(f"{counted(len(problems), 'selection')} left out:\n{listed(problems)}"))
+            self.report(
+                {"WARNING"}, told(f"{counted(len(problems), 'selection')} left out:\n{listed(problems)}")
+            )
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""

@@ -97,7 +97,9 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
             return True
         if strokes.annotation(context.scene) is not None:
             return True
-        cls.poll_message_set(told("Select a grease pencil, curve or text object with closed strokes", "tooltips"))
+        cls.poll_message_set(
+            told("Select a grease pencil, curve or text object with closed strokes", "tooltips")
+        )
         return False
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
@@ -291,8 +293,7 @@ def _warnings(bodies: list[api.Body], failures: list[api.Failure]) -> list[str]:
         if len(bent) > 1:
             label = f"{label} (and {len(bent) - 1} more)"
         warnings.append(
-            f"{label}: not flat, up to {worst.off_plane:.3g} from its plane; "
-            "it was projected onto the plane"
+            f"{label}: not flat, up to {worst.off_plane:.3g} from its plane; it was projected onto the plane"
         )
     crossed = sum(body.report.get("self_intersections", 0) > 0 for body in bodies)
     if crossed:

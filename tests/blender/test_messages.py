@@ -162,7 +162,9 @@ def test_each_template_is_found_again_from_what_it_makes(locale):
     for english, other in translations.LANGUAGES[locale].items():
         at = [found.start() for found in re.finditer(r"\{\}", english)]
         values = [
-            names[k % len(names)] if english[i - 1 : i] == "'" and english[i + 2 : i + 3] == "'" else f"{1.5 + k:g}"
+            names[k % len(names)]
+            if english[i - 1 : i] == "'" and english[i + 2 : i + 3] == "'"
+            else f"{1.5 + k:g}"
             for k, i in enumerate(at)
         ]
         assert translate(english.format(*values), locale) == other.format(*values)
@@ -170,14 +172,20 @@ def test_each_template_is_found_again_from_what_it_makes(locale):
 
 
 def test_messages_made_of_messages():
-    said = translate("'outline', stroke 1 of 2: it is open: its ends are 0.3 apart; make the stroke cyclic or raise "
-                     "Close Gaps from 0.20 to 0.30", "de_DE")
+    said = translate(
+        "'outline', stroke 1 of 2: it is open: its ends are 0.3 apart; make the stroke cyclic or raise "
+        "Close Gaps from 0.20 to 0.30",
+        "de_DE",
+    )
     assert said == (
         "'outline', Strich 1 von 2: er ist offen: seine Enden sind 0.3 voneinander entfernt; den Strich zyklisch machen "
         "oder „Lücken schließen“ von 0.20 auf 0.30 erhöhen"
     )
-    said = translate("2 strokes left out:\nThe hole 3 has 2 distinct points; at least 3 are needed, draw a closed shape\n"
-                     "... and 4 more", "de_DE")
+    said = translate(
+        "2 strokes left out:\nThe hole 3 has 2 distinct points; at least 3 are needed, draw a closed shape\n"
+        "... and 4 more",
+        "de_DE",
+    )
     assert said == (
         "2 Striche weggelassen:\nLoch 3: 2 verschiedene Punkte; mindestens 3 sind nötig, eine geschlossene Form zeichnen\n"
         "... und 4 weitere"

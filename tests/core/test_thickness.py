@@ -143,7 +143,9 @@ def test_uv_layouts(name):
     for surface in (shared, apart):
         corners = surface.uv[: 3 * len(patch.triangles)].reshape(-1, 3, 2)
         flat = patch.vertices[patch.triangles]
-        ratio = np.linalg.norm(np.diff(corners, axis=1), axis=2) / np.linalg.norm(np.diff(flat, axis=1), axis=2)
+        ratio = np.linalg.norm(np.diff(corners, axis=1), axis=2) / np.linalg.norm(
+            np.diff(flat, axis=1), axis=2
+        )
         assert ratio.max() / ratio.min() < 1 + 1e-6
     front, back = overlapping(patch, apart)
     low, high = front.reshape(-1, 2), back.reshape(-1, 2)
