@@ -70,12 +70,27 @@ def _classes() -> tuple[type, ...]:
 
 def _parts() -> tuple[ModuleType, ...]:
     """Modules with more to register than classes; their `unregister` may be called at any time."""
-    from . import cli, keys, preset_files, translations, ui
+    from . import cli, frames, keys, preset_files, translations, ui
     from .draw import cut_tool
     from .draw import operator as draw
-    from .live import engine, watch
+    from .live import engine, handlers, watch
     from .live import properties as live
     from .operators import refine
     from .overlay import ui as overlay
 
-    return (translations, preset_files, ui, overlay, live, engine, watch, refine, draw, cut_tool, keys, cli)
+    return (
+        translations,
+        preset_files,
+        ui,
+        overlay,
+        frames,
+        live,
+        engine,
+        handlers,
+        watch,
+        refine,
+        draw,
+        cut_tool,
+        keys,
+        cli,
+    )

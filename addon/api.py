@@ -61,6 +61,14 @@ def sketches_of(
     return outer, failures, notes
 
 
+TOO_THIN = "the stroke is too thin for a mesh this coarse; use more triangles or shorter edges"
+
+
+def reason_of(error: Any) -> str:
+    """What to say of an error of the module where the number of triangles that would do was not searched for."""
+    return TOO_THIN if error.kind == "too_coarse" else str(error)
+
+
 def build(
     sketches: list[Sketch],
     sketch_options: dict[str, Any],
@@ -84,7 +92,8 @@ def build(
         if isinstance(surface, gridmesh.GridMeshError):
             if surface.kind == "cancelled":
                 raise CancelledError from surface
-            failures.append(Failure(sketch.stroke.label, str(surface)))
+            reason = str(surface) if sketch_options.get("least", True) else reason_of(surface)
+            failures.append(Failure(sketch.stroke.label, reason))
             continue
         bodies.append(
             Body(
@@ -149,6 +158,8 @@ class Filled:
     """(j, 3) the new ones."""
     triangles: np.ndarray
     """(t, 3), the mesh's vertices first, then the new ones."""
+    creases: np.ndarray
+    """(e, 2), hard edges of the patch."""
     poses: list[np.ndarray]
     """(j, 3) the new vertices in every pose."""
     report: dict[str, Any]
@@ -164,12 +175,15 @@ def fill(
     smooth: str,
     polygons: np.ndarray | None = None,
     poses: Sequence[np.ndarray] = (),
+    sharp: float | None = None,
+    creases: np.ndarray | None = None,
     progress: Progress | None = None,
 ) -> list[Filled | str]:
     """Fill loops of a mesh: for each the patch, or the reason why there is none.
 
     vertices : (n, 3), triangles : (m, 3), the mesh. loops : vertex indices in order. polygons : (m,), of which
-    each triangle is a part. poses : (n, 3) each, other positions of the same mesh. Raises NativeError without the module, and CancelledError if `progress` or
+    each triangle is a part. poses : (n, 3) each, other positions of the same mesh. sharp, creases : which edges are
+    hard, as of `gridmesh.fill_hole`. Raises NativeError without the module, and CancelledError if `progress` or
     Ctrl-C asked to stop.
     """
     gridmesh = native("fill_holes")
@@ -182,11 +196,18 @@ def fill(
             solved = [fill.vertices if pose is vertices else fill.refit(pose) for pose in poses]
         except gridmesh.GridMeshError as error:
             return f"in another shape key {error}"
-        return Filled(fill.vertices, fill.triangles, solved, dict(fill.report), fill.extend)
+        return Filled(fill.vertices, fill.triangles, fill.creases, solved, dict(fill.report), fill.extend)
 
     try:
         fills = gridmesh.fill_holes(
-            vertices, triangles, indices, smooth=smooth, polygons=polygons, progress=progress
+            vertices,
+            triangles,
+            indices,
+            smooth=smooth,
+            polygons=polygons,
+            sharp=sharp,
+            creases=creases,
+            progress=progress,
         )
         return [filled(fill) for fill in fills]
     except KeyboardInterrupt as error:

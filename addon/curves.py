@@ -10,7 +10,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import sampling
+from . import frames, sampling
 from .api import Failure
 from .outlines import Stroke
 
@@ -28,9 +28,12 @@ def read(context: bpy.types.Context, ob: bpy.types.Object) -> tuple[list[Stroke]
 
 
 def strokes_of(
-    ob: bpy.types.Object, mesh: bpy.types.Mesh | None
+    ob: bpy.types.Object, mesh: bpy.types.Mesh | None, frame: np.ndarray | None = None
 ) -> tuple[list[Stroke], list[Failure], list[str]]:
-    """Strokes of a curve or text object out of the mesh of its wires or flat faces; see `read`."""
+    """Strokes of a curve or text object out of the mesh of its wires or flat faces; see `read`.
+
+    frame : (4, 4) from the object's space to where they are wanted; None: the world.
+    """
     points, lines, failure = _outlines(mesh) if mesh is not None else (np.zeros((0, 3)), [], "")
     if failure:
         return [], [Failure(f"'{ob.name}'", failure)], []
@@ -39,7 +42,7 @@ def strokes_of(
             return [], [], [f"'{ob.name}' has no text; draw a closed shape in it"]
         return [], [], [f"'{ob.name}' has no splines of two or more points; draw a closed shape in it"]
     with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name later
-        points = points @ np.array(ob.matrix_world.to_3x3()).T + np.array(ob.matrix_world.translation)
+        points = frames.moved(points, np.array(ob.matrix_world) if frame is None else frame)
     splines = _splines(ob, lines)
     slots = [slot.material for slot in ob.material_slots]
     strokes = []

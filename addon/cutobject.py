@@ -12,8 +12,9 @@ import bpy
 import numpy as np
 
 from .cutmesh import Surface, Surgery, Written
-from .cutsweep import CutError, Sweep
+from .cutsweep import CutError, Sweep, checked
 from .cutting import Model, Part
+from .live import engine
 from .meshes import Transaction
 from .outlines import LARGEST
 
@@ -68,9 +69,22 @@ class Target:
         mesh.loops.foreach_get("vertex_index", corners)
         mesh.polygons.foreach_get("loop_start", offsets[:-1])
         offsets[-1] = len(corners)
-        self.model = Model(shown @ linear.T, corners, offsets)
+        mirrors, within = _mirrors(ob)
+        self.model = Model(shown @ linear.T, corners, offsets, mirrors, within)
         self._base, self._poses = own @ linear.T, [pose @ linear.T for pose in poses]
         self._check()
+
+    @property
+    def is_live(self) -> bool:
+        """Whether it follows a drawing; a cut ends that."""
+        return engine.is_linked(self.ob)
+
+    def line(
+        self, points: np.ndarray, sweep: Sweep, *, cyclic: bool, close_gaps: float
+    ) -> tuple[np.ndarray, Sweep]:
+        """Stroke and sweep about the object's origin, of those in the world."""
+        own = sweep if sweep.eye is None else Sweep(sweep.direction, sweep.eye - self.origin)
+        return checked(points - self.origin, cyclic=cyclic, sweep=own, close_gaps=close_gaps), own
 
     def _check(self) -> None:
         for points in (self.model.vertices, *self._poses):
@@ -97,6 +111,10 @@ class Target:
 
         Everything that can fail happens before the object itself is changed. Returns the objects.
         """
+        if self.is_live:
+            # What its drawing would make of it is another mesh.
+            engine.freeze(self.ob)
+            self.mesh = self.ob.data
         slot = _cap_slot(self.mesh, caps) if caps.own_slot else None
         smooth = caps.sharp_rims and _any_smooth(self.mesh)
         surface = Surface(
@@ -143,6 +161,26 @@ class Target:
         transaction.remember(bpy.data.objects, ob)
         ob.data = mesh
         return ob
+
+
+def _mirrors(ob: bpy.types.Object) -> tuple[list[tuple[np.ndarray, np.ndarray]], float]:
+    """Planes of the Mirror modifiers that join both halves there, about the object's origin; and how far off they do."""
+    planes, within = [], 0.0
+    for modifier in ob.modifiers:
+        if modifier.type != "MIRROR" or not modifier.show_viewport or not modifier.use_mirror_merge:
+            continue
+        about = modifier.mirror_object or ob
+        linear = np.array(about.matrix_world.to_3x3(), float)
+        if abs(np.linalg.det(linear)) < 1e-30:
+            continue  # it mirrors to nothing
+        point = np.array(about.matrix_world.translation - ob.matrix_world.translation, float)
+        for axis in range(3):
+            if modifier.use_axis[axis]:
+                normal = np.linalg.inv(linear)[axis]
+                length = float(np.linalg.norm(normal))
+                planes.append((point, normal / length))
+                within = max(within, modifier.merge_threshold / length)
+    return planes, within
 
 
 def _operate(mesh: bpy.types.Mesh, surface: Surface, parts: Sequence[Part]) -> None:

@@ -17,6 +17,11 @@ from . import outlines
 class CutError(ValueError):
     """A cut that cannot be made. The message says why and what to do."""
 
+    def __init__(self, message: str, kind: str = "") -> None:
+        """`kind` is the library's word for it, if it comes from there."""
+        super().__init__(message)
+        self.kind = kind
+
 
 @dataclass(frozen=True, eq=False)
 class Sweep:

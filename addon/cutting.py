@@ -6,6 +6,7 @@ numpy only, no bpy. Points are float64 in the directions and lengths of the worl
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +28,10 @@ class Model:
     corners: np.ndarray
     offsets: np.ndarray
     """(m + 1,): face f has the corners `corners[offsets[f]:offsets[f + 1]]`."""
+    mirrors: Sequence[tuple[np.ndarray, np.ndarray]] = ()
+    """Planes that the mesh is open at, since its mirror image goes on there: a point and a normal each."""
+    mirror_distance: float = 0.0
+    """Vertices no farther from such a plane lie on it."""
 
     def face(self, index: int) -> np.ndarray:
         """Vertices of a face."""
@@ -108,17 +113,8 @@ def divide(
     api.CancelledError
         If `progress` or Ctrl-C asked to stop.
     """
-    gridmesh = api.native("cut")
-    how = {"direction": sweep.direction} if sweep.eye is None else {"eye": sweep.eye}
-    faces = (model.corners.astype(np.int32), model.offsets.astype(np.int32))
-    try:
-        done = gridmesh.cut(model.vertices, faces, stroke, progress=progress, **how, **options)
-    except KeyboardInterrupt as error:
-        raise api.CancelledError from error
-    except gridmesh.GridMeshError as error:
-        if error.kind == "cancelled":
-            raise api.CancelledError from error
-        raise CutError(str(error)) from error
+    options |= {"mirrors": [list(plane) for plane in model.mirrors], "mirror_distance": model.mirror_distance}
+    done = _call("cut", model, stroke, sweep, progress=progress, **options)
     taken = np.zeros(len(model.vertices), bool)
     parts = []
     # The larger part first: it keeps the vertices that both have.
@@ -128,6 +124,32 @@ def divide(
         if together:
             taken[part.old] = True
     return Division(parts, dict(done.report))
+
+
+def reach(model: Model, stroke: np.ndarray, sweep: Sweep) -> np.ndarray:
+    """Points (2, 3) up to which the ends of a stroke are continued where they are not extended to infinity.
+
+    Raises
+    ------
+    CutError
+        If the stroke does not cross the model.
+    """
+    return _call("cut_reach", model, stroke, sweep)
+
+
+def _call(name: str, model: Model, stroke: np.ndarray, sweep: Sweep, **options: Any) -> Any:
+    """Call a function of the library; its errors as ours."""
+    gridmesh = api.native(name)
+    how = {"direction": sweep.direction} if sweep.eye is None else {"eye": sweep.eye}
+    faces = (model.corners.astype(np.int32), model.offsets.astype(np.int32))
+    try:
+        return getattr(gridmesh, name)(model.vertices, faces, stroke, **how, **options)
+    except KeyboardInterrupt as error:
+        raise api.CancelledError from error
+    except gridmesh.GridMeshError as error:
+        if error.kind == "cancelled":
+            raise api.CancelledError from error
+        raise CutError(str(error), error.kind) from error
 
 
 def _area(piece: Any) -> float:

@@ -76,6 +76,20 @@ def on_left(line: np.ndarray, point: np.ndarray) -> bool:
     return bool(turn[np.abs(turn).argmax()] > 0)
 
 
+def extended(line: np.ndarray, ends: np.ndarray | None, reach: float) -> np.ndarray:
+    """A line with its ends continued: to two points (2, 2), or straight on by `reach`; closed ones stay."""
+    if np.array_equal(line[0], line[-1]):
+        return line
+    if ends is None:
+        ahead = [line[0] - line[1], line[-1] - line[-2]]
+        ahead = [way / max(float(np.linalg.norm(way)), 1e-9) for way in ahead]
+        ends = np.stack([line[0] + reach * ahead[0], line[-1] + reach * ahead[1]])
+    parts = [ends[:1]] if np.linalg.norm(ends[0] - line[0]) > 1e-6 else []
+    parts.append(line)
+    parts += [ends[1:]] if np.linalg.norm(ends[1] - line[-1]) > 1e-6 else []
+    return np.vstack(parts)
+
+
 def band(line: np.ndarray, width: float, *, left: bool) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of points (n, 2) on the line and `width` away from it, on one side: the edges of a shaded band."""
     closed = np.array_equal(line[0], line[-1])

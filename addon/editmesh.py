@@ -71,7 +71,12 @@ class EditMesh:
         # With vertices being selected, edges come along wherever both ends are selected.
         strict = "VERT" not in bm.select_mode
         return holes.of_selection(
-            self.open_edges(), closed, vertices, close_chains=close_chains, strict=strict
+            self.open_edges(),
+            closed,
+            vertices,
+            close_chains=close_chains,
+            strict=strict,
+            anything=self.has_selection(),
         )
 
     def all_holes(self, max_edges: int) -> Found:
@@ -106,6 +111,11 @@ class EditMesh:
         mesh.loop_triangles.foreach_get("polygon_index", polygons)
         return Snapshot(positions, triangles.reshape(-1, 3), polygons, np.linalg.inv(linear), poses)
 
+    def sharp_edges(self) -> np.ndarray:
+        """Vertices of the edges that are marked sharp, (e, 2)."""
+        pairs = [[vertex.index for vertex in edge.verts] for edge in self.bm.edges if not edge.smooth]
+        return np.array(pairs, np.int32).reshape(-1, 2)
+
     def faulty(self, hole: holes.Hole, positions: np.ndarray) -> Problem | None:
         """Say what is wrong with the positions of a loop, if anything."""
         loop = np.array(hole.vertices)
@@ -136,7 +146,7 @@ class EditMesh:
         ]
         face_set = attributes.new_face_set(bm)
         for patch, around in zip(patches, surroundings, strict=True):
-            faces = self._add_one(patch, around, added.elements)
+            faces = self._add_one(patch, around, added)
             if face_set is not None:
                 for face in faces:
                     face[face_set[0]] = face_set[1]
@@ -158,9 +168,15 @@ class EditMesh:
     def finish(self, added: Added, *, quads: bool) -> None:
         """Select what was made, joined to quads where asked for, and hand it to Blender."""
         self.deselect()
+        for edge in added.hard:
+            edge.smooth = False
         if quads:
             joined = bmesh.ops.join_triangles(
-                self.bm, faces=added.faces, angle_face_threshold=_BENT, angle_shape_threshold=_SKEW
+                self.bm,
+                faces=added.faces,
+                cmp_sharp=bool(added.hard),
+                angle_face_threshold=_BENT,
+                angle_shape_threshold=_SKEW,
             )
             faces = dict.fromkeys((*added.faces, *joined["faces"]))
             added.faces = [face for face in faces if face.is_valid]
@@ -172,8 +188,8 @@ class EditMesh:
             face.select_set(True)
         self.update()
 
-    def _add_one(self, patch: Patch, around: attributes.Surroundings, made: list[Any]) -> list[Any]:
-        bm = self.bm
+    def _add_one(self, patch: Patch, around: attributes.Surroundings, added: Added) -> list[Any]:
+        bm, made = self.bm, added.elements
         model = attributes.model_face(around.faces)
         layers = bm.verts.layers.shape.values()
         new = []
@@ -197,6 +213,7 @@ class EditMesh:
             made.append(face)
             faces.append(face)
             face.hide = False
+        added.hard += [bm.edges.get([by_number[index] for index in pair]) for pair in patch.creases.tolist()]
         if model is None:
             for face in faces:
                 face.material_index = self.ob.active_material_index
@@ -271,6 +288,8 @@ class Patch:
     vertices: np.ndarray
     """(j, 3) new vertices."""
     triangles: np.ndarray
+    creases: np.ndarray
+    """(e, 2) edges to be marked sharp, numbered as `triangles` are."""
     poses: list[np.ndarray]
     """(j, 3) new vertices for every shape key."""
     extend: attributes.Extend
@@ -283,6 +302,8 @@ class Added:
     elements: list[Any] = field(default_factory=list)
     """Everything, in the order in which it was made."""
     faces: list[Any] = field(default_factory=list)
+    hard: list[Any] = field(default_factory=list)
+    """Edges to be marked sharp."""
     torn: int = 0
     """Loops along which corner data does not agree."""
     broken: int = 0

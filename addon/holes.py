@@ -68,6 +68,7 @@ def of_selection(
     *,
     close_chains: bool,
     strict: bool,
+    anything: bool = False,
 ) -> Found:
     """Find the holes that a selection means.
 
@@ -77,7 +78,8 @@ def of_selection(
     edges : all open edges. closed : selected edges that are not open and belong to no selected face.
     vertices : selected vertices of no selected face. close_chains : whether chains of wires are closed by a
     straight edge.
-    strict : whether `closed` were selected one by one, and not because both their ends are.
+    strict : whether `closed` were selected one by one, and not because both their ends are. anything : whether
+    anything at all is selected, such as faces.
     """
     found = Found()
     graph = _Graph(edges)
@@ -93,7 +95,7 @@ def of_selection(
     for vertex in on_holes:
         _whole(graph.open_around(vertex), graph, found, [])
     if not on_holes and not found.holes and not found.problems:
-        found.problems.append(_nothing(alone))
+        found.problems.append(_nothing(alone, anything=anything))
     return found
 
 
@@ -111,12 +113,14 @@ def all_of(edges: list[OpenEdge], max_edges: int) -> Found:
     return found
 
 
-def _nothing(alone: list[int]) -> Problem:
+def _nothing(alone: list[int], *, anything: bool) -> Problem:
     if len(alone) == 1:
         return Problem(f"vertex {alone[0]} lies on no hole; select a vertex or an edge of one", tuple(alone))
     if alone:
         reason = "none of the selected vertices lies on a hole; select a vertex or an edge of one"
         return Problem(reason, tuple(alone))
+    if anything:
+        return Problem("what is selected has no open edges; select an edge or a vertex of a hole")
     return Problem("nothing is selected; select the edges around a hole, or a vertex or an edge of it")
 
 

@@ -3,19 +3,22 @@
 
 from __future__ import annotations
 
+import zlib
+from dataclasses import replace
 from typing import Any
 
 import bpy
 import numpy as np
 from mathutils import Matrix
 
+from . import frames
 from .api import Body, Failure
 from .creases import rim_creases
-from .outlines import Sketch
+from .outlines import Sketch, transformed
 from .strokes import selected
 
 LINK = "gridmesh_stroke"
-"""Custom property of an object that says which stroke it was made from, and where its plane was."""
+"""Custom property of a body without a link that says which stroke it was made from, and how it lies to that."""
 
 UV_MAP = "UVMap"
 
@@ -58,11 +61,36 @@ def made_before(context: bpy.types.Context) -> dict[tuple[str, str, int], bpy.ty
 
 def stroke_key(ob: bpy.types.Object) -> tuple[str, str, int] | None:
     """Key of the stroke that the object was made from, or None."""
+    if ob.type != "MESH":
+        return None
+    if frames.is_linked(ob):
+        live = ob.gridmesh_live
+        return None if live.source is None else (live.source.name, live.layer, live.stroke)
     link = ob.get(LINK)
-    if ob.type != "MESH" or not hasattr(link, "get"):
+    if not hasattr(link, "get"):
         return None
     key = link.get("source"), link.get("layer"), link.get("stroke")
     return key if None not in key else None
+
+
+def frame(ob: bpy.types.Object, carrier: np.ndarray) -> np.ndarray:
+    """Matrix (4, 4) from what carries the strokes of a body, linked or not, to the body's space.
+
+    carrier : matrix from there to the world.
+    """
+    return frames.frame(ob) if frames.is_linked(ob) else frame_of_link(ob, carrier)
+
+
+def frame_of_link(ob: bpy.types.Object, carrier: np.ndarray) -> np.ndarray:
+    """Return the frame that a body without a link remembers; see `frame`."""
+    link = ob[LINK]
+    values = np.array(list(link.get("frame", ())), float)
+    if values.size == 16:
+        return values.reshape(4, 4)
+    values = np.array(
+        list(link.get("matrix", ())), float
+    )  # of 0.1.0: from the body's space to the world, then
+    return np.linalg.inv(values.reshape(4, 4)) @ carrier if values.size == 16 else np.eye(4)
 
 
 def selected_bodies(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -78,6 +106,11 @@ def obstacle(ob: bpy.types.Object) -> str:
         return f"'{ob.name}' is being edited; leave its mode or turn off Update Existing"
     if ob.data.shape_keys is not None:
         return f"'{ob.name}' has shape keys, which fit no new mesh; remove them or turn off Update Existing"
+    if by_hand(ob.data) and (frames.is_linked(ob) or "frame" in ob[LINK]):  # 0.1.0 did not remember
+        return (
+            f"'{ob.name}' was changed by hand and is left as it is; delete it, press Rebuild from Outline "
+            "in the panel Live Body, or turn off Update Existing"
+        )
     return ""
 
 
@@ -132,18 +165,52 @@ def place(
         into = _Collections(context, transaction, collection)
         for body in bodies:
             ob = before.get(body.sketch.stroke.key)
-            objects.append(ob if ob is not None else _new_object(body, into, transaction, crease_angle))
+            objects.append(
+                ob if ob is not None else _new_object(context, body, into, transaction, crease_angle)
+            )
         for body, ob in zip(bodies, objects, strict=True):
             if body.sketch.stroke.key in before:
-                refresh(ob, body, crease_angle)
+                refresh(ob, in_space(body), crease_angle)
+                if LINK in ob:
+                    ob[LINK] = _link(body, frame(ob, _carrier_world(context, body.sketch)))
     _show(context, objects)
     if made is not None:
         made += objects
     return list(dict.fromkeys(transaction.notes))
 
 
+def localized(context: bpy.types.Context, sketches: list[Sketch], close_gaps: float) -> list[Sketch]:
+    """Take the sketches (world) that have an object already into its space; the others stay as they are."""
+    before = made_before(context)
+    found = []
+    for sketch in sketches:
+        ob = before.get(sketch.stroke.key)
+        if ob is None:
+            found.append(sketch)
+            continue
+        carrier = _carrier_world(context, sketch)
+        matrix = frame(ob, carrier) @ np.linalg.inv(carrier)
+        found.append(transformed(sketch, matrix, close_gaps))
+    return found
+
+
+def in_space(body: Body) -> Body:
+    """Return the body with its vertices where its sketch is, and not in the plane of that."""
+    return replace(body, vertices=body.sketch.plane.world(body.vertices))
+
+
+def _carrier_world(context: bpy.types.Context, sketch: Sketch) -> np.ndarray:
+    """Matrix from what carries a sketch to the world; annotations are in the world."""
+    source = context.view_layer.objects.get(sketch.stroke.source)
+    return np.eye(4) if source is None else frames.carrier_world(source, sketch.stroke.layer)
+
+
 def _new_object(
-    body: Body, into: _Collections, transaction: Transaction, crease_angle: float
+    context: bpy.types.Context,
+    body: Body,
+    into: _Collections,
+    transaction: Transaction,
+    crease_angle: float,
 ) -> bpy.types.Object:
     stroke = body.sketch.stroke
     mesh = transaction.new(
@@ -155,19 +222,21 @@ def _new_object(
         mesh.materials.append(material)
     ob = transaction.new(bpy.data.objects, f"{stroke.source}.mesh", mesh)
     ob.matrix_basis = Matrix(body.sketch.plane.matrix.tolist())
-    ob[LINK] = _link(body)
+    ob[LINK] = _link(body, np.linalg.inv(body.sketch.plane.matrix) @ _carrier_world(context, body.sketch))
     into.of(stroke.source).objects.link(ob)
     return ob
 
 
-def _link(body: Body) -> dict[str, Any]:
+def _link(body: Body, matrix: np.ndarray) -> dict[str, Any]:
     source, layer, index = body.sketch.stroke.key
-    matrix = body.sketch.plane.matrix.ravel().tolist()
-    return {"source": source, "layer": layer, "stroke": index, "matrix": matrix}
+    return {"source": source, "layer": layer, "stroke": index, "frame": matrix.ravel().tolist()}
 
 
 def fill(mesh: bpy.types.Mesh, body: Body, crease_angle: float) -> None:
-    """Put the body's geometry and UV map into an empty mesh. Faces are smooth, creases marked sharp."""
+    """Put the body's geometry and UV map into an empty mesh. Faces are smooth, creases marked sharp.
+
+    body : with vertices in the space of the mesh.
+    """
     triangles = np.ascontiguousarray(body.triangles, np.int32)
     n_corners = triangles.size
     mesh.vertices.add(len(body.vertices))
@@ -180,6 +249,39 @@ def fill(mesh: bpy.types.Mesh, body: Body, crease_angle: float) -> None:
     layer = mesh.uv_layers.new(name=UV_MAP, do_init=False)
     layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
     mark_creases(mesh, body, crease_angle)
+    sign(mesh)
+
+
+def sign(mesh: bpy.types.Mesh) -> None:
+    """Remember that the mesh, as it is, was made by GridMesh."""
+    mesh.gridmesh_made = digest(mesh)
+
+
+def by_hand(mesh: bpy.types.Mesh) -> bool:
+    """Whether the shape of a mesh is not what GridMesh has made of it."""
+    return mesh.gridmesh_made != digest(mesh)
+
+
+def digest(mesh: bpy.types.Mesh) -> str:
+    """Fingerprint of the vertices and faces of a mesh. Other data of it does not count."""
+    points = np.empty(len(mesh.vertices) * 3, np.float32)
+    mesh.vertices.foreach_get("co", points)
+    return fingerprint(points, corners_of(mesh), len(mesh.polygons))
+
+
+def corners_of(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Vertex (int32) of each corner; as an attribute, which is many times as fast as from `loops`."""
+    corners = np.empty(len(mesh.loops), np.int32)
+    attribute = mesh.attributes.get(".corner_vert")
+    if attribute is not None:
+        attribute.data.foreach_get("value", corners)
+    return corners
+
+
+def fingerprint(points: np.ndarray, corners: np.ndarray, faces: int) -> str:
+    """Fingerprint of vertices (float32), corners (int32) and a number of faces; see `digest`."""
+    numbers = points.size, corners.size, faces, zlib.crc32(points.tobytes()), zlib.crc32(corners.tobytes())
+    return " ".join(map(str, numbers))
 
 
 def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
@@ -195,9 +297,9 @@ def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
 
 
 def refresh(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
-    """Replace the geometry of an object made earlier; keep name, materials, modifiers, children, shading.
+    """Replace the geometry of an object made earlier; keep name, materials, modifiers, children, shading, place.
 
-    Where the drawing plane moved, the object moves along, from wherever it was put meanwhile.
+    body : with vertices in the object's space.
     """
     mesh = ob.data
     flat_shaded = _flat_shaded(mesh)
@@ -209,20 +311,6 @@ def refresh(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:
             ob.vertex_groups.new(name=name)
     if flat_shaded:
         mesh.shade_flat()
-    move_along(ob, body)
-
-
-def move_along(ob: bpy.types.Object, body: Body) -> None:
-    """Move an object with its drawing plane, from wherever it was put meanwhile, and remember the stroke."""
-    before = np.array(list(ob[LINK].get("matrix", ())), float)
-    now = body.sketch.plane.matrix
-    if before.size == 16 and not np.allclose(before.reshape(4, 4), now, rtol=0, atol=1e-6 * body.sketch.size):
-        if np.allclose(np.array(ob.matrix_world), before.reshape(4, 4), rtol=0, atol=1e-5 * body.sketch.size):
-            ob.matrix_world = Matrix(now.tolist())  # exactly, however often the plane has moved
-        else:
-            moved = Matrix(before.reshape(4, 4).tolist()).inverted()
-            ob.matrix_world = ob.matrix_world @ moved @ Matrix(now.tolist())
-    ob[LINK] = _link(body)
 
 
 def _flat_shaded(mesh: bpy.types.Mesh) -> bool:
@@ -282,6 +370,11 @@ def _shows_fill(style: bpy.types.MaterialGPencilStyle, filled: bool) -> bool:
     if option is None or getattr(option, "is_deprecated", False):
         return filled
     return filled or style.show_fill
+
+
+def home(context: bpy.types.Context, transaction: Transaction) -> bpy.types.Collection:
+    """Return the active collection, or one around it that is shown: new objects are never out of sight."""
+    return _Collections(context, transaction, "ACTIVE").of("")
 
 
 class _Collections:

@@ -6,7 +6,7 @@ numpy only, no bpy. Points are float64 in world units.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -197,6 +197,20 @@ def prepare(stroke: Stroke, close_gaps: float) -> Sketch:
         off_plane=float(np.abs(local[:, 2]).max()),
         closed_gap=gap,
     )
+
+
+def transformed(sketch: Sketch, matrix: np.ndarray, close_gaps: float) -> Sketch:
+    """Return the sketch of the same strokes in another space; matrix : (4, 4) to there.
+
+    Raises
+    ------
+    StrokeError
+        If there is none: the matrix makes a line of it, or leaves the range of single precision.
+    """
+    points = np.asarray(sketch.stroke.points, float) @ matrix[:3, :3].T + matrix[:3, 3]
+    again = prepare(replace(sketch.stroke, points=points), close_gaps)
+    again.holes = [transformed(hole, matrix, close_gaps) for hole in sketch.holes]
+    return again
 
 
 def closable(stroke: Stroke, close_gaps: float) -> bool:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Strokes out of Blender: grease pencil, hair curves and annotations, in bulk through numpy, in world space.
+"""Strokes out of Blender: grease pencil, hair curves and annotations, in bulk through numpy.
 
+In world space, or in that of a body.
 Curve and text objects are read in `curves`.
 """
 
@@ -13,7 +14,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import curves, sampling
+from . import curves, frames, sampling
 from .api import Failure
 from .outlines import Stroke
 
@@ -89,8 +90,13 @@ def _shown(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Any:
     return ob.evaluated_get(depsgraph).data if modified else ob.data
 
 
-def read_grease_pencil(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Reading:
-    """Read the strokes of the visible layers at the current frame."""
+def read_grease_pencil(
+    ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, frame: np.ndarray | None = None
+) -> Reading:
+    """Read the strokes of the visible layers at the current frame.
+
+    frame : (4, 4) from the space of what carries the layers to where the strokes are wanted; None: the world.
+    """
     reading = Reading()
     data = _shown(ob, depsgraph)
     if not len(data.layers):
@@ -100,18 +106,19 @@ def read_grease_pencil(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> 
     if not visible:
         reading.notes.append(f"all layers of '{ob.name}' are hidden; show the one to use")
         return reading
-    frames = [(layer, layer.current_frame()) for layer in visible]
-    if all(frame is None for _, frame in frames):
+    drawings = [(layer, layer.current_frame()) for layer in visible]
+    if all(shown is None for _, shown in drawings):
         reading.notes.append(f"'{ob.name}' has no drawing at the current frame; go to a frame that has one")
         return reading
-    for layer, frame in frames:
-        if frame is None or frame.drawing is None or not len(frame.drawing.strokes):
+    for layer, shown in drawings:
+        if shown is None or shown.drawing is None or not len(shown.drawing.strokes):
             continue
-        drawing = frame.drawing
+        drawing = shown.drawing
         offsets = np.empty(len(drawing.curve_offsets), np.int32)
         drawing.curve_offsets.foreach_get("value", offsets)
-        world = layer_to_world(ob, layer)
-        reading.add(_read_geometry(ob, layer.name, drawing.attributes, offsets, world))
+        matrix = frames.carrier_world(ob, layer.name) if frame is None else frame
+        matrix = matrix @ frames.layer_matrix(layer)
+        reading.add(_read_geometry(ob, layer.name, drawing.attributes, offsets, matrix))
     if not reading.strokes and not reading.failures:
         reading.notes.append(f"the visible layers of '{ob.name}' have no strokes; draw a closed shape in one")
     return reading
@@ -127,25 +134,17 @@ def _hidden(layer: Any) -> bool:
     return False
 
 
-def layer_to_world(ob: bpy.types.Object, layer: Any) -> np.ndarray:
-    """Matrix (4, 4) from a layer to the world. A layer with its own parent does not follow its object."""
-    parent = layer.parent
-    if parent is None:
-        return np.array(ob.matrix_world @ layer.matrix_local)
-    matrix = parent.matrix_world
-    if layer.parent_bone and parent.type == "ARMATURE" and layer.parent_bone in parent.pose.bones:
-        matrix = matrix @ parent.pose.bones[layer.parent_bone].matrix
-    return np.array(matrix @ layer.matrix_parent_inverse @ layer.matrix_local)
-
-
-def read_hair(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Reading:
-    """Read the curves of a curves object."""
+def read_hair(
+    ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, frame: np.ndarray | None = None
+) -> Reading:
+    """Read the curves of a curves object. frame : (4, 4) from its space to where they are wanted; None: the world."""
     data = _shown(ob, depsgraph)
     if not len(data.curves):
         return Reading(notes=[f"'{ob.name}' has no curves; draw a closed shape in it"])
     offsets = np.empty(len(data.curve_offset_data), np.int32)
     data.curve_offset_data.foreach_get("value", offsets)
-    return _read_geometry(ob, "", data.attributes, offsets, np.array(ob.matrix_world))
+    matrix = np.array(ob.matrix_world) if frame is None else frame
+    return _read_geometry(ob, "", data.attributes, offsets, matrix)
 
 
 class _Attributes:
@@ -192,7 +191,7 @@ class _Attributes:
 
 
 def _read_geometry(
-    ob: bpy.types.Object, layer: str, attributes: Any, offsets: np.ndarray, world: np.ndarray
+    ob: bpy.types.Object, layer: str, attributes: Any, offsets: np.ndarray, matrix: np.ndarray
 ) -> Reading:
     """Read strokes of a drawing; `offsets` (strokes + 1,) says where each begins."""
     reading = Reading()
@@ -228,7 +227,7 @@ def _read_geometry(
             reading.failures.append(Failure(stroke.label, str(error)))
             continue
         with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name later
-            points = points @ world[:3, :3].T + world[:3, 3]
+            points = frames.moved(points, matrix)
         own = widths[offsets[index] : offsets[index + 1]] if kinds[index] == _POLY else None
         reading.strokes.append(Stroke(points=points, widths=own, **about))
     return reading

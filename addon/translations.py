@@ -198,8 +198,17 @@ GERMAN = {
         "Den Körper folgen lassen, wenn sein Strich bearbeitet wird; der Schalter ist in der Seitenleiste"
     ),
     "Live Body": "Lebender Körper",
-    "Make plain meshes of the selected bodies; they no longer know their drawing": (
-        "Aus den ausgewählten Körpern gewöhnliche Meshes machen, die ihre Zeichnung nicht mehr kennen"
+    "Make the bodies of the selected drawings, or the selected bodies, anew with these options; each stays the same "
+    "object. Strokes without a body get one": (
+        "Die Körper der ausgewählten Zeichnungen, oder die ausgewählten Körper, mit diesen Optionen neu machen; jeder "
+        "bleibt dasselbe Objekt. Striche ohne Körper bekommen einen"
+    ),
+    "Make the selected bodies anew from their outlines; what was changed in their meshes by hand is lost": (
+        "Die ausgewählten Körper neu aus ihren Umrissen machen; was von Hand an ihren Meshes geändert wurde, geht verloren"
+    ),
+    "Rebuild from Outline": "Neu aus dem Umriss",
+    "Make plain meshes of the selected bodies; outlines drawn with the tool are removed": (
+        "Aus den ausgewählten Körpern gewöhnliche Meshes machen; mit dem Werkzeug gezeichnete Umrisse werden entfernt"
     ),
     "Make the selected bodies anew with this version of GridMesh, and let them follow their drawing": (
         "Die ausgewählten Körper mit dieser Version von GridMesh neu machen und ihrer Zeichnung folgen lassen"
@@ -230,8 +239,8 @@ GERMAN = {
     "Facing the view, through the 3D cursor": "Der Ansicht zugewandt, durch den 3D-Cursor",
     "GridMesh Draw": "GridMesh zeichnen",
     "GridMesh Cut": "GridMesh schneiden",
-    "Cut the active mesh.\nDrag across it, then click the side to keep; Enter keeps both": (
-        "Das aktive Mesh zerschneiden.\nQuer darüber ziehen, dann die Seite anklicken, die bleibt; Eingabe behält beide"
+    "Cut the selected meshes.\nDrag across them, then click the side to keep; Enter keeps both": (
+        "Die ausgewählten Meshes zerschneiden.\nQuer darüber ziehen, dann die Seite anklicken, die bleibt; Eingabe behält beide"
     ),
     "How much the pressure of the pen drives the depth of the body": (
         "Wie sehr der Druck des Stifts die Tiefe des Körpers bestimmt"
@@ -316,9 +325,15 @@ GERMAN = {
     "Cut & Cap": "Schneiden und schließen",
     "Cut & Cap along Stroke": "Am Strich schneiden und schließen",
     "Cut along Stroke": "Am Strich schneiden",
-    "Cut the active mesh along a stroke and close it with regular triangle patches": (
-        "Das aktive Mesh an einem Strich schneiden und mit regelmäßigen Flicken aus Dreiecken schließen"
+    "Continue the ends of the stroke straight on through everything; otherwise only as far as the part of the mesh "
+    "that the stroke crosses": (
+        "Die Enden des Strichs geradeaus durch alles fortsetzen; sonst nur so weit wie der Teil des Mesh, den der "
+        "Strich quert"
     ),
+    "Cut the selected meshes along a stroke and close them with regular triangle patches": (
+        "Die ausgewählten Meshes an einem Strich schneiden und mit regelmäßigen Flicken aus Dreiecken schließen"
+    ),
+    "Extend Ends": "Enden verlängern",
     "Direction": "Richtung",
     "Direction that the stroke is swept along, through the model": (
         "Richtung, in der der Strich durch das Modell gezogen wird"
@@ -377,6 +392,11 @@ GERMAN = {
     "Close selected chains of edges by a straight edge": (
         "Ausgewählte Ketten von Kanten durch eine gerade Kante schließen"
     ),
+    "Continue hard edges of the surroundings (bent by more than 30 degrees, or marked sharp) to where they meet, as at "
+    "a corner of a cube": (
+        "Harte Kanten der Umgebung (um mehr als 30 Grad geknickt oder als scharf markiert) fortsetzen, bis sie sich "
+        "treffen, wie an einer Würfelecke"
+    ),
     "Curvature": "Krümmung",
     "Holes with more edges are left open; 0 fills holes of any size, the outer border too": (
         "Löcher mit mehr Kanten bleiben offen; 0 füllt Löcher jeder Größe, auch den äußeren Rand"
@@ -385,6 +405,7 @@ GERMAN = {
     "Join pairs of triangles to quads where that gives good ones": (
         "Je zwei Dreiecke zu einem Viereck verbinden, wo das gute gibt"
     ),
+    "Keep Hard Edges": "Harte Kanten erhalten",
     "Max Edges": "Höchstens Kanten",
     "Quads": "Vierecke",
     "Selected loops of open edges, and the whole holes that single selected edges or vertices lie on": (

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line: many files, unattended.
 
-    arguments -> jobs (from a file, or `listing`; by the table in `params`) -> runner -> process (the worker, restarted when it dies)
-    worker -> loading, inputs -> making (what the operators are made of) -> outputs, pictures
+    arguments -> jobs (from a file, or `listing`; by the table in `params`), places -> runner -> report
+    runner -> process (the worker, watched by `limits`, restarted when it dies)
+    worker -> files (what is read) -> loading, inputs, sound -> making (what the operators are made of) -> outputs (drafts, whole), pictures
 
-Only `loading`, `making`, `outputs`, `pictures`, `worker` and `register` need bpy: a run is watched by a process that no file can crash.
+Only `loading`, `making`, `outputs`, `pictures`, `worker` and `register` need bpy: a run is watched by a process that no file can crash,
+for it opens none but the jobs and the report.
 """
 
 from typing import Any

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import sys
 from pathlib import Path
 from typing import Any
 
-from . import jobs, listing, params, runner
+from . import jobs, listing, params, places, runner
 from .process import Limits
 
 _HELP = {
@@ -30,13 +31,16 @@ def main(argv: list[str]) -> int:
     except SystemExit as stop:  # Blender would leave at once
         return stop.code if isinstance(stop.code, int) else 2
     try:
-        items = jobs.read(chosen.jobs) if chosen.op == "batch" else _listed(chosen)
+        of_jobs = chosen.jobs if chosen.op == "batch" else None
+        items = jobs.read(of_jobs) if of_jobs is not None else _listed(chosen)
         items = jobs.select(items, chosen.range, chosen.shard)
-        return runner.run(items, chosen.report or _report(chosen), _settings(chosen))
-    except jobs.JobError as error:
+        return runner.run(items, chosen.report or _report(chosen), _settings(chosen), of_jobs)
+    except (jobs.JobError, OSError) as error:
         for line in str(error).splitlines():
-            print(f"gridmesh: {line}", file=sys.stderr)
+            print(f"gridmesh: {places.shown(line)}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:  # nothing runs yet
+        return runner.INTERRUPTED
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -94,7 +98,7 @@ def _stroke(text: str) -> Any:
         return text
     try:
         return json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise argparse.ArgumentTypeError(f"no list of points: {error}") from error
 
 
@@ -120,13 +124,34 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
     )
     scripts.add_argument("--enable-autoexec", action="store_true", dest="scripts", help=".blend files may")
     verb.set_defaults(scripts=False)
+    add(
+        "--allow-outside",
+        action="store_true",
+        help="glTF and OBJ files may refer to files outside their folder",
+    )
     allowed = Limits()
-    for option, default, text in (
-        ("--max-megabytes", allowed.input_megabytes, "refuse larger input files"),
-        ("--max-memory", allowed.memory_megabytes, "megabytes of memory for an item, on Linux; 0: any"),
-        ("--max-seconds", allowed.seconds, "stop items that take longer; 0: none"),
+    for option, default, least, text in (
+        ("--max-megabytes", allowed.input_megabytes, 1e-6, "refuse larger input files"),
+        ("--max-memory", allowed.memory_megabytes, 0.0, "megabytes of memory for an item, on Linux; 0: any"),
+        ("--max-seconds", allowed.seconds, 0.0, "stop items that take longer; 0: none"),
     ):
-        add(option, type=float, default=default, metavar="N", help=f"{text} (default: {default:g})")
+        text = f"{text} (default: {default:g})"
+        add(option, type=_Limit(least), default=default, metavar="N", help=text)
+
+
+class _Limit:
+    """A number within bounds, as type of an option."""
+
+    most = 1e9
+
+    def __init__(self, least: float) -> None:
+        self.least = least
+
+    def __call__(self, text: str) -> float:
+        with contextlib.suppress(ValueError):
+            if self.least <= (number := float(text)) <= self.most:  # false for nan
+                return number
+        raise argparse.ArgumentTypeError(f"{text!r} is no number from {self.least:g} to {self.most:g}")
 
 
 def _listed(chosen: argparse.Namespace) -> list[jobs.Job]:
@@ -137,7 +162,9 @@ def _listed(chosen: argparse.Namespace) -> list[jobs.Job]:
 
 def _settings(chosen: argparse.Namespace) -> runner.Settings:
     allowed = Limits(chosen.max_megabytes, chosen.max_memory, chosen.max_seconds)
-    return runner.Settings(chosen.resume, allowed, chosen.scripts, chosen.render, chosen.engine)
+    return runner.Settings(
+        chosen.resume, allowed, chosen.scripts, chosen.render, chosen.engine, chosen.allow_outside
+    )
 
 
 def _report(chosen: argparse.Namespace) -> Path:

@@ -26,7 +26,7 @@ def curves(path: Path, data: bytes, *, cyclic: bool = True) -> list[Stroke]:
         text = data.decode("utf-8-sig")
         found = _json(json.loads(text)) if path.suffix.lower() == ".json" else _csv(text)
         arrays = [np.asarray(points, float) for points in found]
-    except (ValueError, TypeError, RecursionError) as error:
+    except (ValueError, TypeError, OverflowError, RecursionError) as error:
         raise InputError(f"it is no list of curves: {error}") from error
     if not arrays:
         raise InputError("it has no curves")
@@ -43,7 +43,12 @@ def _json(value: Any) -> list[Any]:
     if isinstance(value, dict):
         if "points" not in value:
             raise InputError("it has no 'points'")
-        return [value["points"], *value.get("holes", [])]
+        value = [value["points"], *value.get("holes", [])]
+    for points in value:
+        for point in points:
+            for number in point:
+                if type(number) not in (int, float, type(None)):  # numpy would take true and "1" for 1
+                    raise InputError(f"a curve has {number!r:.40}, which is no number")
     return list(value)
 
 

@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-import hashlib
+import codecs
 import json
-import os
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..native import NATIVE_VERSION
+from . import files, places
 from . import params as parameters
 
 KEYS = {"id", "op", "in", "object", "params", "out"}
@@ -25,12 +24,17 @@ INPUTS = {
 }
 OUTPUTS = (".ply", ".obj", ".stl", ".glb", ".blend")
 
+LONGEST = 16 << 20
+"""Bytes of the longest line of a file of jobs."""
+_NAMED = 1000
+"""Bad lines that are named; the others are counted."""
+
 
 class JobError(ValueError):
     """The jobs cannot be run. The message names the lines."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Job:
     """One item. Paths are absolute."""
 
@@ -44,30 +48,10 @@ class Job:
     problem: tuple[str, str] | None = None
     """Kind and message of what is wrong with this item and no other."""
 
-    def files(self) -> list[Path]:
-        """All files that are read."""
-        found = [self.source]
+    def named_files(self) -> list[str]:
+        """Files that are read, as far as the job names them; those may name more."""
         stroke = self.params.get("stroke")
-        if isinstance(stroke, str) and is_file(stroke):
-            found.append(Path(stroke))
-        if self.source.suffix.lower() == ".gltf":
-            found += buffers(self.source)
-        return found
-
-    def size(self) -> int:
-        """Bytes of all files that are read. Raises OSError if there is none."""
-        return sum(path.stat().st_size for path in self.files())
-
-    def key(self) -> str:
-        """Hash of all that the result depends on. Raises OSError if a file cannot be read."""
-        asked = [NATIVE_VERSION, self.op, self.object, self.params, self.source.suffix, self.out.suffix]
-        digest = hashlib.sha256(json.dumps(asked, sort_keys=True).encode())
-        for path in self.files():
-            digest.update(b"\0")
-            with path.open("rb") as file:
-                while block := file.read(1 << 20):
-                    digest.update(block)
-        return digest.hexdigest()
+        return [str(self.source), *([stroke] if isinstance(stroke, str) and is_file(stroke) else [])]
 
 
 def is_file(stroke: str) -> bool:
@@ -75,75 +59,55 @@ def is_file(stroke: str) -> bool:
     return Path(stroke).suffix.lower() in CURVES
 
 
-def buffers(path: Path) -> list[Path]:
-    """Files that a .gltf file refers to; it may be any JSON, or none."""
-    try:
-        read = json.loads(path.read_bytes())
-        parts = [*read.get("buffers", []), *read.get("images", [])]
-        names = [part["uri"] for part in parts if isinstance(part.get("uri"), str)]
-    except (ValueError, AttributeError, TypeError, RecursionError):
-        return []  # the importer says what is wrong with it
-    return [
-        path.parent / _unquoted(name) for name in names if not name.startswith("data:") and "\0" not in name
-    ]
-
-
-def _unquoted(name: str) -> str:
-    """Name without the %20 of a URI.
-
-    An extension that imports `urllib`, even a part that reads no more than texts, counts as one that uses the network.
-    """
-    plain = re.sub(rb"%([0-9a-fA-F]{2})", lambda found: bytes.fromhex(found[1].decode()), name.encode())
-    return os.fsdecode(plain)
-
-
 def read(path: Path) -> list[Job]:
     """Read all jobs; relative paths are relative to the file.
 
-    Of items with the same id or output the first is done, and the others become errors of their own.
+    Of items with the same id or output the first is done, and the others become errors of their own; so do outputs that
+    would overwrite an input or this file.
 
     Raises
     ------
     JobError
-        If lines are no jobs; it names all of them.
+        If lines are no jobs; it names them.
     """
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise JobError(f"{path}: {error}") from error
+    folder = path.parent.resolve()
     found: list[Job] = []
     names: list[str] = []
     wrong: list[str] = []
-    for number, line in enumerate(lines, 1):
-        if not line.strip():
-            continue
+    more = 0
+    for number, line in _lines(path):
         try:
-            found.append(_job(json.loads(line), path.parent.resolve()))
+            if len(line) > LONGEST:
+                raise JobError(f"it is longer than {LONGEST >> 20} megabytes")
+            found.append(_job(json.loads(line.decode("utf-8")), folder))
             names.append(f"line {number}")
         except (ValueError, RecursionError) as error:
-            wrong.append(f"{path}, line {number}: {error}")
+            if len(wrong) < _NAMED:
+                wrong.append(f"{places.shown(path)}, line {number}: {places.shown(error)}")
+            else:
+                more += 1
+            if len(line) > LONGEST:
+                break  # what follows is the rest of it
     if wrong:
-        raise JobError("\n".join(wrong))
+        raise JobError("\n".join([*wrong, *([f"and {more} more"] if more else [])]))
     if not found:
         raise JobError(f"{path}: it has no jobs; write one JSON object a line")
-    return marked(found, names)
+    return places.marked(found, names, [path])
 
 
-def marked(items: list[Job], names: Iterable[str]) -> list[Job]:
-    """Items, those with the id or the output of an earlier one marked with what is wrong."""
-    ids: dict[str, str] = {}
-    outs: dict[Path, str] = {}
-    found = []
-    for item, name in zip(items, names, strict=True):
-        problem = None
-        if item.id in ids:
-            problem = ("duplicate_id", f"id '{item.id}' is that of {ids[item.id]} too; give it another")
-        elif item.out in outs:
-            problem = ("duplicate_out", f"out '{item.out}' is that of {outs[item.out]} too; give it another")
-        else:
-            ids[item.id] = outs[item.out] = name
-        found.append(replace(item, problem=problem))
-    return found
+def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
+    """Lines that are not empty, with their numbers. Only a line feed ends a line: JSON may hold all other separators."""
+    try:
+        with files.opened(path) as file:
+            number = 0
+            while line := file.readline(LONGEST + 1):
+                number += 1
+                if number == 1:
+                    line = line.removeprefix(codecs.BOM_UTF8)
+                if line.strip():
+                    yield number, line
+    except (OSError, files.FileError) as error:
+        raise JobError(f"{path}: {error}") from error
 
 
 def _job(item: Any, folder: Path) -> Job:

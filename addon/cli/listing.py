@@ -7,7 +7,7 @@ import glob
 from pathlib import Path
 from typing import Any
 
-from . import jobs
+from . import jobs, places
 from .jobs import Job, JobError
 
 STEM = "{name}"
@@ -22,7 +22,10 @@ def listed(op: str, words: list[str], pattern: str | None, chosen: dict[str, Any
     JobError
         If there are no files, or the output's name does not tell them apart.
     """
-    sources = [path for word in words for path in _files(op, word)]
+    try:
+        sources = [path for word in words for path in _files(op, word)]
+    except OSError as error:  # a folder that may not be read, a name too long
+        raise JobError(str(error)) from error
     sources = list(dict.fromkeys(sources))
     if len(sources) > 1 and STEM not in out:
         raise JobError(f"{len(sources)} inputs and one output; write {STEM} in it, as in 'bodies/{STEM}.ply'")
@@ -31,7 +34,7 @@ def listed(op: str, words: list[str], pattern: str | None, chosen: dict[str, Any
         jobs.checked(str(path), op, path, pattern, dict(chosen), here / out.replace(STEM, path.stem), here)
         for path in sources
     ]
-    return jobs.marked(found, [f"'{path}'" for path in sources])
+    return places.marked(found, [f"'{path}'" for path in sources])
 
 
 def _files(op: str, word: str) -> list[Path]:

@@ -3,7 +3,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
+import shutil
+import tempfile
+from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path
 from xml.parsers import expat
@@ -15,7 +19,7 @@ import numpy as np
 
 from .. import strokes
 from ..outlines import Stroke
-from . import inputs
+from . import files, inputs, sound
 from .inputs import InputError
 
 _NEEDED = {".svg": "io_curve_svg", ".glb": "io_scene_gltf2", ".gltf": "io_scene_gltf2"}
@@ -62,21 +66,40 @@ def meshes(
     pattern : which objects, as in a shell; None: all that are visible. scripts : whether a .blend file may run its own.
     weld : whether vertices at the same place become one; None: in files whose format tears meshes at seams.
     """
+    damage = sound.require_whole(path)
     _load(path, scripts=scripts)
+    loaded = sum(len(ob.data.polygons) for ob in bpy.data.objects if ob.type == "MESH")
+    damage += sound.left_out(path, loaded)
     found, notes = _chosen({"MESH"}, pattern, "meshes")
     first = {ob.data.name: ob for ob in reversed(found)}  # of objects that share a mesh, one
     found = [ob for ob in found if first[ob.data.name] is ob]
     if path.suffix.lower() in _TORN if weld is None else weld:
         for ob in found:
             _weld(ob.data)
-    return found, notes
+    return found, damage + notes + _unusable(found)
+
+
+def _unusable(objects: list[bpy.types.Object]) -> list[str]:
+    """What of these meshes nothing can be made of."""
+    notes = []
+    if bare := [ob.name for ob in objects if not len(ob.data.polygons)]:
+        notes.append(f"{len(bare)} of {len(objects)} meshes have no faces: '{bare[0]}'")
+    for ob in objects:
+        if n := int((~np.isfinite(_points(ob.data)).reshape(-1, 3).all(axis=1)).sum()):
+            notes.append(f"'{ob.name}': {n} vertices are not at finite places")
+    return notes
+
+
+def _points(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Coordinates, one after the other."""
+    points = np.empty(len(mesh.vertices) * 3, np.float32)
+    mesh.vertices.foreach_get("co", points)
+    return points
 
 
 def _weld(mesh: bpy.types.Mesh) -> None:
     """Join the vertices that are at exactly the same place."""
-    points = np.empty(len(mesh.vertices) * 3, np.float32)
-    mesh.vertices.foreach_get("co", points)
-    points += 0.0  # -0 is 0
+    points = _points(mesh) + 0.0  # -0 is 0
     places = points.view("V12")  # compared as bytes: one key, not three
     _, first, which = np.unique(places, return_index=True, return_inverse=True)
     doubles = np.flatnonzero(first[which] != np.arange(len(places)))
@@ -96,7 +119,7 @@ def _weld(mesh: bpy.types.Mesh) -> None:
 def drawn(path: Path, pattern: str | None, *, scripts: bool) -> tuple[list[Stroke], list[str], list[str]]:
     """Load a file; its strokes, what could not be read, and what the user should know."""
     if path.suffix.lower() in _PLAIN:
-        return inputs.curves(path, path.read_bytes()), [], []
+        return inputs.curves(path, files.read_bytes(path)), [], []
     _load(path, scripts=scripts)
     found, notes = _chosen(strokes.SOURCE_TYPES, pattern, "drawings or curves")
     reading = strokes.read_objects(bpy.context, found)
@@ -109,7 +132,7 @@ def drawn(path: Path, pattern: str | None, *, scripts: bool) -> tuple[list[Strok
 def line(path: Path, *, cyclic: bool) -> list[Stroke]:
     """Strokes of a file of curves, beside what is loaded already."""
     if path.suffix.lower() != ".svg":
-        return inputs.curves(path, path.read_bytes(), cyclic=cyclic)
+        return inputs.curves(path, files.read_bytes(path), cyclic=cyclic)
     before = set(bpy.data.objects)
     _import(path)
     made = [ob for ob in bpy.data.objects if ob not in before]
@@ -139,7 +162,8 @@ def _import(path: Path) -> None:
         raise LoadError(f"Blender's add-on '{_NEEDED[suffix]}' is missing, which reads {suffix} files")
     if suffix == ".svg":
         _check_svg(path)
-        _operate(bpy.ops.import_curve.svg, filepath=name)
+        with _named_in_text(path) as alias:
+            _operate(bpy.ops.import_curve.svg, filepath=str(alias))
     elif suffix == ".ply":
         _operate(bpy.ops.wm.ply_import, filepath=name, forward_axis="Y", up_axis="Z")
     elif suffix == ".obj":
@@ -148,6 +172,17 @@ def _import(path: Path) -> None:
         _operate(bpy.ops.wm.stl_import, filepath=name, forward_axis="Y", up_axis="Z", use_mesh_validate=True)
     else:
         _operate(bpy.ops.import_scene.gltf, filepath=name)
+
+
+@contextlib.contextmanager
+def _named_in_text(path: Path) -> Iterator[Path]:
+    """Path of the file, or of a copy if its name is no text: the importer of SVG gives it to what it makes."""
+    stem = path.stem.encode("utf-8", "replace").decode()
+    if stem == path.stem:
+        yield path
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        yield Path(shutil.copy(path, Path(folder, stem + path.suffix)))
 
 
 def _operate(operator: object, **options: object) -> None:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import gc
-import glob
 import os
 import sys
 import tempfile
@@ -16,6 +15,7 @@ from mathutils import Matrix
 
 from .. import meshes
 from ..api import Body
+from . import drafts
 from .loading import said
 from .whole import is_whole
 
@@ -26,9 +26,14 @@ class OutputError(RuntimeError):
     kind = "output"
 
 
+_swept: set[Path] = set()
+"""Folders in which nothing is left of runs that were killed."""
+
+
 def placed(name: str, bodies: list[Body], crease_angle: float) -> list[bpy.types.Object]:
     """Make objects of the bodies, in the scene."""
     made = []
+    name = name.encode("utf-8", "replace").decode()  # of a file, which may be no text
     for body in bodies:
         mesh = bpy.data.meshes.new(name)
         ob = bpy.data.objects.new(name, mesh)
@@ -53,10 +58,11 @@ def write(path: Path, objects: list[bpy.types.Object]) -> None:
 def safely(path: Path, make: Callable[[Path], None], faces: int = 0) -> None:
     """Let a file be made under a temporary name beside `path`, look whether it is whole, and rename it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    prefix, suffix = f".gridmesh-{path.name}-", path.suffix.lower()
-    for left in path.parent.glob(f"{glob.escape(prefix)}????????*"):
-        left.unlink()  # of a run that was killed
-    number, name = tempfile.mkstemp(prefix=prefix, suffix=suffix, dir=path.parent)
+    if path.parent not in _swept:  # in a large folder that takes its time
+        drafts.sweep(path.parent)
+        _swept.add(path.parent)
+    prefix = drafts.prefix(path, os.getpid())
+    number, name = tempfile.mkstemp(prefix=prefix, suffix=path.suffix.lower(), dir=path.parent)
     os.close(number)
     draft = Path(name)
     try:
@@ -69,15 +75,16 @@ def safely(path: Path, make: Callable[[Path], None], faces: int = 0) -> None:
         with draft.open("rb+") as file:
             os.fsync(file.fileno())
         draft.chmod(0o666 & ~_umask())
-        draft.replace(path)
+        try:
+            draft.replace(path)
+        except OSError as error:
+            raise OutputError(f"'{path.name[:60]}' cannot be written: {error.strerror}") from error
     except BaseException:
         _release()
         raise
     finally:
-        for left in path.parent.glob(
-            f"{glob.escape(draft.name)}*"
-        ):  # Blender writes to a name with an @ first
-            left.unlink()
+        for left in (draft, draft.with_name(f"{draft.name}@")):  # Blender writes to the second one first
+            left.unlink(missing_ok=True)
 
 
 def _release() -> None:

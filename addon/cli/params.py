@@ -4,9 +4,13 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
+
+_MOST = 2**31 - 1
+"""Largest count: what Blender can number."""
 
 
 class ParameterError(ValueError):
@@ -26,7 +30,6 @@ class Param:
 
     def check(self, name: str, value: Any) -> None:
         """Raise ParameterError if the value is of another kind."""
-        number = isinstance(value, int | float) and not isinstance(value, bool)
         if self.kind == "switch":
             good, allowed = isinstance(value, bool), "true or false"
         elif self.kind == "choice":
@@ -38,9 +41,10 @@ class Param:
             good = isinstance(value, list) and len(value) >= 2 and all(map(_is_number, value))
             allowed = "a list of two finite numbers or more"
         elif self.kind == "count":
-            good, allowed = isinstance(value, int) and number and value >= 0, "a whole number from 0"
+            good = isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= _MOST
+            allowed = f"a whole number from 0 to {_MOST}"
         else:
-            good = number and math.isfinite(value) and self.least <= value <= self.most
+            good = _is_number(value) and self.least <= value <= self.most
             bounded = math.isfinite(self.most)
             allowed = f"a number from {self.least:g} to {self.most:g}" if bounded else "a finite number"
         if not good:
@@ -134,7 +138,10 @@ def _is_line(value: Any) -> bool:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    """Whether this is a number that a float can hold; JSON has larger ones."""
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return False
+    return abs(value) <= sys.float_info.max  # of whole numbers of any size; false for nan
 
 
 def _shortened(value: Any) -> str:

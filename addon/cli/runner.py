@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run jobs one after the other, and report each. No bpy is imported."""
+"""Run jobs one after the other, and report each. No bpy is imported, and no file of an item is opened."""
 
 from __future__ import annotations
 
-import hashlib
-import json
+import contextlib
 import os
 import signal
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from ..native import NATIVE_VERSION
+from . import drafts, places
 from .jobs import Job, JobError
 from .process import Limits, Worker
+from .report import Report, ReportError
 from .telling import Teller
 
 INTERRUPTED = 130
@@ -31,97 +32,110 @@ class Settings:
     """Whether .blend files may run their own scripts."""
     render: bool = False
     engine: str = "workbench"
+    outside: bool = False
+    """Whether files may refer to files outside their folder."""
 
 
-def run(items: list[Job], report: Path, settings: Settings) -> int:
-    """Run all items; 0 if all are done, 1 if some failed, 130 if a signal ended the run before the last."""
-    done = _done(report) if settings.resume else {}
+def run(items: list[Job], report: Path, settings: Settings, jobs: Path | None = None) -> int:
+    """Run all items; 0 if all are done, 1 if some failed, 130 if a signal ended the run before the last.
+
+    jobs : the file that they come from.
+    """
+    _require_free(report, items, jobs)
+    try:
+        written = Report(report, resume=settings.resume)
+    except ReportError as error:
+        raise JobError(str(error)) from error
     worker = Worker(settings.limits, scripts=settings.scripts)
     stop = _Stop(worker)
     failed = finished = skipped = 0
     teller = Teller(len(items))
-    unwritten = None
+    if written.shared:
+        teller.line(f"another run is writing to {report}: its lines stay")
     try:
-        with _opened(report, settings.resume) as file:
-            for item in items:
-                if stop.asked:
-                    break
-                result = _one(item, done.get(item.id), worker, settings)
-                finished += 1
-                teller.item(finished, result)
-                if result is None:
-                    skipped += 1
-                    continue
-                failed += result["status"] == "error"
-                try:
-                    file.write(
-                        b"\n" * (unwritten is not None)
-                        + json.dumps(result, ensure_ascii=False).encode()
-                        + b"\n"
-                    )
-                    os.fsync(file.fileno())
-                except (
-                    OSError
-                ) as error:  # a full disk: the files that there is room for are made all the same
-                    unwritten = error
+        done = written.done() if settings.resume else {}
+        for item in items:
+            if stop.asked:
+                break
+            result = _one(item, done.get(item.id), worker, settings)
+            finished += 1
+            teller.item(finished, result)
+            if result is None:
+                skipped += 1
+                continue
+            failed += result["status"] == "error"
+            written.write(result)  # on a full disk, files that there is room for are made all the same
     finally:
         worker.close()
+        written.flush()
+        written.close()
         stop.forget()
     teller.line(f"{finished - skipped - failed} done, {failed} failed, {skipped} skipped; report: {report}")
-    if unwritten is not None:
-        teller.line(f"the report is not complete: {unwritten}")
+    if written.unwritten is not None:
+        teller.line(f"the report is not complete: {written.unwritten}")
     if finished < len(items):
         teller.line(f"stopped with {len(items) - finished} items to go; run again with --resume")
         return INTERRUPTED
-    return 1 if failed or unwritten is not None else 0
+    return 1 if failed or written.unwritten is not None else 0
+
+
+def _require_free(report: Path, items: list[Job], jobs: Path | None) -> None:
+    """Raise JobError if the report would overwrite the jobs, or what an item reads or writes."""
+    same = places.Places()
+    place = same.of(report.absolute())
+    if jobs is not None and same.of(jobs.absolute()) == place:
+        raise JobError(f"the report '{report}' is the file of jobs itself; give --report another name")
+    name = Path(place).name.casefold()  # few have it, and only they are worth a look at the disk
+    for item in items:
+        for path in (*item.named_files(), str(item.out)):
+            if path.casefold().endswith(name) and not places.problem_of(path) and same.of(path) == place:
+                text = f"the report '{report}' is a file of item '{item.id}'; give --report another name"
+                raise JobError(text)
 
 
 def _one(
-    item: Job, before: dict[str, Any] | None, worker: Worker, settings: Settings
+    item: Job, before: tuple[str, str] | None, worker: Worker, settings: Settings
 ) -> dict[str, Any] | None:
     """Result of an item; None if it was done before."""
+    out, picture = str(item.out), str(item.out.with_suffix(".png")) if settings.render else None
     head = {
         "id": item.id,
         "op": item.op,
         "in": str(item.source),
-        "out": str(item.out),
+        "out": out,
         "version": NATIVE_VERSION,
     }
-    picture = item.out.with_suffix(".png") if settings.render else None
     if item.problem is not None:
-        return head | _error(*item.problem)
-    try:
-        size, limit = item.size(), settings.limits.input_megabytes * 1e6
-        if size > limit:
-            text = f"it has {size / 1e6:.1f} megabytes, {limit / 1e6:g} are allowed; raise --max-megabytes"
-            return head | _error("too_large", text)
-        key = item.key()
-    except OSError as error:
-        return head | _error(type(error).__name__.lower(), str(error))
-    pictured = picture is None or picture.exists()
-    if (
-        before is not None
-        and before.get("key") == key
-        and before.get("digest") == _digest(item.out)
-        and pictured
-    ):
-        return None
-    asked = {
+        return head | {"status": "error", "kind": item.problem[0], "message": item.problem[1]}
+    look = {
+        "do": "look",
+        "asked": [NATIVE_VERSION, item.op, item.object, item.params, item.source.suffix, item.out.suffix],
+        "named": item.named_files(),
+        "out": out,
+        "picture": picture,
+        "most": settings.limits.input_megabytes * 1e6,
+        "outside": settings.outside,
+        "before": before,
+    }
+    make = {
+        "do": "make",
         "op": item.op,
         "source": str(item.source),
         "pattern": item.object,
         "params": item.params,
-        "out": str(item.out),
+        "out": out,
         "scripts": settings.scripts,
-        "picture": None if picture is None else str(picture),
+        "picture": picture,
         "engine": settings.engine,
     }
-    result = head | {"key": key} | worker.do(asked)
-    return result if result["status"] == "error" else result | {"digest": _digest(item.out)}
-
-
-def _error(kind: str, message: str) -> dict[str, Any]:
-    return {"status": "error", "kind": kind, "message": message}
+    made = worker.do(look, {"do": "prepare"}, make)
+    if made["status"] == "unchanged":
+        return None
+    if made["status"] == "error" and worker.process is None:  # a process that died could not tidy up
+        for path in (out, picture):
+            if path is not None:
+                drafts.remove(Path(path), worker.number)
+    return head | made
 
 
 class _Stop:
@@ -134,47 +148,15 @@ class _Stop:
 
     def _hear(self, *_: object) -> None:
         if self.asked:
-            self.worker.kill("stopped by the user")
-        else:
+            self.worker.kill()
+            return
+        self.asked = True
+        with contextlib.suppress(OSError, ValueError, AttributeError):  # nobody is there to read it
             # Not `print`: the signal may have come in the middle of one.
             os.write(sys.stderr.fileno(), b"\nfinishing this item; once more stops at once\n")
-        self.asked = True
 
     def forget(self) -> None:
         """Let signals do what they did before."""
         for number, handler in self.before:
             # Blender's own handler is not Python's to know, nor to set again; no more than the exit comes after.
             signal.signal(number, signal.SIG_DFL if handler is None else handler)
-
-
-def _digest(path: Path) -> str | None:
-    """Hash of a file; None if there is none."""
-    try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError:
-        return None
-
-
-def _done(report: Path) -> dict[str, dict[str, Any]]:
-    """Items that the report says are done; a line that was cut off by a kill says nothing."""
-    found: dict[str, dict[str, Any]] = {}
-    for line in report.read_bytes().splitlines() if report.exists() else ():
-        try:
-            result = json.loads(line)
-        except ValueError:
-            continue
-        if isinstance(result, dict) and result.get("digest") is not None:
-            found[result["id"]] = result
-    return found
-
-
-def _opened(report: Path, resume: bool) -> IO[bytes]:
-    try:
-        report.parent.mkdir(parents=True, exist_ok=True)
-        file = report.open("ab" if resume else "wb", buffering=0)
-        if file.tell():
-            file.write(b"\n")  # the last line may have been cut off
-    except OSError as error:
-        raise JobError(f"the report cannot be written: {error}") from error
-    return file

@@ -18,10 +18,11 @@ class Teller:
     def __init__(self, total: int, stream: TextIO | None = None) -> None:
         self.total = total
         self.stream = stream or sys.stdout
-        self.terminal = self.stream.isatty()
+        self.terminal = self.stream is not None and self.stream.isatty()
         self.failed = 0
         self.started = monotonic()
-        self.drawn = self.deaf = False
+        self.drawn = False
+        self.deaf = self.stream is None
 
     def item(self, at: int, result: dict[str, Any] | None) -> None:
         """Tell what came of an item, the one with this number from 1; None: it was done before."""
@@ -51,10 +52,11 @@ class Teller:
     def _write(self, text: str) -> None:
         if self.deaf:
             return
+        encoding = self.stream.encoding or "utf-8"
         try:
-            self.stream.write(text)
+            self.stream.write(text.encode(encoding, "backslashreplace").decode(encoding))
             self.stream.flush()
-        except OSError:  # who read it has gone; the run goes on, and the report has it all
+        except (OSError, ValueError):  # who read it has gone; the run goes on, and the report has it all
             self.deaf = True
 
 

@@ -17,7 +17,9 @@ class GridMeshCutTool(bpy.types.WorkSpaceTool):
     bl_context_mode = "OBJECT"
     bl_idname = "gridmesh.cut"
     bl_label = "GridMesh Cut"
-    bl_description = "Cut the active mesh.\nDrag across it, then click the side to keep; Enter keeps both"
+    bl_description = (
+        "Cut the selected meshes.\nDrag across them, then click the side to keep; Enter keeps both"
+    )
     bl_icon = "ops.mesh.knife_tool"
     bl_cursor = "KNIFE"
     bl_keymap = (
@@ -32,6 +34,7 @@ class GridMeshCutTool(bpy.types.WorkSpaceTool):
     def draw_settings(_context: bpy.types.Context, layout: Any, tool: Any) -> None:
         """Draw the options in the header."""
         options = tool.operator_properties(OBJECT_OT_gridmesh_cut.bl_idname)
+        layout.prop(options, "extend_ends")
         layout.prop(options, "use_cap")
         layout.prop(options, "smooth")
         layout.prop(options, "gap")

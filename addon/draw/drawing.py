@@ -8,21 +8,16 @@ from typing import Any
 
 import bpy
 import numpy as np
-from mathutils import Matrix
 
-from .. import api, meshes, strokes
-from ..live import engine
+from .. import api, frames, meshes, strokes
+from ..live import engine, outlined
+from ..live.linework import nearest
+from ..live.outlined import OutlineError, radii
 from ..live.reading import LostError, sketch_of
-from ..live.solve import TOO_THIN, Patience, reason_of
 from ..native import native
-from ..outlines import Plane, Sketch, project
+from ..outlines import Plane, Sketch, Stroke, StrokeError, prepare, project
 from .gesture import FEWEST, relation
 from .joining import absorb, adopt, join
-
-RADIUS = 0.005
-"""Radius of the line at full pressure, in parts of the outline's size."""
-
-LAYER = "Outline"
 
 SAME_PLANE = (0.999, 0.02)
 """Cosine between normals, and distance in parts of the body's size, within which a stroke is in a body's plane."""
@@ -49,7 +44,7 @@ class _Target:
     sketch: Sketch
     action: str
     stroke: np.ndarray
-    """(n, 2) in the body's plane."""
+    """(n, 2) in the plane of the body's sketch, which is in the body's own space."""
 
 
 def apply(
@@ -82,7 +77,7 @@ def apply(
         if subtract:
             raise DrawError("there is no body under the stroke; begin inside or beside one in the same plane")
         return _new(context, plane, points, pressures, options)
-    except native("combine").GridMeshError as error:
+    except (native("combine").GridMeshError, OutlineError) as error:
         raise DrawError(str(error)) from error
 
 
@@ -102,15 +97,16 @@ def target(
             continue
         try:
             sketch = sketch_of(ob, depsgraph)
-        except LostError:
-            continue  # without an outline there is nothing to draw on
+            here = frames.plane_local(ob, plane)
+            stroke = sketch.plane.local(frames.to_local(ob, world))[:, :2]
+        except (LostError, np.linalg.LinAlgError):
+            continue  # without an outline, or scaled to nothing, there is nothing to draw on
         own = sketch.plane
         cosine, apart = SAME_PLANE
-        same = abs(own.axes[2] @ plane.axes[2]) > cosine
-        same = same and abs(own.local(plane.origin[None])[0, 2]) < apart * sketch.size
+        same = abs(own.axes[2] @ here.axes[2]) > cosine
+        same = same and abs(own.local(here.origin[None])[0, 2]) < apart * sketch.size
         if not same and not (subtract and ob == under):
             continue
-        stroke = own.local(world)[:, :2]
         holes = [project(hole, own)[:, :2] for hole in sketch.holes]
         how = relation(sketch.outline, holes, stroke)
         inside = _inside(sketch.outline, holes, stroke)
@@ -147,24 +143,18 @@ def _inside(outline: np.ndarray, holes: list[np.ndarray], points: np.ndarray) ->
 def _new(
     context: bpy.types.Context, plane: Plane, points: np.ndarray, pressures: np.ndarray, options: Any
 ) -> Drawn:
-    gridmesh = native("mesh_sketch")
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
     options.use_union = True  # a hand's stroke crosses itself where it closes
-    blocks = bpy.data.grease_pencils_v3 if hasattr(bpy.data, "grease_pencils_v3") else bpy.data.grease_pencils
-    with meshes.Transaction() as transaction:
-        data = transaction.new(blocks, "Outline")
-        source = transaction.new(bpy.data.objects, "Outline", data)
-        middle = (points.min(axis=0) + points.max(axis=0)) / 2
-        home = Plane(plane.world(np.append(middle, 0.0)[None])[0], plane.axes)
-        source.matrix_basis = Matrix(home.matrix.tolist())
-        context.collection.objects.link(source)
-        layer = data.layers.new(LAYER, set_active=True)
-        layer.frames.new(context.scene.frame_current)
-        _write(layer.current_frame().drawing, [], [points - middle], [_radii(pressures, size)])
-        context.view_layer.update()
-        bodies = _make(context, source, [0], options, gridmesh)
-    _select(context, bodies)
-    return Drawn("new", bodies)
+    world = plane.world(np.column_stack([points, np.zeros(len(points))]))
+    widths = radii(pressures, size)
+    try:
+        sketch = prepare(Stroke(world, False, "", "", 0, 1, widths=widths), close_gaps=1.0)
+    except StrokeError as error:
+        raise DrawError(str(error)) from error
+    carried = nearest(sketch.outline, sketch.plane.local(world)[:, :2], widths)
+    body = outlined.make(context, [sketch.outline], [carried], sketch.plane.matrix, options)
+    _select(context, [body])
+    return Drawn("new", [body])
 
 
 def _make(
@@ -174,10 +164,9 @@ def _make(
     read = strokes.read_grease_pencil(source, context.evaluated_depsgraph_get())
     sketches, failures, _ = api.sketches_of(read.strokes, close_gaps=1.0, holes=True)
     sketches = [sketch for sketch in sketches if sketch.stroke.index in wanted]
-    try:
-        bodies, refused = api.build(sketches, options.sketch_options(), options.body_options(), Patience())
-    except api.CancelledError as error:
-        raise DrawError(TOO_THIN) from error
+    bodies, refused = api.build(
+        sketches, {**options.sketch_options(), "least": False}, options.body_options()
+    )
     failures += refused
     if failures or not bodies:
         raise DrawError(failures[0].reason if failures else "the stroke encloses nothing")
@@ -185,8 +174,10 @@ def _make(
     meshes.place(
         context, bodies, update=False, collection="SOURCE", crease_angle=options.corner_angle, made=made
     )
+    context.view_layer.update()
     for body, ob in zip(bodies, made, strict=True):
         engine.link(ob, body.sketch.stroke, source, options, follow=True)
+        frames.carry(ob, source, body.sketch.stroke.layer)
         ob.gridmesh_live.pen = options.pen
         if options.pen > 0:
             engine.remake(ob)
@@ -200,34 +191,40 @@ def _changed(
     gridmesh = native("combine")
     sketch, ob = found.sketch, found.ob
     live = ob.gridmesh_live
+    if meshes.by_hand(ob.data):
+        raise DrawError(engine.BY_HAND)
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     how = "union" if found.action == "extend" else "difference"
     parts = gridmesh.combine(sketch.outline, found.stroke, holes, how=how)
     if not parts:
         raise DrawError("nothing would be left; delete the body instead")
     source = live.source
+    own = frames.owned(ob)
     others = [
-        other for other in engine.bodies(source) if other != ob and other.gridmesh_live.layer == live.layer
+        other for other in engine.bodies() if other != ob and (frames.owned(other) or _beside(other, ob))
     ]
     taken: list[tuple[bpy.types.Object, Sketch]] = []
     if found.action == "extend":
-        parts, taken = join(gridmesh, parts[0], sketch.plane, others)
+        parts, taken = join(gridmesh, parts[0], ob, sketch.plane, others)
     _try(gridmesh, parts, live)
     layer = next(layer for layer in source.data.layers if layer.name == live.layer)
     drawing = layer.current_frame().drawing
+    sketches = [sketch, *(one for _, one in taken)]
+    more = parts[1:] if own is not None else []  # each outline has a body of its own
+    parts = parts[:1] if own is not None else parts
+    bodies = [ob, *(_split(context, ob, sketch.plane, part, sketches, found, pressures) for part in more)]
     rings = [ring for outline, inner in parts for ring in (outline, *inner)]
     starts = np.cumsum([0, *(1 + len(inner) for _, inner in parts)])[:-1]
-    sketches = [sketch, *(one for _, one in taken)]
-    radii = [_carried(ring, sketches, found.stroke, pressures) for ring in rings]
-    to_layer = np.linalg.inv(strokes.layer_to_world(source, layer))
-    flat = [sketch.plane.world(np.column_stack([ring, np.zeros(len(ring))])) for ring in rings]
-    flat = [points @ to_layer[:3, :3].T + to_layer[:3, 3] for points in flat]
-    gone = [drawn.stroke.index for one in sketches for drawn in (one, *one.holes)]
+    widths = [_carried(ring, sketches, found.stroke, pressures) for ring in rings]
+    to_layer = np.linalg.inv(frames.frame(ob) @ frames.layer_matrix(layer))
+    flat = [frames.moved(_flat(ring, sketch.plane), to_layer) for ring in rings]
+    here = [sketch, *(one for other, one in taken if _beside(other, ob))]
+    gone = [drawn.stroke.index for one in here for drawn in (one, *one.holes)]
     kept = [index for index in range(sketch.stroke.count) if index not in gone]
     follow = live.enabled
     children = absorb([other for other, _ in taken])
-    others = [other for other in others if all(other != one for one, _ in taken)]
-    _write(drawing, gone, flat, radii)
+    others = [other for other in engine.bodies() if other != ob and _beside(other, ob)]
+    outlined.write(drawing, gone, flat, widths)
     count = len(kept) + len(rings)
     for other in others:
         if other.gridmesh_live.stroke in kept:
@@ -237,17 +234,58 @@ def _changed(
     context.view_layer.update()
     engine.remake(ob)
     adopt(ob, children)
-    bodies = [ob]
     if len(parts) > 1:
         wanted = [len(kept) + int(start) for start in starts[1:]]
-        more = _make(context, source, wanted, _Like(live), gridmesh)
-        for body in more:
-            body.gridmesh_live.enabled = follow
-            for material in ob.data.materials:
-                body.data.materials.append(material)
-        bodies += more
+        bodies += _make(context, source, wanted, _Like(live), gridmesh)
+    for body in bodies[1:]:
+        body.gridmesh_live.enabled = follow
+        for material in ob.data.materials:
+            body.data.materials.append(material)
     _select(context, bodies)
     return Drawn(found.action, bodies)
+
+
+def _beside(other: bpy.types.Object, ob: bpy.types.Object) -> bool:
+    """Whether two bodies are of one layer of one drawing."""
+    one, two = ob.gridmesh_live, other.gridmesh_live
+    return one.source == two.source and one.layer == two.layer
+
+
+def _flat(ring: np.ndarray, plane: Plane) -> np.ndarray:
+    return plane.world(np.column_stack([ring, np.zeros(len(ring))]))
+
+
+def _split(
+    context: bpy.types.Context,
+    ob: bpy.types.Object,
+    plane: Plane,
+    part: tuple[np.ndarray, list[np.ndarray]],
+    sketches: list[Sketch],
+    found: _Target,
+    pressures: np.ndarray,
+) -> bpy.types.Object:
+    """Make a body of its own of a part that a body fell into."""
+    rings = [part[0], *part[1]]
+    widths = [_carried(ring, sketches, found.stroke, pressures) for ring in rings]
+    flat = [_flat(ring, plane) for ring in rings]
+    middle = (flat[0].min(axis=0) + flat[0].max(axis=0)) / 2
+    place = np.array(ob.matrix_world)
+    place[:3, 3] = frames.moved(middle[None], place)[0]
+    body = outlined.make(
+        context,
+        [ring - middle for ring in flat],
+        widths,
+        place,
+        _Like(ob.gridmesh_live),
+        name=ob.name,
+        collections=list(ob.users_collection),
+    )
+    if ob.parent is not None:
+        world = body.matrix_world.copy()
+        body.parent, body.parent_type, body.parent_bone = ob.parent, ob.parent_type, ob.parent_bone
+        context.view_layer.update()
+        body.matrix_world = world
+    return body
 
 
 class _Like:
@@ -265,9 +303,9 @@ def _try(gridmesh: Any, parts: list[Any], live: Any) -> None:
     """Refuse what would have no body before anything is changed."""
     for outline, holes in parts:
         try:
-            gridmesh.mesh_sketch(outline, holes, progress=Patience(), **live.sketch_options())
+            gridmesh.mesh_sketch(outline, holes, least=False, **live.sketch_options())
         except gridmesh.GridMeshError as error:
-            raise DrawError(reason_of(error)) from error
+            raise DrawError(api.reason_of(error)) from error
 
 
 def _carried(
@@ -277,49 +315,14 @@ def _carried(
     sketch = sketches[0]
     old = [drawn for one in sketches for drawn in (one, *one.holes)]
     points = [sketch.plane.local(one.stroke.points)[:, :2] for one in old]
-    fallback = RADIUS * sketch.size
-    radii = [
+    fallback = outlined.RADIUS * sketch.size
+    values = [
         one.stroke.widths if one.stroke.widths is not None else np.full(len(one.stroke.points), fallback)
         for one in old
     ]
     points.append(stroke)
-    radii.append(_radii(pressures, sketch.size))
-    known, values = np.concatenate(points), np.concatenate(radii)
-    out = np.empty(len(ring))
-    for at in range(0, len(ring), 256):
-        apart = ring[at : at + 256, None] - known[None]
-        out[at : at + 256] = values[np.einsum("ijk,ijk->ij", apart, apart).argmin(axis=1)]
-    return out
-
-
-def _radii(pressures: np.ndarray, size: float) -> np.ndarray:
-    return RADIUS * size * np.clip(pressures, 0.02, 1.0)
-
-
-def _write(drawing: Any, gone: list[int], rings: list[np.ndarray], radii: list[np.ndarray]) -> None:
-    """Take strokes out of a drawing and append closed ones; rings : (n, 2) or (n, 3) in the layer's space."""
-    if gone:
-        drawing.remove_strokes(indices=sorted(gone))
-    before = len(drawing.strokes)
-    drawing.add_strokes([len(ring) for ring in rings])
-    total = sum(len(ring) for ring in rings)
-    attribute = drawing.attributes["position"]
-    points = np.empty(len(attribute.data) * 3, np.float32)
-    attribute.data.foreach_get("vector", points)
-    new = np.concatenate(rings)
-    points.reshape(-1, 3)[-total:] = 0.0
-    points.reshape(-1, 3)[-total:, : new.shape[1]] = new
-    attribute.data.foreach_set("vector", points)
-    attribute = drawing.attributes.get("radius")
-    if attribute is None:
-        attribute = drawing.attributes.new("radius", "FLOAT", "POINT")
-    values = np.empty(len(attribute.data), np.float32)
-    attribute.data.foreach_get("value", values)
-    values[-total:] = np.concatenate(radii)
-    attribute.data.foreach_set("value", values)
-    for stroke in list(drawing.strokes)[before:]:
-        stroke.cyclic = True
-    drawing.tag_positions_changed()
+    values.append(radii(pressures, sketch.size))
+    return nearest(ring, np.concatenate(points), np.concatenate(values))
 
 
 def _select(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> None:

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ..live.solve import Patience
 from ..native import native
 from ..outlines import area
 
@@ -77,7 +76,7 @@ class Gesture:
                 angle=0.0,
                 origin=points[0],
                 self_crossing="union",
-                progress=Patience(0.005),
+                least=False,
             )
         except gridmesh.GridMeshError:
             return None  # too narrow for the grid, or it encloses nothing yet: the line alone is shown

@@ -13,29 +13,36 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from .. import frames
 from ..live import engine
 from ..live.reading import LostError, sketch_of
-from ..outlines import Plane, Sketch, project
+from ..outlines import Plane, Sketch, StrokeError, project, transformed
 from .gesture import relation
 
 Part = tuple[np.ndarray, list[np.ndarray]]
 """An outline and its holes, (n, 2) each."""
 
+FLAT = 0.02
+"""Outlines that stay within this part of their size of a plane lie in it."""
+
 
 def join(
-    gridmesh: Any, part: Part, plane: Plane, others: list[bpy.types.Object]
+    gridmesh: Any, part: Part, ob: bpy.types.Object, plane: Plane, others: list[bpy.types.Object]
 ) -> tuple[list[Part], list[tuple[bpy.types.Object, Sketch]]]:
-    """Unite a part with the outlines of other bodies that it meets.
+    """Unite a part of a body with the outlines of other bodies that it meets, if they lie in its plane.
 
-    Returns what it has become, the largest first, and the bodies that it took in with their sketches.
+    part : in `plane`, which is in the space of the body `ob`. Returns what it has become, the largest first, and the
+    bodies that it took in with their sketches, in that space.
     """
     depsgraph = bpy.context.evaluated_depsgraph_get()
     waiting = []
-    for ob in others:
+    for other in others:
         try:
-            waiting.append((ob, sketch_of(ob, depsgraph)))
-        except LostError:
+            sketch = sketch_into(ob, other, depsgraph)
+        except (LostError, StrokeError, np.linalg.LinAlgError):
             continue  # without an outline there is nothing to meet
+        if np.abs(project(sketch, plane)[:, 2]).max() <= FLAT * sketch.size:
+            waiting.append((other, sketch))
     parts, taken = [part], []
     # Grown by one, it may meet another.
     while met := next((one for one in waiting if _meets(parts[0], _flat(one[1], plane))), None):
@@ -45,9 +52,20 @@ def join(
     return parts, taken
 
 
+def sketch_into(ob: bpy.types.Object, other: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Sketch:
+    """Return the sketch of another body in the space of `ob`."""
+    matrix = np.linalg.inv(np.array(ob.matrix_world)) @ np.array(other.matrix_world)
+    return transformed(sketch_of(other, depsgraph), matrix, other.gridmesh_live.close_gaps)
+
+
 def absorb(others: list[bpy.types.Object]) -> list[tuple[bpy.types.Object, Matrix]]:
     """Take bodies away that are now a part of another; return their children and where these are."""
-    children = [(child, child.matrix_world.copy()) for other in others for child in other.children]
+    children = [
+        (child, child.matrix_world.copy())
+        for other in others
+        for child in other.children
+        if child != frames.owned(other)
+    ]
     for other in others:
         mesh = other.data
         engine.freeze(other)

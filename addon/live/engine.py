@@ -7,6 +7,8 @@ no tool is running, the best lattice is searched, so that the result depends on 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -14,10 +16,12 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import meshes, profilecurve, strokes
+from .. import frames, meshes, profilecurve
 from ..api import Body
 from ..native import NativeError
 from ..outlines import Plane, Sketch, Stroke
+from . import family, linework
+from .family import bodies
 from .reading import LostError, sketch_of
 from .solve import ALGORITHM, Lattice, LeftError, SolveError, digest, solve
 
@@ -35,17 +39,21 @@ class _State:
     seen: str
     """Fingerprint of what it was made of last, in full or quickly."""
     options: str
+    frame: bytes
+    """How the drawing lay to the body."""
     lattice: Lattice | None = None
-    place: Any = None
-    """Where the drawing's object was."""
     since: float = 0.0
     """When it changed last; 0 when it was made in full."""
     failed: str = ""
     """Fingerprint of what has no body."""
 
 
+BY_HAND = "its mesh was changed by hand; Rebuild from Outline gives that up, Freeze keeps it"
+"""Why a body pauses whose mesh is not what was made of its stroke."""
+
 _states: dict[int, _State] = {}
-_rendering = False
+rendering = False
+"""Set while a render runs, during which nothing is changed."""
 _busy = False
 
 timing: list[float] = []
@@ -54,24 +62,14 @@ timing: list[float] = []
 
 def awake() -> bool:
     """Whether bodies may follow now."""
-    return not _rendering and not _busy and (in_background or not bpy.app.background)
-
-
-def is_linked(ob: bpy.types.Object) -> bool:
-    """Whether an object is a body with a link. To read a group of properties that is not there would make it."""
-    system = getattr(ob, "bl_system_properties_get", None)  # from Blender 5.0 on
-    stored = ob if system is None else system()
-    return stored is not None and "gridmesh_live" in stored and ob.gridmesh_live.linked
-
-
-def bodies(source: bpy.types.Object | None = None) -> list[bpy.types.Object]:
-    """Bodies that are linked (to `source`)."""
-    linked = [ob for ob in bpy.data.objects if ob.type == "MESH" and is_linked(ob)]
-    return [ob for ob in linked if source is None or ob.gridmesh_live.source == source]
+    return not rendering and not _busy and (in_background or not bpy.app.background)
 
 
 def link(ob: bpy.types.Object, stroke: Stroke, source: bpy.types.Object, maker: Any, *, follow: bool) -> None:
-    """Link a body that was just made from a stroke of `source`; `maker` has the options that it was made with."""
+    """Link a body that was just made from a stroke of `source`; `maker` has the options that it was made with.
+
+    Both have to be evaluated: they stay where they are, and from then on lie to each other as they do.
+    """
     live = ob.gridmesh_live
     live.linked, live.source, live.algorithm = True, source, ALGORITHM
     live.layer, live.stroke, live.count = stroke.layer, stroke.index, stroke.count
@@ -79,43 +77,84 @@ def link(ob: bpy.types.Object, stroke: Stroke, source: bpy.types.Object, maker: 
     points = maker.curve_points()
     if points is not None:
         profilecurve.put(ob, points)
+    if frames.stored(ob) is None:
+        known = meshes.LINK in ob
+        place = frames.carrier_world(source, stroke.layer)
+        frames.remember(
+            ob, meshes.frame_of_link(ob, place) if known else frames.apart(source, stroke.layer, ob)
+        )
+    if meshes.LINK in ob:
+        del ob[meshes.LINK]
     live.digest = ""
+    family.claim(ob)
+    family.meet(ob)
+    family.note_place(ob)
     live.enabled = follow
 
 
 def freeze(ob: bpy.types.Object) -> None:
-    """Make a plain mesh of a body: it knows nothing of its stroke any more."""
+    """Make a plain mesh of a body: it knows nothing of its stroke any more. An outline of its own goes."""
+    outline = frames.owned(ob)
+    if ob.data.users > 1:
+        ob.data = ob.data.copy()  # those that share it go on
     ob.property_unset("gridmesh_live")
+    ob.data.property_unset("gridmesh_made")
     profilecurve.remove(ob)
     if meshes.LINK in ob:
         del ob[meshes.LINK]
     _states.pop(ob.session_uid, None)
+    if outline is not None and not bodies(outline):
+        linework.remove(outline)
+
+
+@contextmanager
+def resting() -> Iterator[None]:
+    """Let no body follow for a while."""
+    global _busy
+    before, _busy = _busy, True
+    try:
+        yield
+    finally:
+        _busy = before
 
 
 def touch(ob: bpy.types.Object) -> None:
     """Let a body follow now if it is awake."""
     if awake():
-        _follow(ob, bpy.context.evaluated_depsgraph_get(), full=False)
+        follow(ob, bpy.context.evaluated_depsgraph_get())
 
 
 def settle() -> int:
+    """Bring bodies and drawings in order, and make every body in full that is not; return how many were made."""
+    if not awake():
+        return 0
+    family.mend()
+    return refresh()
+
+
+def refresh() -> int:
     """Make every body in full that is not; return how many were made."""
     if not awake():
         return 0
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    return sum(_follow(ob, depsgraph, full=True) for ob in bodies())
+    return sum(follow(ob, depsgraph, full=True) for ob in bodies())
 
 
 def remake(ob: bpy.types.Object) -> bool:
     """Make a body in full because somebody asked, whether it follows or not, and whether there is a window or not."""
-    global _busy
     _states.pop(ob.session_uid, None)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    _busy = True
-    try:
+    with resting():
         return _updated(ob, depsgraph, True)
-    finally:
-        _busy = False
+
+
+def rebuild(ob: bpy.types.Object) -> None:
+    """Make a body anew whose mesh was changed by hand, and let it follow again; the changes are lost."""
+    if ob.mode == "OBJECT" and ob.is_editable and ob.data.is_editable:
+        meshes.sign(ob.data)
+    ob.gridmesh_live.digest = ""
+    remake(ob)
+    ob.gridmesh_live.enabled = True
 
 
 def fingerprint(live: Any, sketch: Sketch) -> str:
@@ -135,22 +174,24 @@ def _hindrance(ob: bpy.types.Object) -> str:
         return "it is being edited; leave its mode"
     if ob.data.shape_keys is not None:
         return "it has shape keys, which fit no new mesh"
+    if meshes.by_hand(ob.data):
+        return BY_HAND
     if ob.gridmesh_live.algorithm != ALGORITHM:
         return "it was made by another version of GridMesh; press Adopt to make it anew with this one"
     return ""
 
 
-def _follow(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, full: bool) -> bool:
+def follow(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, full: bool = False) -> bool:
     """Bring a body up to date with its stroke; return whether its mesh was made anew."""
-    global _busy
     if not ob.gridmesh_live.enabled:
         return False
+    writer = family.writer(ob)
+    if writer != ob:
+        _tell(ob.gridmesh_live, writer.gridmesh_live.problem)
+        return False
     started = perf_counter()
-    _busy = True
-    try:
+    with resting():
         done = _updated(ob, depsgraph, full)
-    finally:
-        _busy = False
     if done:
         timing.append(perf_counter() - started)
         del timing[:-200]
@@ -166,15 +207,15 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
     try:
         sketch = sketch_of(ob, depsgraph)
     except LostError as error:
-        if live.source is not None and not live.source.users_scene:
-            live.source = None  # a deleted drawing is not kept alive by its bodies
         _tell(live, str(error))
         return False
+    _remember_frame(ob)
+    frame = _frame(ob)
     mark, options = fingerprint(live, sketch), repr(_options(live))
     state = _states.get(uid)
     if live.digest == mark or (not full and state is not None and state.seen == mark):
         if state is None or state.seen != mark:
-            _states[uid] = _State(mark, options, place=_place(live.source))
+            _states[uid] = _State(mark, options, frame)
         elif live.digest == mark:
             state.since = 0.0
         if (live.stroke, live.count) != (sketch.stroke.index, sketch.stroke.count):
@@ -186,8 +227,8 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
         return False
     lattice = None
     if not full and state is not None and state.options == options:
-        lattice = _dragged(ob, state)
-    state = _states[uid] = _State(mark, options, lattice, _place(live.source), perf_counter())
+        lattice = state.lattice or _stored(live)
+    state = _states[uid] = _State(mark, options, frame, lattice, perf_counter())
     try:
         body, state.lattice = _solved(live, sketch, lattice)
     except (SolveError, NativeError) as error:
@@ -197,9 +238,10 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
         else:
             _wait()  # the best lattice may do, but to look for it would hold up the drag
         return False
-    write(ob, body, live.corner_angle, marks=lattice is None)
+    write(ob, meshes.in_space(body), live.corner_angle, marks=lattice is None)
     slots = [state.lattice.edge_length, state.lattice.angle, *state.lattice.origin]
     live.lattice = [float(value) for value in slots]
+    live.plane = [*state.lattice.plane.origin.tolist(), *state.lattice.plane.axes.ravel().tolist()]
     live.stroke, live.count = sketch.stroke.index, sketch.stroke.count
     live.digest = mark if lattice is None else ""
     state.since = 0.0 if lattice is None else perf_counter()
@@ -207,6 +249,31 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
     if lattice is not None:
         _wait()
     return True
+
+
+def _frame(ob: bpy.types.Object) -> bytes:
+    """How the drawing of a body lies to it, to be compared."""
+    live = ob.gridmesh_live
+    layers = live.source.data.layers if live.source.type == "GREASEPENCIL" else ()
+    own = [frames.layer_matrix(layer).tobytes() for layer in layers if layer.name == live.layer]
+    return b"".join([frames.frame(ob).tobytes(), *own])
+
+
+def lies_otherwise(ob: bpy.types.Object) -> bool:
+    """Whether the drawing of a body lies in another way to it than when that was looked at last; or it was not."""
+    state = _states.get(ob.session_uid)
+    return state is None or ob.gridmesh_live.source is None or state.frame != _frame(ob)
+
+
+def _remember_frame(ob: bpy.types.Object) -> None:
+    """Store how an outline lies in its body, also with the bodies that share the mesh."""
+    source = ob.gridmesh_live.source
+    if not frames.nested(source, ob):
+        return
+    matrix = frames.frame(ob)
+    sharers = [ob] if ob.data.users < 2 else [other for other in bodies(source) if other.data == ob.data]
+    for one in sharers:
+        frames.remember(one, matrix)
 
 
 def _solved(live: Any, sketch: Sketch, lattice: Lattice | None) -> tuple[Body, Lattice]:
@@ -220,57 +287,39 @@ def _solved(live: Any, sketch: Sketch, lattice: Lattice | None) -> tuple[Body, L
     return solve(sketch, sketch_options, body_options, pen=pen)
 
 
-def _dragged(ob: bpy.types.Object, state: _State) -> Lattice | None:
-    """Return the lattice of the body as it is, moved along with the drawing's object."""
-    lattice = state.lattice
-    live = ob.gridmesh_live
-    if lattice is None:
-        if not live.lattice[0] or meshes.LINK not in ob:
-            return None
-        matrix = np.array(list(ob[meshes.LINK]["matrix"]), float).reshape(4, 4)
-        plane = Plane(matrix[:3, 3], matrix[:3, :3].T)
-        lattice = Lattice(plane, live.lattice[0], live.lattice[1], np.array(live.lattice[2:]))
-    now = _place(live.source)
-    if state.place is None or np.array_equal(now, state.place):
-        return lattice
-    try:
-        motion = now @ np.linalg.inv(state.place)
-    except np.linalg.LinAlgError:
+def _stored(live: Any) -> Lattice | None:
+    """Return the lattice of the body as it is, after a file was opened or a step undone."""
+    if not live.lattice[0]:
         return None
-    turn = motion[:3, :3]
-    if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-5) or np.linalg.det(turn) < 0:
-        return None
-    plane = Plane(turn @ lattice.plane.origin + motion[:3, 3], lattice.plane.axes @ turn.T)
-    return Lattice(plane, lattice.edge_length, lattice.angle, lattice.origin)
-
-
-def _place(source: bpy.types.Object) -> np.ndarray:
-    return np.array(source.matrix_world)
+    values = np.array(live.plane, float)
+    plane = Plane(values[:3], values[3:].reshape(3, 3))
+    return Lattice(plane, live.lattice[0], live.lattice[1], np.array(live.lattice[2:]))
 
 
 def write(ob: bpy.types.Object, body: Body, crease_angle: float, *, marks: bool) -> None:
     """Give an object another mesh of the same name; all that belongs to vertices stays where the triangles do.
 
-    marks : whether creases are marked anew where the triangles stay; while dragging they wait.
+    body : with vertices in the object's space. marks : whether creases are marked anew where the triangles stay;
+    while dragging they wait.
     """
     mesh = ob.data
-    triangles = np.ascontiguousarray(body.triangles, np.int32)
+    triangles = np.ascontiguousarray(body.triangles, np.int32).ravel()
     if len(mesh.vertices) != len(body.vertices) or len(mesh.loops) != triangles.size:
         meshes.refresh(ob, body, crease_angle)
         return
-    corners = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
-    if not np.array_equal(corners, triangles.ravel()):
+    corners = meshes.corners_of(mesh)
+    if not np.array_equal(corners, triangles):
         meshes.refresh(ob, body, crease_angle)
         return
-    mesh.vertices.foreach_set("co", np.ascontiguousarray(body.vertices, np.float32).ravel())
+    points = np.ascontiguousarray(body.vertices, np.float32).ravel()
+    mesh.vertices.foreach_set("co", points)
     layer = mesh.uv_layers.get(meshes.UV_MAP)
     if layer is not None:
         layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
     if marks:
         meshes.mark_creases(mesh, body, crease_angle)
     mesh.update()
-    meshes.move_along(ob, body)
+    mesh.gridmesh_made = meshes.fingerprint(points, corners, len(mesh.polygons))
 
 
 def _tell(live: Any, problem: str) -> None:
@@ -278,84 +327,17 @@ def _tell(live: Any, problem: str) -> None:
         live.problem = problem
 
 
-# ------------------------------------------------------------------------------------------------------ handlers
+# ------------------------------------------------------------------------------------------------ the end of a change
 
 
-_DRAWINGS = tuple(
-    getattr(bpy.types, name)
-    for name in ("Curve", "Curves", "GreasePencilv3", "GreasePencil")
-    if hasattr(bpy.types, name)
-)
-
-
-@bpy.app.handlers.persistent
-def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
-    """Let bodies follow whose drawing, or whose own properties, were changed."""
-    if not awake():
-        return
-    sources, drawings, own = [], [], []
-    for update in depsgraph.updates:
-        if isinstance(update.id, _DRAWINGS):
-            drawings.append(update.id.original)
-        elif isinstance(update.id, bpy.types.Object):
-            ob = update.id.original
-            if ob.type in strokes.SOURCE_TYPES:
-                sources.append(ob)
-            elif ob.type == "MESH" and is_linked(ob):
-                own.append(ob)
-    if sources or drawings:
-        for ob in bodies():
-            source = ob.gridmesh_live.source
-            if ob not in own and source is not None and (source in sources or source.data in drawings):
-                own.append(ob)
-    for ob in own:
-        _follow(ob, depsgraph, full=False)
-
-
-@bpy.app.handlers.persistent
-def _on_undo(*_: Any) -> None:
-    """After a step back or forth strokes and bodies may be of different times."""
-    _states.clear()
-    settle()
-
-
-@bpy.app.handlers.persistent
-def _on_load(*_: Any) -> None:
-    """A file that was opened is left as it is until something is changed."""
+def forget() -> None:
+    """Forget what is known of bodies: after a step back or forth, or in another file."""
     _states.clear()
 
 
-@bpy.app.handlers.persistent
-def _on_save(*_: Any) -> None:
-    """What is saved is made in full."""
-    if any(state.since for state in _states.values()):
-        settle()
-
-
-@bpy.app.handlers.persistent
-def _on_render(*_: Any) -> None:
-    global _rendering
-    _rendering = True
-
-
-@bpy.app.handlers.persistent
-def _after_render(*_: Any) -> None:
-    global _rendering
-    _rendering = False
-
-
-def _handlers() -> list[tuple[list[Any], Any]]:
-    on = bpy.app.handlers
-    return [
-        (on.depsgraph_update_post, _on_change),
-        (on.undo_post, _on_undo),
-        (on.redo_post, _on_undo),
-        (on.load_post, _on_load),
-        (on.save_pre, _on_save),
-        (on.render_init, _on_render),
-        (on.render_complete, _after_render),
-        (on.render_cancel, _after_render),
-    ]
+def unsettled() -> bool:
+    """Whether there are bodies that are not made in full."""
+    return any(state.since for state in _states.values())
 
 
 def _wait() -> None:
@@ -368,15 +350,15 @@ def _tick() -> float | None:
     last = max((state.since for state in _states.values()), default=0.0)
     if not last:
         return None
-    if perf_counter() - last < PAUSE or _tool_runs():
+    if perf_counter() - last < PAUSE or tool_runs():
         return 0.1
-    settle()
+    refresh()
     for uid in _states.keys() - {ob.session_uid for ob in bpy.data.objects}:
         del _states[uid]
-    return 0.1 if any(state.since for state in _states.values()) and awake() else None
+    return 0.1 if unsettled() and awake() else None
 
 
-def _tool_runs() -> bool:
+def tool_runs() -> bool:
     """Whether a tool is running that may go on changing the stroke: a drag is not over while it is."""
     aside = {"SCREEN_OT_animation_play", "SCREEN_OT_animation_step", "OBJECT_OT_gridmesh_draw"}
     return any(
@@ -387,17 +369,11 @@ def _tool_runs() -> bool:
 
 
 def register() -> None:
-    """Start to listen."""
-    for handlers, function in _handlers():
-        if function not in handlers:
-            handlers.append(function)
+    """Nothing to do before a body is changed."""
 
 
 def unregister() -> None:
     """Stop; bodies stay as they are."""
-    for handlers, function in _handlers():
-        if function in handlers:
-            handlers.remove(function)
     if bpy.app.timers.is_registered(_tick):
         bpy.app.timers.unregister(_tick)
     _states.clear()

@@ -76,6 +76,12 @@ class GridMeshLive(SketchOptions, ShapeOptions, bpy.types.PropertyGroup):
     """Fingerprint of the stroke and the options that the body was made of in full; empty while it is being dragged."""
     lattice: FloatVectorProperty(size=4, precision=6, options={"HIDDEN"})
     """Edge length, angle and origin in the plane."""
+    frame: FloatVectorProperty(size=16, options={"HIDDEN"})
+    """Matrix from the space of the drawing to that of the body, by rows; see `frames`. All 0 in files of 0.1.0."""
+    plane: FloatVectorProperty(size=12, options={"HIDDEN"})
+    """Plane of the sketch in the body's space when the body was made last: its origin and its axes."""
+    uid: IntProperty(options={"HIDDEN"})
+    """`session_uid` of the object, by which a copy is told from the body."""
     problem: StringProperty(options={"HIDDEN"})
     """Why the body does not follow now."""
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from .. import api, curves, meshes, strokes
+from .. import api, curves, frames, strokes
 from ..outlines import Sketch
 
 
@@ -15,7 +15,7 @@ class LostError(Exception):
 
 
 def sketch_of(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Sketch:
-    """Return the sketch that a linked body is made of, holes included.
+    """Return the sketch that a linked body is made of, holes included, in the body's own space.
 
     Raises
     ------
@@ -26,7 +26,7 @@ def sketch_of(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Sketch:
     source = live.source
     if source is None or not source.users_scene:
         raise LostError("its drawing is gone")
-    read = read_source(source, depsgraph)
+    read = read_source(source, depsgraph, frames.frame(ob))
     same = [stroke for stroke in read.strokes if stroke.layer == live.layer]
     if not same:
         reasons = [*map(str, read.failures), *read.notes]
@@ -42,20 +42,22 @@ def sketch_of(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Sketch:
             raise LostError(reason or "its stroke is hidden, or lies inside another and is a hole there")
         return found
     # Strokes came or went: the numbers are others. It is the one that lies where the body was drawn.
-    matrix = np.array(list(ob[meshes.LINK]["matrix"]), float).reshape(4, 4)
-    near = [(float(np.linalg.norm(s.plane.origin - matrix[:3, 3])), s) for s in sketches]
+    before = np.array(live.plane[:3], float)
+    near = [(float(np.linalg.norm(sketch.plane.origin - before)), sketch) for sketch in sketches]
     near = [(apart, sketch) for apart, sketch in near if apart < 0.25 * sketch.size]
     if not near:
         raise LostError("its stroke is gone")
     return min(near, key=lambda pair: pair[0])[1]
 
 
-def read_source(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> strokes.Reading:
-    """Read the strokes of an object as it is seen."""
+def read_source(
+    source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, frame: np.ndarray | None = None
+) -> strokes.Reading:
+    """Read the strokes of an object as it is seen. frame : (4, 4) to where they are wanted; None: the world."""
     if source.type == "GREASEPENCIL":
-        return strokes.read_grease_pencil(source, depsgraph)
+        return strokes.read_grease_pencil(source, depsgraph, frame)
     if source.type == "CURVES":
-        return strokes.read_hair(source, depsgraph)
+        return strokes.read_hair(source, depsgraph, frame)
     if source.type not in strokes.SOURCE_TYPES:
         raise LostError(f"'{source.name}' is no drawing")
     reason = thick(source)
@@ -66,7 +68,7 @@ def read_source(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> str
     try:
         if mesh is None:
             raise LostError(f"'{source.name}' is empty")
-        found, failures, notes = curves.strokes_of(source, mesh)
+        found, failures, notes = curves.strokes_of(source, mesh, frame)
     finally:
         seen.to_mesh_clear()
     return strokes.Reading(found, failures, notes)

@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
-from time import perf_counter
 from typing import Any
 
 import numpy as np
 
-from ..api import Body, native
+from ..api import Body, native, reason_of
 from ..outlines import Plane, Sketch, project
 
-ALGORITHM = 1
+ALGORITHM = 2
 """Raised when the same stroke and options give another body. A body made by another one is left alone until asked."""
 
 TILTED = 0.9999
@@ -40,38 +39,6 @@ class Lattice:
     angle: float
     origin: np.ndarray
     """(2,) in the plane."""
-
-
-class Patience:
-    """Progress that gives up on a stroke without a mesh instead of searching for the fineness that would do.
-
-    The search comes after nine tenths of the work and can take half a minute: too long while somebody draws. Strokes
-    that have a mesh are never given up: from there on they are done in no time.
-    """
-
-    def __init__(self, seconds: float = 0.5) -> None:
-        self.seconds = seconds
-        self._began: float | None = None
-        self._late: float | None = None
-
-    def __call__(self, fraction: float) -> bool:
-        """Say whether to go on; allow as long again as the work has taken."""
-        now = perf_counter()
-        if self._began is None:
-            self._began = now
-        if fraction < 0.9 - 1e-9:
-            return True
-        if self._late is None:
-            self._late = now
-        return now - self._late <= max(self.seconds, self._late - self._began)
-
-
-TOO_THIN = "the stroke is too thin for a mesh this coarse; use more triangles or shorter edges"
-
-
-def reason_of(error: Any) -> str:
-    """What to say of an error of the module."""
-    return TOO_THIN if error.kind == "cancelled" else str(error)
 
 
 def solve(
@@ -103,7 +70,7 @@ def solve(
         options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     try:
-        patch = _patch(gridmesh, sketch.outline, holes, Patience(0.5 if lattice is None else 0.01), options)
+        patch = _patch(gridmesh, sketch.outline, holes, options)
         if body_options is None:
             surface = gridmesh.flat(patch)
         else:
@@ -125,13 +92,11 @@ _last: list[Any] = []
 """The drawing and the options that were meshed last, and the patch."""
 
 
-def _patch(
-    gridmesh: Any, outline: np.ndarray, holes: list[np.ndarray], patience: Patience, options: dict[str, Any]
-) -> Any:
+def _patch(gridmesh: Any, outline: np.ndarray, holes: list[np.ndarray], options: dict[str, Any]) -> Any:
     """Return the patch of a drawing; at once where only the shape of the body was changed since the last one."""
     key = (outline.tobytes(), [hole.tobytes() for hole in holes], repr(options))
     if not _last or _last[0] != key:
-        patch = gridmesh.mesh_sketch(outline, holes, progress=patience, **options)
+        patch = gridmesh.mesh_sketch(outline, holes, least=False, **options)
         _last[:] = key, patch
     return _last[1]
 

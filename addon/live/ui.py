@@ -8,16 +8,16 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty
 
-from .. import profilecurve
+from .. import frames, meshes, profilecurve, wrapping
 from ..strokes import selected
 from ..telling import told
 from ..translations import CONTEXT
-from . import engine, watch
+from . import engine, migration, watch
 from .solve import ALGORITHM
 
 
 def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
-    return [ob for ob in selected(context) if ob.type == "MESH" and engine.is_linked(ob)]
+    return [ob for ob in selected(context) if ob.type == "MESH" and frames.is_linked(ob)]
 
 
 class _OnBodies:
@@ -33,7 +33,7 @@ class _OnBodies:
 
 
 class OBJECT_OT_gridmesh_freeze(_OnBodies, bpy.types.Operator):  # noqa: N801
-    """Make plain meshes of the selected bodies; they no longer know their drawing"""  # noqa: D400 (the tooltip)
+    """Make plain meshes of the selected bodies; outlines drawn with the tool are removed"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_freeze"
     bl_label = "Freeze"
@@ -63,6 +63,25 @@ class OBJECT_OT_gridmesh_adopt(_OnBodies, bpy.types.Operator):  # noqa: N801
             live.enabled = True
             if live.problem:
                 problems.append(f"'{ob.name}': {live.problem}")
+        if problems:
+            self.report({"WARNING"}, told("\n".join(problems[:3])))
+        return {"FINISHED"}
+
+
+class OBJECT_OT_gridmesh_rebuild(_OnBodies, bpy.types.Operator):  # noqa: N801
+    """Make the selected bodies anew from their outlines; what was changed in their meshes by hand is lost"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_rebuild"
+    bl_label = "Rebuild from Outline"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Give up what was changed by hand, and follow again; also in background: it was asked for."""
+        problems = []
+        for ob in _chosen(context):
+            engine.rebuild(ob)
+            if ob.gridmesh_live.problem:
+                problems.append(f"'{ob.name}': {ob.gridmesh_live.problem}")
         if problems:
             self.report({"WARNING"}, told("\n".join(problems[:3])))
         return {"FINISHED"}
@@ -124,7 +143,7 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
     def poll(cls, context: bpy.types.Context) -> bool:
         """Show it for bodies with a link."""
         active = context.view_layer.objects.active
-        return active is not None and active.type == "MESH" and engine.is_linked(active)
+        return active is not None and active.type == "MESH" and frames.is_linked(active)
 
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draw the switch."""
@@ -135,14 +154,16 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        live = context.view_layer.objects.active.gridmesh_live
+        active = context.view_layer.objects.active
+        live = active.gridmesh_live
+        if migration.message:
+            wrapping.label(layout, context, told(migration.message, "interface"), icon="INFO")
         if live.problem and live.enabled:
-            column = layout.column(align=True)
+            column = layout.column()
             column.alert = True
-            for at in range(0, len(live.problem), 40):
-                column.label(
-                    text=told(live.problem[at : at + 40], "interface"), icon="ERROR" if at == 0 else "BLANK1"
-                )
+            wrapping.label(column, context, told(live.problem, "interface"), icon="ERROR")
+        if live.problem == engine.BY_HAND and meshes.by_hand(active.data):
+            layout.operator(OBJECT_OT_gridmesh_rebuild.bl_idname, icon="FILE_REFRESH")
         if live.algorithm != ALGORITHM:
             layout.operator(OBJECT_OT_gridmesh_adopt.bl_idname)
         layout.prop(live, "source")
@@ -156,6 +177,7 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
 classes = (
     OBJECT_OT_gridmesh_freeze,
     OBJECT_OT_gridmesh_adopt,
+    OBJECT_OT_gridmesh_rebuild,
     OBJECT_OT_gridmesh_curve,
     VIEW3D_PT_gridmesh_live,
 )

@@ -11,7 +11,7 @@ from time import perf_counter
 
 import bpy
 
-from .. import profilecurve
+from .. import frames, profilecurve
 from . import engine
 
 CATEGORY = "GridMesh"
@@ -35,7 +35,7 @@ def _shown() -> list[bpy.types.Object]:
     found = []
     for window in bpy.context.window_manager.windows:
         active = window.view_layer.objects.active
-        if active is None or profilecurve.holder(active) is None or not engine.is_linked(active):
+        if active is None or profilecurve.holder(active) is None or not frames.is_linked(active):
             continue
         views = (area for area in window.screen.areas if area.type == "VIEW_3D")
         sides = (region for area in views for region in area.regions if region.type == "UI")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`object.gridmesh_cut`: the active mesh is cut along a stroke and closed with grid patches."""
+"""`object.gridmesh_cut`: the selected meshes are cut along a stroke and closed with grid patches."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class GRIDMESH_PG_cut_point(bpy.types.PropertyGroup):  # noqa: N801
 
 
 class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
-    """Cut the active mesh along a stroke and close it with regular triangle patches"""  # noqa: D400 (the tooltip)
+    """Cut the selected meshes along a stroke and close them with regular triangle patches"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_cut"
     bl_label = "Cut & Cap"
@@ -95,6 +95,12 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         default=0.1,
         min=0.0,
         max=1.0,
+    )
+    extend_ends: BoolProperty(
+        name="Extend Ends",
+        description="Continue the ends of the stroke straight on through everything; otherwise only as far as the "
+        "part of the mesh that the stroke crosses",
+        default=False,
     )
     use_cap: BoolProperty(
         name="Cap",
@@ -171,42 +177,27 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Read, cut, and only then change the scene."""
+        """Read and cut all meshes, and only then change the scene."""
         started = perf_counter()
-        ob = context.view_layer.objects.active
         try:
             api.native("cut")
             material = self._material()
-            target = Target(ob)
-            stroke, sweep, notes = self._line(context, target)
-            if self.suggest_length:
-                self.edge_length = target.model.edge_length()
-                self.suggest_length = False
+            strokes, notes = self._strokes(context)
             with Pointer(context) as pointer:
-                division = cutting.divide(
-                    target.model,
+                done, missed = self._divided(strokes, pointer)
+            if not done:
+                raise cutsweep.CutError(listed(missed))
+            objects, frozen = [], []
+            for target, division, stroke, sweep in done:
+                frozen += [target.ob.name] if target.is_live else []
+                objects += target.apply(
+                    context,
+                    division.parts,
                     stroke,
                     sweep,
+                    Caps(self.smooth == "FLAT", self.use_cap and self.use_cap_slot, material),
                     together=self.pieces == "TOGETHER",
-                    progress=pointer,
-                    keep=self.keep.lower(),
-                    cap=self.use_cap,
-                    edge_length=self.edge_length or None,
-                    gap=self.gap,
-                    smooth=self.smooth.lower(),
                 )
-            if any(part.is_empty for part in division.parts):
-                raise cutsweep.CutError(
-                    "a side of the stroke has nothing of the mesh; draw the stroke across it"
-                )
-            objects = target.apply(
-                context,
-                division.parts,
-                stroke,
-                sweep,
-                Caps(self.smooth == "FLAT", self.use_cap and self.use_cap_slot, material),
-                together=self.pieces == "TOGETHER",
-            )
         except (api.NativeError, cutsweep.CutError) as error:
             self.report({"ERROR"}, told(listed([str(error)])))
             return {"CANCELLED"}
@@ -217,8 +208,56 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             for source in cutline.stroke_objects(context):
                 if source not in objects:
                     source.select_set(False)
-        self._tell(division, notes, perf_counter() - started)
+        if frozen:
+            notes.append(f"frozen, since a cut body cannot follow its drawing: {', '.join(frozen)}")
+        self._tell([division for _, division, _, _ in done], notes, missed, perf_counter() - started)
         return {"FINISHED"}
+
+    def _strokes(
+        self, context: bpy.types.Context
+    ) -> tuple[list[tuple[bpy.types.Object, np.ndarray, cutsweep.Sweep, bool]], list[str]]:
+        """Return the stroke, the sweep and whether it is closed, for each mesh, and what the user should know."""
+        points, cyclic, sweep, notes = self._line(context)
+        return [(ob, points, sweep, cyclic) for ob in cut_objects(context)], notes
+
+    def _divided(
+        self, strokes: list[tuple[bpy.types.Object, np.ndarray, cutsweep.Sweep, bool]], pointer: Pointer
+    ) -> tuple[list[tuple[Target, cutting.Division, np.ndarray, cutsweep.Sweep]], list[str]]:
+        """Cut each mesh that can be cut; return these, and why the others cannot."""
+        done, missed, several = [], [], len(strokes) > 1
+        meshes: dict[bpy.types.Mesh, str] = {}
+        for k, (ob, points, sweep, cyclic) in enumerate(strokes):
+            try:
+                if ob.data in meshes:
+                    raise cutsweep.CutError(f"it has the same mesh as '{meshes[ob.data]}'")
+                target = Target(ob)
+                stroke, own = target.line(points, sweep, cyclic=cyclic, close_gaps=self._gaps())
+                if self.suggest_length:
+                    self.edge_length = target.model.edge_length()
+                    self.suggest_length = False
+                division = cutting.divide(
+                    target.model,
+                    stroke,
+                    own,
+                    together=self.pieces == "TOGETHER",
+                    progress=pointer.part(k / len(strokes), (k + 1) / len(strokes)),
+                    keep=self.keep.lower(),
+                    cap=self.use_cap,
+                    edge_length=self.edge_length or None,
+                    gap=self.gap,
+                    smooth=self.smooth.lower(),
+                    extend_ends=self.extend_ends,
+                )
+                if any(part.is_empty for part in division.parts):
+                    raise cutsweep.CutError(
+                        "a side of the stroke has nothing of the mesh; draw the stroke across it"
+                    )
+            except cutsweep.CutError as error:
+                missed.append(f"'{ob.name}' is left as it was: {error}" if several else str(error))
+                continue
+            meshes[ob.data] = ob.name
+            done.append((target, division, stroke, own))
+        return done, missed
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the redo panel."""
@@ -233,6 +272,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         layout.prop(self, "keep")
         if self.keep == "BOTH":
             layout.prop(self, "pieces")
+        layout.prop(self, "extend_ends")
         layout.prop(self, "gap")
         layout.prop(self, "edge_length")
         layout.prop(self, "use_cap")
@@ -249,6 +289,10 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             if not self.stroke:
                 body.prop(self, "number")
                 body.prop(self, "close_gaps")
+
+    def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Meshes that are cut."""
+        return cut_objects(context)
 
     def remember_view(self, view: cutline.View) -> None:
         """Keep the view in the properties, so that the redo panel cuts the same again."""
@@ -267,26 +311,25 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         direction /= np.linalg.norm(direction)
         return cutline.View(np.array(self.view_eye, float), direction, self.view_kind == "PERSPECTIVE")
 
-    def _line(
-        self, context: bpy.types.Context, target: Target
-    ) -> tuple[np.ndarray, cutsweep.Sweep, list[str]]:
-        """Return stroke and sweep about the target's origin, and what the user should know of them."""
+    def _line(self, context: bpy.types.Context) -> tuple[np.ndarray, bool, cutsweep.Sweep, list[str]]:
+        """Return points and sweep in the world, whether the stroke is closed, and what the user should know of them."""
         view = self._view(context)
         notes: list[str] = []
+        cyclic = False
         if self.stroke:
-            points, cyclic = np.array([point.location for point in self.stroke], float), False
-            close_gaps = 0.0
+            points = np.array([point.location for point in self.stroke], float)
         elif self.source == "DRAWN":
             raise cutsweep.CutError("the stroke has no points; call this operator from a 3D view to draw one")
         else:
             found, notes = cutline.read(context, self.number)
-            points, cyclic, close_gaps = np.asarray(found.points, float), found.cyclic, self.close_gaps
+            points, cyclic = np.asarray(found.points, float), found.cyclic
         cutsweep.require_finite(points)
         sweep, more = cutline.sweep_of(self.direction, points, view)
-        if sweep.eye is not None:
-            sweep = cutsweep.Sweep(sweep.direction, sweep.eye - target.origin)
-        stroke = cutsweep.checked(points - target.origin, cyclic=cyclic, sweep=sweep, close_gaps=close_gaps)
-        return stroke, sweep, notes + more
+        return points, cyclic, sweep, notes + more
+
+    def _gaps(self) -> float:
+        """Gaps that are closed: none of a stroke that was drawn for the cut."""
+        return 0.0 if self.stroke else self.close_gaps
 
     def _material(self) -> bpy.types.Material | None:
         if not (self.use_cap_slot and self.cap_material):
@@ -298,27 +341,44 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             )
         return material
 
-    def _tell(self, division: cutting.Division, notes: list[str], seconds: float) -> None:
+    def _tell(
+        self, divisions: list[cutting.Division], notes: list[str], missed: list[str], seconds: float
+    ) -> None:
         """Report numbers, and what the user should know."""
-        report = division.report
-        n_parts = len(division.parts)
-        triangles = sum(len(part.caps) for part in division.parts)
-        sides = 1 if self.gap else n_parts
-        caps = report["caps"] * sides
-        parts = [counted(n_parts, "piece")]
+        reports = [division.report for division in divisions]
+        sides = [1 if self.gap else len(division.parts) for division in divisions]
+        parts = [part for division in divisions for part in division.parts]
+
+        def total(name: str) -> int:
+            return sum(report[name] * n for report, n in zip(reports, sides, strict=True))
+
+        triangles = sum(len(part.caps) for part in parts)
+        text = counted(len(parts), "piece")
         if triangles:
-            parts += [
-                f"{counted(caps, 'cap')}: {counted(triangles, 'triangle')}",
-                counted(report["cap_irregular"] * sides, "irregular vertex"),
-                f"smallest angle {degrees(report['cap_min_angle']):.0f}°",
-            ]
-        self.result = ", ".join([*parts, f"{1000 * seconds:.0f} ms"])
+            text += (
+                f", {counted(total('caps'), 'cap')}: {counted(triangles, 'triangle')}, "
+                f"{counted(total('cap_irregular'), 'irregular vertex')}"
+            )
+            least = min(report["cap_min_angle"] for report in reports)
+            text += f", smallest angle {degrees(least):.0f}°"
+        self.result = f"{text}, {1000 * seconds:.0f} ms"
         self.report({"INFO"}, told(self.result))
         if notes:
             self.report({"INFO"}, told(listed(notes)))
-        warnings = warnings_of(report, capped=self.use_cap)
+        summed = {
+            name: sum(report[name] for report in reports)
+            for name in ("open_lines", "uncapped", "folded", "reduced_caps")
+        }
+        warnings = missed + warnings_of(summed, capped=self.use_cap)
         if warnings:
             self.report({"WARNING"}, told(listed(warnings)))
+
+
+def cut_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Meshes that a stroke cuts, the active one first: those that are selected, or in Edit Mode those being edited."""
+    active = context.view_layer.objects.active
+    others = context.objects_in_mode if context.mode == "EDIT_MESH" else context.selected_objects
+    return [active, *(ob for ob in others if ob.type == "MESH" and ob != active)]
 
 
 def warnings_of(report: dict[str, Any], *, capped: bool) -> list[str]:
@@ -326,23 +386,23 @@ def warnings_of(report: dict[str, Any], *, capped: bool) -> list[str]:
     warnings = []
     if capped and report["open_lines"]:
         n = report["open_lines"]
-        lines = counted(n, "cut line")
-        to_do = "close the mesh first (Grid Patch Fill) to get one"
         warnings.append(
-            f"{lines} ends at the border of the mesh and has no cap; {to_do}"
-            if n == 1
-            else f"{lines} end at the border of the mesh and have no cap; {to_do}"
+            f"{counted(n, 'cut line')} {'ends' if n == 1 else 'end'} at the border of the mesh and "
+            f"{'has' if n == 1 else 'have'} no cap; close the mesh first (Grid Patch Fill) to get one"
         )
     if capped and report["uncapped"]:
         n = report["uncapped"]
         warnings.append(f"{counted(n, 'cut line')} left open, since nothing of the mesh lies inside")
+    if report["reduced_caps"]:
+        n = report["reduced_caps"]
+        warnings.append(
+            f"{counted(n, 'cap')} {'bulges' if n == 1 else 'bulge'} less than the model around, or "
+            f"{'lies' if n == 1 else 'lie'} flat, to stay inside it"
+        )
     if report["folded"]:
         n = report["folded"]
-        caps = counted(n, "cap")
         warnings.append(
-            f"{caps} is folded, since the mesh cuts through itself there"
-            if n == 1
-            else f"{caps} are folded, since the mesh cuts through itself there"
+            f"{counted(n, 'cap')} {'is' if n == 1 else 'are'} folded, since the mesh cuts through itself there"
         )
     return warnings
 

@@ -10,8 +10,9 @@ import numpy as np
 from bpy_extras import view3d_utils
 from mathutils import Vector
 
-from .. import drawnline
+from .. import api, cutline, cutsweep, cutting, drawnline
 from ..cutline import View
+from ..cutobject import Target
 from ..telling import told
 
 _NAVIGATION = {
@@ -28,7 +29,8 @@ _MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
 
 _DRAW = "Drag: draw the cut    Ctrl: straight line    Back to the start: closed cut    Esc: cancel"
 _CHOOSE = "Click: keep this side    Enter or B: keep both    D: draw again    Esc: cancel"
-_AGAIN = f"That was a click. {_DRAW}"
+_NOTHING = "The line crosses no selected mesh    D: draw again    Esc: cancel"
+_AGAIN = "That was a click. " + _DRAW
 
 _LINE, _AHEAD, _KEPT = (1.0, 0.75, 0.2, 1.0), (1.0, 0.75, 0.2, 0.35), (0.3, 0.75, 1.0, 0.45)
 _BAND = 56.0
@@ -42,6 +44,10 @@ class Preview:
         self.points: list[tuple[float, float]] = []
         self.line: np.ndarray | None = None
         """The finished line."""
+        self.extended = False
+        """The ends are continued to infinity."""
+        self.ends: np.ndarray | None = None
+        """(2, 2) otherwise, where they end."""
         self.left: bool | None = None
         """The side that a click would keep."""
         self._handler = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_PIXEL")
@@ -61,13 +67,13 @@ class Preview:
         import gpu
 
         gpu.state.blend_set("ALPHA")
+        whole = line
+        if self.ends is not None or (self.extended and not drawnline.is_closed(line)):
+            whole = drawnline.extended(line, self.ends, float(self.region.width + self.region.height))
         if self.line is not None and self.left is not None:
-            _draw_band(*drawnline.band(line, _BAND, left=self.left))
-        if not (drawnline.is_closed(line) or np.array_equal(line[0], line[-1])):
-            reach = float(self.region.width + self.region.height)
-            for end, before in ((line[0], line[1]), (line[-1], line[-2])):
-                ahead = (end - before) / max(float(np.linalg.norm(end - before)), 1e-9)
-                _draw_line(np.stack([end, end + reach * ahead]), _AHEAD, 1.5)
+            _draw_band(*drawnline.band(whole, _BAND, left=self.left))
+        if len(whole) > len(line):
+            _draw_line(whole, _AHEAD, 1.5)
         _draw_line(line, _LINE, 3.0)
         gpu.state.blend_set("NONE")
 
@@ -110,10 +116,10 @@ class DrawnCut:
             return {"CANCELLED"}
         self._area, self._window = context.area, context.window
         self._preview = Preview()
+        self._preview.extended = self.extend_ends
         self._drawing = False
         context.window.cursor_modal_set("KNIFE")
         context.workspace.status_text_set(told(_DRAW, "interface"))
-        context.area.header_text_set(told(_DRAW, "interface"))
         context.window_manager.modal_handler_add(self)
         pressed = event.type == "LEFTMOUSE" and event.value == "PRESS"
         if pressed and context.region is not None and context.region.type == "WINDOW":
@@ -185,11 +191,39 @@ class DrawnCut:
         points = np.array(preview.points, float)
         if drawnline.length(points) < drawnline.SHORTEST:
             preview.points = []
-            self._area.header_text_set(told(_AGAIN, "interface"))
+            context.workspace.status_text_set(told(_AGAIN, "interface"))
             return
         preview.line = drawnline.smoothed(points)
-        self._area.header_text_set(told(_CHOOSE, "interface"))
-        context.workspace.status_text_set(told(_CHOOSE, "interface"))
+        crosses = self._find_ends(context)
+        context.workspace.status_text_set(told(_CHOOSE if crosses else _NOTHING, "interface"))
+
+    def _find_ends(self, context: bpy.types.Context) -> bool:
+        """Find how far the ends of the line are continued, over all meshes; false if it crosses none."""
+        preview = self._preview
+        if self.extend_ends or np.array_equal(preview.line[0], preview.line[-1]):
+            return True
+        region, region_data = preview.region, preview.region.data
+        points, view = np.array(self._world_points(context), float), View.of(region_data)
+        sweep, _ = cutline.sweep_of("VIEW", points, view)
+        before = [preview.line[0] - preview.line[1], preview.line[-1] - preview.line[-2]]
+        ends, farthest, crosses = [preview.line[0], preview.line[-1]], [0.0, 0.0], False
+        for ob in self.targets(context):
+            try:
+                target = Target(ob)
+                stroke, own = target.line(points, sweep, cyclic=False, close_gaps=0.0)
+                reach = cutting.reach(target.model, stroke, own) + target.origin
+            except (api.NativeError, cutsweep.CutError):
+                continue  # it is told, with the reason, once the cut is made
+            crosses = True
+            for k, place in enumerate(reach):
+                seen = view3d_utils.location_3d_to_region_2d(region, region_data, Vector(place))
+                if seen is None:
+                    continue
+                ahead = float((np.array(seen) - preview.line[-k]) @ before[k])
+                if ahead > farthest[k]:
+                    ends[k], farthest[k] = np.array(seen), ahead
+        preview.ends = np.stack(ends)
+        return crosses
 
     def _choose(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         preview = self._preview
@@ -203,8 +237,7 @@ class DrawnCut:
             if event.type in {"RET", "NUMPAD_ENTER", "B"}:
                 return self._cut(context, "BOTH")
             if event.type == "D":
-                preview.line, preview.left, preview.points = None, None, []
-                self._area.header_text_set(told(_DRAW, "interface"))
+                preview.line, preview.left, preview.ends, preview.points = None, None, None, []
                 context.workspace.status_text_set(told(_DRAW, "interface"))
                 self._area.tag_redraw()
         return {"RUNNING_MODAL"}
@@ -213,12 +246,8 @@ class DrawnCut:
         """Keep line and view in the properties, and do what a script would do."""
         preview = self._preview
         region_data = preview.region.data
-        ob = context.view_layer.objects.active
-        middle = sum((Vector(corner) for corner in ob.bound_box), Vector()) / 8
-        depth = ob.matrix_world @ middle
         self.stroke.clear()
-        for place in preview.line.tolist():
-            point = view3d_utils.region_2d_to_location_3d(preview.region, region_data, place, depth)
+        for point in self._world_points(context):
             self.stroke.add().location = point
         if np.array_equal(preview.line[0], preview.line[-1]):
             self.stroke[-1].location = self.stroke[0].location
@@ -226,6 +255,15 @@ class DrawnCut:
         self.keep, self.direction, self.source = keep, "VIEW", "DRAWN"
         self._end(context)
         return self.execute(context)
+
+    def _world_points(self, context: bpy.types.Context) -> list[Vector]:
+        """The line at the distance of the active object."""
+        region = self._preview.region
+        ob = context.view_layer.objects.active
+        middle = sum((Vector(corner) for corner in ob.bound_box), Vector()) / 8
+        depth = ob.matrix_world @ middle
+        places = self._preview.line.tolist()
+        return [view3d_utils.region_2d_to_location_3d(region, region.data, place, depth) for place in places]
 
     def _end(self, context: bpy.types.Context) -> None:
         """Leave nothing behind in the window."""
@@ -235,5 +273,4 @@ class DrawnCut:
         self._preview = None
         self._window.cursor_modal_restore()
         context.workspace.status_text_set(None)
-        self._area.header_text_set(None)
         self._area.tag_redraw()

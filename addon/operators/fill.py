@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from time import perf_counter
 
@@ -66,6 +67,14 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         description="Join pairs of triangles to quads where that gives good ones",
         default=False,
     )
+    keep_hard: BoolProperty(
+        name="Keep Hard Edges",
+        description=(
+            "Continue hard edges of the surroundings (bent by more than 30 degrees, or marked sharp) to where they "
+            "meet, as at a corner of a cube"
+        ),
+        default=False,
+    )
     result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
@@ -93,7 +102,8 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         try:
             with Pointer(context) as pointer:
                 for index, job in enumerate(jobs):
-                    job.fill(self.smooth.lower(), pointer.part(index / len(jobs), (index + 1) / len(jobs)))
+                    part = pointer.part(index / len(jobs), (index + 1) / len(jobs))
+                    job.fill(self.smooth.lower(), part, keep_hard=self.keep_hard)
         except api.CancelledError:
             self.report({"WARNING"}, told("Cancelled; nothing was filled"))
             return {"CANCELLED"}
@@ -163,7 +173,12 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         else:
             layout.prop(self, "close_chains")
         layout.prop(self, "smooth")
+        layout.prop(self, "keep_hard")
         layout.prop(self, "use_quads")
+
+
+_HARD = math.radians(30.0)
+"""Edges with more than this angle between their faces are hard."""
 
 
 @dataclass
@@ -204,7 +219,7 @@ class Job:
                 self.found.problems.append(problem)
                 self.found.holes.remove(hole)
 
-    def fill(self, smooth: str, progress: api.Progress) -> None:
+    def fill(self, smooth: str, progress: api.Progress, *, keep_hard: bool = False) -> None:
         """Fill the holes, without touching the mesh."""
         if not self.found.holes:
             return
@@ -217,6 +232,8 @@ class Job:
             smooth=smooth,
             polygons=at.polygons,
             poses=at.poses,
+            sharp=_HARD if keep_hard else None,
+            creases=self.edited.sharp_edges() if keep_hard else None,
             progress=progress,
         )
         for loop, fill in zip(loops, fills, strict=True):
@@ -230,6 +247,7 @@ class Job:
                     first=len(at.positions),
                     vertices=fill.vertices @ at.to_local.T,
                     triangles=fill.triangles,
+                    creases=fill.creases,
                     poses=[pose @ at.to_local.T for pose in fill.poses],
                     extend=fill.extend,
                 )
@@ -292,6 +310,11 @@ def warnings_of(reports: list[dict]) -> list[str]:
             f"{faces} around the holes is turned the other way than most; recalculate the normals"
             if conflicts == 1
             else f"{faces} around the holes are turned the other way than most; recalculate the normals"
+        )
+    smoothed = sum(report.get("creases", 0) > report.get("creases_kept", 0) for report in reports)
+    if smoothed:
+        warnings.append(
+            f"{counted(smoothed, 'patch')} made without hard edges: those at the hole meet in no line or corner"
         )
     repaired = sum(report.get("repaired", 0) for report in reports)
     if repaired:

@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
-from .. import api, entries, meshes, outlines, profilecurve, strokes
+from .. import api, entries, frames, meshes, outlines, profilecurve, strokes
 from ..density import measure
 from ..live import engine
 from ..progress import Pointer
@@ -65,7 +65,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
     update_existing: BoolProperty(
         name="Update Existing",
         description="Replace the mesh of the object made from the stroke before, and keep all else of it",
-        default=False,
+        default=True,
         options={"SKIP_SAVE"},
     )
     collection: EnumProperty(
@@ -136,10 +136,13 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         if reading.wanted is not None:
             sketches, refused = _only(reading.wanted, sketches, chosen, refused)
         failures += refused
+        known: set[tuple[str, str, int]] = set()
         if self.update_existing:
             notes += meshes.made_from_holes(context, sketches)
             sketches, refused = meshes.separate_blocked(context, sketches)
             failures += refused
+            known = set(meshes.made_before(context))
+            sketches = meshes.localized(context, sketches, self.close_gaps)
         options = self.sketch_options(), self.body_options()
         if self.may_wait and api.expected_triangles(sketches, options[0]) > LONG:
             return self.wait(context, lambda progress: api.build(sketches, *options, progress))
@@ -152,6 +155,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         failures += refused
         if not bodies:
             return self._refuse(*map(str, failures))
+        notes += _there_already(sum(body.sketch.stroke.key in known for body in bodies))
         made: list[bpy.types.Object] = []
         notes += meshes.place(
             context,
@@ -197,11 +201,14 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
 
     def _link(self, context: bpy.types.Context, bodies: list[api.Body], made: list[bpy.types.Object]) -> None:
         """Let the bodies know their drawings, and those that know them already the options they have now."""
+        context.view_layer.update()
         for body, ob in zip(bodies, made, strict=True):
             source = context.view_layer.objects.get(body.sketch.stroke.source)
-            if source is not None and (self.follow or engine.is_linked(ob)):
+            if source is not None and (self.follow or frames.is_linked(ob)):
                 follow = self.follow or ob.gridmesh_live.enabled
                 engine.link(ob, body.sketch.stroke, source, self, follow=follow)
+                if follow:
+                    frames.carry(ob, source, body.sketch.stroke.layer)
                 if self.curve_points() is None and profilecurve.holder(ob) is not None:
                     engine.remake(ob)  # with the curve that it has
 
@@ -211,8 +218,9 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         objects = strokes.source_objects(context)
         if objects:
             return strokes.read_objects(context, objects)
-        if self.update_existing:
-            return _read_for(context, meshes.selected_bodies(context))
+        selected = meshes.selected_bodies(context) if self.update_existing else []
+        if selected:
+            return _read_for(context, selected)
         return strokes.Reading(notes=["no object with strokes is selected; select a drawing or a curve"])
 
     def _chosen(self, found: list[outlines.Stroke]) -> list[outlines.Stroke]:
@@ -238,6 +246,18 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         )
         gaps = sum(body.sketch.closed_gap > 0 for body in bodies)
         return f"{text}; {counted(gaps, 'gap')} closed" if gaps else text
+
+
+def _there_already(updated: int) -> list[str]:
+    """Say that bodies were updated that had been made before."""
+    if not updated:
+        return []
+    what = (
+        "1 body was there already and was"
+        if updated == 1
+        else f"{updated} bodies were there already and were"
+    )
+    return [f"{what} updated; turn off Update Existing to make another"]
 
 
 def _read_for(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> strokes.Reading:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 
@@ -128,6 +129,92 @@ def test_a_million_holes_and_too_much_memory(tmp_path):
     assert found["i4"]["status"] == "ok"
     # Libraries and the file's own pages come on top of what is limited.
     assert max(one.get("peak_megabytes") or 0 for one in found.values()) < megabytes + 500
+
+
+def test_two_signals_end_a_run_with_its_report_whole(tmp_path):
+    items = [
+        item(1, SQUARE, "out/a.ply"),
+        item(2, SQUARE, "out/long.ply", triangles=5_000_000),
+        item(3, SQUARE, "out/b.ply"),
+    ]
+    path = write_jobs(tmp_path, items)
+    words = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command(path, "--max-seconds", "0"), cwd=ROOT, **words) as process:
+        assert "ok i1" in process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        assert process.stderr.readline() == "\n"
+        process.send_signal(signal.SIGTERM)
+        process.stdout.read()
+    assert process.returncode == 130
+    found = {one: result["status"] for one, result in results(tmp_path).items()}
+    assert found in ({"i1": "ok", "i2": "error"}, {"i1": "ok"}), (
+        "the first signal may come before the second item"
+    )
+    assert list(outputs(tmp_path)) == ["a.ply"]
+
+
+def test_names_that_are_no_unicode_are_inputs_and_outputs(tmp_path):
+    """All items are done, whatever reads and writes them; the report names them in escapes."""
+    name = os.fsdecode(b"caf\xe9")
+    (tmp_path / f"{name}.json").write_bytes(SQUARE.read_bytes())
+    (tmp_path / f"{name}.svg").write_text(f'{HEAD}<circle cx="50" cy="50" r="40"/></svg>')
+    suffixes = ("ply", "obj", "stl", "glb", "blend")
+    items = [
+        job(f"{name} {s}", "strokes", f"{name}.json", f"out/{name}.{s}", triangles=100) for s in suffixes
+    ]
+    items += [job(f"{name} back {s}", "fill", f"out/{name}.{s}", f"back/{name}{s}.{s}") for s in suffixes]
+    items += [job(f"{name} svg", "strokes", f"{name}.svg", f"{name}.ply", triangles=100)]
+    ran = batch(write_jobs(tmp_path, items))
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert list(results(tmp_path)) == [one["id"] for one in items]
+    ran = run("strokes", tmp_path, "-o", tmp_path / "many" / "{name}.ply", "--triangles", "100")
+    assert ran.returncode == 1, "two inputs have the same name"
+    assert [one["status"] for one in results(tmp_path / "many").values()] == ["ok", "error"]
+
+
+def test_damaged_meshes_and_such_without_faces_are_not_ok(tmp_path):
+    def write(name, data):
+        (tmp_path / name).write_bytes(data)
+        return name
+
+    head = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    points = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+    cases = [
+        ("error", write("cut.stl", bytes(80) + b"\xe8\3\0\0" + bytes(100))),
+        ("error", write("noise.stl", bytes(range(256)) * 9)),
+        ("warning", write("points.ply", head + b"end_header\n" + np.eye(3, dtype="<f4").tobytes())),
+        ("warning", write("points.obj", points)),
+        ("warning", write("none.stl", bytes(84))),
+        ("warning", write("half.obj", points + b"f 1 2 3\nf 1 2")),
+        ("warning", write("missing.obj", points + b"f 1 2 3\nf 1 2 9\n")),
+        ("warning", write("nan.obj", points + b"v nan 0 0\nf 1 2 3\nf 3 4 5\n")),
+        ("ok", write("whole.obj", points + b"f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")),
+    ]
+    ran = batch(write_jobs(tmp_path, [job(name, "fill", name) for _, name in cases]))
+    assert ran.returncode == 1, ran.stdout + ran.stderr
+    found = [(one["status"], name) for name, one in results(tmp_path).items()]
+    assert found == cases, ran.stdout
+
+
+def test_an_item_without_end_is_no_item_of_the_runner(tmp_path):
+    """Devices and pipes, by links, as buffers, as strokes and as what was written before."""
+    os.mkfifo(tmp_path / "pipe.ply")
+    (tmp_path / "zero.ply").symlink_to("/dev/zero")
+    (tmp_path / "uri.gltf").write_text('{"buffers": [{"byteLength": 9, "uri": "/dev/zero"}]}')
+    (tmp_path / "nul.gltf").write_text('{"buffers": [{"byteLength": 9, "uri": "a%00.bin"}]}')
+    (tmp_path / "out").mkdir()
+    os.mkfifo(tmp_path / "out" / "last.ply")
+    items = [job(name, "fill", name) for name in ("pipe.ply", "zero.ply", "uri.gltf", "nul.gltf")]
+    items.append(job("stroke", "cut", SHAPES / "none.ply", stroke="pipe.csv"))
+    items.append(item("last", SQUARE, "out/last.ply"))
+    path = write_jobs(tmp_path, items)
+    ran = batch(path)
+    assert ran.returncode == 1, ran.stdout + ran.stderr
+    kinds = [one.get("kind") for one in results(tmp_path).values()]
+    assert kinds == ["not_a_file", "not_a_file", "outside", "bad_path", "filenotfounderror", None]
+    (tmp_path / "out" / "last.ply").unlink()
+    os.mkfifo(tmp_path / "out" / "last.ply")
+    assert "1 done, 5 failed, 0 skipped" in batch(path, "--resume").stdout
 
 
 def test_items_that_take_too_long_are_stopped(tmp_path):

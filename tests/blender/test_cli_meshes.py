@@ -92,15 +92,14 @@ def test_fill_reads_every_format_alike(tmp_path, balls):
 
 
 def test_the_buffer_of_a_gltf_is_part_of_the_input(tmp_path):
-    from addon.cli import jobs
+    from addon.cli import files
 
     ball()
     path = save(tmp_path / "a ball.gltf")
-    (job,) = jobs.read(write_jobs(tmp_path, [{"id": "a", "op": "fill", "in": path.name, "out": "a.ply"}]))
-    assert [file.name for file in job.files()] == ["a ball.gltf", "a ball.bin"]
-    before = job.key()
-    job.files()[1].write_bytes(b"other")
-    assert job.key() != before
+    before, found = files.key_of([], [str(path)], 1e9, outside=False)
+    assert [file.name for file in found] == ["a ball.gltf", "a ball.bin"]
+    found[1].write_bytes(b"other")
+    assert files.key_of([], [str(path)], 1e9, outside=False)[0] != before
 
 
 def test_a_blend_file_keeps_everything_else(tmp_path):

@@ -144,6 +144,11 @@ def closed_mesh():
     return all_selected(bpy.context.object)
 
 
+def closed_cube():
+    bpy.ops.mesh.primitive_cube_add()
+    return all_selected(bpy.context.object, "VERT")
+
+
 CASES = {
     # name: (scene, options, message, vertices selected afterwards or None)
     "nothing selected": (nothing, {}, "nothing is selected; select the edges around a hole", None),
@@ -163,7 +168,13 @@ CASES = {
     "single edge closed": (single_wire, {"close_chains": True}, "select at least three edges", 2),
     "lone point": (lone_point, {}, "vertex 0 lies on no hole", 1),
     "empty mesh": (empty_mesh, {}, "nothing is selected", None),
-    "closed mesh": (closed_mesh, {}, "has faces on both sides|nothing is selected", None),
+    "closed mesh": (
+        closed_mesh,
+        {},
+        "^Error: What is selected has no open edges; select an edge or a vertex",
+        42,
+    ),
+    "closed cube": (closed_cube, {}, "^Error: What is selected has no open edges", 8),
 }
 
 

@@ -115,7 +115,7 @@ class TestMaterials:
         assert "own colour" not in capfd.readouterr().out
         ink.grease_pencil.color = (0, 0, 1, 1)
         activate(ob)
-        run_one()
+        run_one(update_existing=False)
         assert "Material 'Ink Surface' was there and is used with its own colour" in capfd.readouterr().out
 
     def test_painted_strokes_are_told(self, capfd):

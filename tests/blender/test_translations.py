@@ -42,7 +42,7 @@ def of_layouts():
             ):
                 yield from of_tool(node)
             if isinstance(node, ast.Call):
-                if ast.unparse(node.func).endswith("pgettext_iface"):
+                if ast.unparse(node.func).endswith(("pgettext_iface", "pgettext_tip")):
                     literals = (
                         part.value for part in ast.walk(node.args[0]) if isinstance(part, ast.Constant)
                     )

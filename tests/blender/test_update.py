@@ -14,6 +14,7 @@ from drawings import (
     run,
     run_one,
     vertices,
+    world_vertices,
 )
 
 
@@ -56,8 +57,50 @@ def test_update_keeps_all_but_the_geometry(drawn):
     assert bpy.context.view_layer.objects.active == body
 
 
+def test_pressed_twice_it_updates_and_says_so(drawn, capsys):
+    ob, body = drawn
+    _add(ob, at(circle(), 5, 0, 0))
+    (other,) = run()
+    assert "1 body was there already and was updated" in capsys.readouterr().out
+    assert np.allclose(np.array(other.matrix_world)[:3, 3], [5, 0, 0], atol=1e-5)
+    activate(ob, body, other)
+    assert run() == []
+    assert "2 bodies were there already and were updated" in capsys.readouterr().out
+
+
+def test_live_bodies_and_their_outlines_pressed_with_everything_selected(awake):
+    ob = grease_pencil([circle(), at(bean(), 4, 0, 0)])
+    bodies = run(follow=True)
+    before = [world_vertices(body) for body in bodies]
+    activate(ob, *bodies)
+    assert run() == []
+    for body, points in zip(bodies, before, strict=True):
+        assert np.allclose(world_vertices(body), points, atol=1e-5)
+
+
+def test_handwork_is_not_lost_by_an_update(drawn):
+    ob, body = drawn
+    body.data.vertices[7].co.z += 0.3
+    before = vertices(body.data)
+    for again in ({}, {"update_existing": True}):
+        activate(ob)
+        with pytest.raises(RuntimeError, match="changed by hand"):
+            bpy.ops.object.gridmesh_from_strokes(triangles=500, **again)
+        assert np.array_equal(vertices(body.data), before)
+    check_body(run_one(update_existing=False))
+
+
+def _add(ob, points):
+    drawing = ob.data.layers[0].current_frame().drawing
+    drawing.add_strokes([len(points)])
+    drawing.strokes[-1].cyclic = True
+    for point, place in zip(drawing.strokes[-1].points, points, strict=True):
+        point.position = place
+    drawing.tag_positions_changed()
+
+
 def test_without_update_a_second_object_is_made(drawn):
-    assert run_one().name == "Drawing.mesh.001"
+    assert run_one(update_existing=False).name == "Drawing.mesh.001"
 
 
 def test_update_follows_the_stroke(drawn):
@@ -65,7 +108,8 @@ def test_update_follows_the_stroke(drawn):
     redraw(ob, at(bean() * [1, 2, 1], 5, 0, 0))
     run(update_existing=True)
     points = at(bean() * [1, 2, 1], 5, 0, 0)
-    assert np.allclose(body.location, (points.min(axis=0) + points.max(axis=0)) / 2, atol=1e-5)
+    bounds = [end(world_vertices(body), axis=0)[:2] for end in (np.min, np.max)]
+    assert np.allclose(bounds, [end(points, axis=0)[:2] for end in (np.min, np.max)], atol=0.02)
     assert np.allclose(body.dimensions[:2], np.ptp(points, axis=0)[:2], rtol=0.02)
 
 
@@ -78,16 +122,14 @@ def test_update_keeps_where_the_body_was_put(drawn):
     before = body.matrix_world.copy()
     run(triangles=900, update_existing=True)
     assert body.matrix_world == before
+    run(triangles=500, update_existing=True)
     activate(ob)
     redraw(ob, at(bean(), 1, 0, 0))
+    there = world_vertices(body)
     run(update_existing=True)
-    assert np.allclose(body.location, before @ bpy_vector(1, 0, 0), atol=1e-5)
-
-
-def bpy_vector(*values):
-    from mathutils import Vector
-
-    return Vector(values)
+    assert body.matrix_world == before
+    along = np.array(before)[:3, :3] @ [1, 0, 0]
+    assert np.allclose(world_vertices(body).mean(axis=0), there.mean(axis=0) + along, atol=0.01)
 
 
 def test_update_keeps_flat_shading(drawn):
@@ -129,6 +171,20 @@ def test_update_ignores_bodies_that_left_the_scene(drawn):
     count = len(body.data.polygons)
     check_body(run_one(triangles=900, update_existing=True))
     assert len(body.data.polygons) == count
+
+
+def test_bodies_of_0_1_0_are_updated_in_place(drawn):
+    ob, body = drawn
+    place = [value for row in body.matrix_world for value in row]
+    body["gridmesh_stroke"] = {"source": "Drawing", "layer": "Lines", "stroke": 0, "matrix": place}
+    body.data.property_unset("gridmesh_made")
+    body.location.z = 3
+    before = vertices(body.data)
+    activate(ob)
+    assert run() == []
+    assert np.allclose(vertices(body.data), before, atol=1e-5)
+    assert body.location.z == 3
+    assert body["gridmesh_stroke"].get("matrix") is None
 
 
 def test_update_of_several_strokes_matches_each():
@@ -182,8 +238,8 @@ def test_shape_of_an_updated_body_is_that_of_a_new_one(drawn):
     ob, body = drawn
     run(triangles=900, update_existing=True)
     activate(ob)
-    fresh = run_one(triangles=900)
-    assert np.array_equal(vertices(fresh.data), vertices(body.data))
+    fresh = run_one(triangles=900, update_existing=False)
+    assert np.allclose(world_vertices(fresh), world_vertices(body), atol=1e-5)
 
 
 class TestBodySelected:
@@ -214,5 +270,5 @@ class TestBodySelected:
         activate(body)
         before = fingerprint()
         with pytest.raises(RuntimeError, match="No object with strokes is selected"):
-            bpy.ops.object.gridmesh_from_strokes()
+            bpy.ops.object.gridmesh_from_strokes(update_existing=False)
         assert fingerprint() == before

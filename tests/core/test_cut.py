@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import doctest
 import inspect
+import pickle
 
 import gridmesh
 import numpy as np
@@ -282,3 +283,60 @@ def test_documentation():
     for cls in (gridmesh.Cut, gridmesh.Piece):
         for name in vars(cls):
             assert name.startswith("_") or f"\n{name} : " in inspect.getdoc(cls), name
+
+
+def test_cuts_and_pieces_are_pickled():
+    done = gridmesh.cut(*torus(), [[-4, 0.3, 0], [4, 0.5, 0]], direction=DOWN, edge_length=0.3)
+    for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+        again = pickle.loads(pickle.dumps(done, protocol))
+        assert again.report == done.report
+        for one, other in zip(done.pieces, again.pieces, strict=True):
+            assert one.side == other.side
+            for name in (
+                "vertices",
+                "corners",
+                "offsets",
+                "source_face",
+                "source_vertices",
+                "source_weights",
+            ):
+                before, after = getattr(one, name), getattr(other, name)
+                check_array(after, before.dtype, before.shape[1] if before.ndim == 2 else None)
+                assert np.array_equal(before, after)
+            for before, after in zip(one.cap_loops, other.cap_loops, strict=True):
+                assert np.array_equal(before, after)
+                assert not after.flags.writeable
+
+
+def test_ends_go_as_far_as_what_the_stroke_crosses():
+    """Two cubes side by side, the stroke across the first one."""
+    vertices = np.vstack([CUBE, CUBE + [3, 0, 0]])
+    faces = np.vstack([QUADS, QUADS + 8])
+    short = [[0.2, 0.5, 0], [0.7, 0.5, 0]]
+    all_of_it = gridmesh.cut(vertices, faces, short, direction=DOWN)
+    one = gridmesh.cut(vertices, faces, short, direction=DOWN, extend_ends=False)
+    assert (all_of_it.report["caps"], one.report["caps"]) == (2, 1)
+    np.testing.assert_allclose(sorted(one.report["volumes"]), [0.5, 1.5])
+    ends = gridmesh.cut_reach(vertices, faces, short, direction=DOWN)
+    check_array(ends, np.float64, 3)
+    np.testing.assert_allclose(ends, [[0, 0.5, 0], [1, 0.5, 0]], atol=1e-12)
+    with pytest.raises(gridmesh.GridMeshError, match="does not divide") as refused:
+        gridmesh.cut_reach(vertices, faces, [[1.5, 0.5, 0], [2, 0.5, 0]], direction=DOWN)
+    assert refused.value.kind == "stroke_misses"
+
+
+def test_a_half_is_capped_up_to_its_plane_of_symmetry():
+    half = np.delete(QUADS, 0, axis=0)  # without its side at x = 0
+    options = {"direction": DOWN, "edge_length": 0.2}
+    assert gridmesh.cut(CUBE, half, ACROSS, **options).report["open_lines"] == 1
+    plane = [[[0, 0, 0], [1, 0, 0]]]
+    done = gridmesh.cut(CUBE, half, ACROSS, mirrors=plane, **options)
+    assert (done.report["open_lines"], done.report["caps"]) == (0, 1)
+    for piece in done.pieces:
+        ends = piece.vertices[open_edges(piece)]
+        assert len(ends) > 4
+        np.testing.assert_allclose(ends[..., 0], 0, atol=1e-12)
+    with pytest.raises(TypeError, match="mirrors"):
+        gridmesh.cut(CUBE, half, ACROSS, mirrors="x", **options)
+    with pytest.raises(gridmesh.GridMeshError, match="mirrors"):
+        gridmesh.cut(CUBE, half, ACROSS, mirrors=[[[0, 0, 0], [0, 0, 0]]], **options)

@@ -185,6 +185,12 @@ class TestProblems:
     def test_nothing(self):
         assert "nothing is selected" in self.only(select(RING)).reason
 
+    def test_only_closed_faces(self):
+        """Edges and vertices of selected faces are not given; that something is selected is."""
+        edges, _ = edges_of(RING)
+        found = of_selection(edges, [], [], close_chains=False, strict=True, anything=True)
+        assert self.only(found).reason.startswith("what is selected has no open edges;")
+
     def test_vertex_on_no_hole(self):
         faces = grid(4, 4)
         assert self.only(select(faces, vertices=[12])).reason.startswith("vertex 12 lies on no hole")

@@ -110,31 +110,41 @@ def live_sculpt():
 
 
 def live_move():
-    """The outline's object is moved with G: the body comes along; Esc during the drag brings both back."""
+    """The outline alone is moved with G: the mesh comes along inside the object; Esc brings both back, and undo."""
     yield from begin()
     x, y = stage.middle()
     yield from stroke(ring((x - 100, y), 120, 60, wobble=0.2))
     yield from tool("builtin.select_box")
     body = bodies()[0]
-    start, triangles = body.matrix_world.translation.copy(), len(body.data.polygons)
+    start, place, triangles = middle(body), body.matrix_world.copy(), len(body.data.polygons)
     select(body.gridmesh_live.source)
+    bpy.ops.ed.undo_push(message="Select")
     for end in ("ESC", "LEFTMOUSE"):
         yield from stage.move(x, y)
         yield from stage.key("G")
         for k in range(12):
             yield from stage.move(x + 12 * k, y + 4 * k)
-        assert (body.matrix_world.translation - start).length > 0.5, "it did not come along"
+        assert np.linalg.norm(middle(body) - start) > 0.5, "it did not come along"
         yield from stage.press(end, "PRESS")
         yield from stage.press(end, "RELEASE")
         yield 1.5
-        moved = (body.matrix_world.translation - start).length
+        moved = np.linalg.norm(middle(body) - start)
         assert (moved > 0.5) == (end == "LEFTMOUSE"), end
+    assert body.matrix_world == place, "the object was moved"
     assert abs(len(body.data.polygons) - triangles) < 0.1 * triangles
     yield from stage.picture("live_moved")
     yield from stage.key("Z", ctrl=True)
     yield 1.0
     (body,) = bodies()
-    assert (body.matrix_world.translation - start).length < 1e-5, "undo left the body behind"
+    assert np.linalg.norm(middle(body) - start) < 1e-5, "undo left the body behind"
+
+
+def middle(body):
+    """Middle of a body's bounds, in its own space."""
+    points = np.empty(len(body.data.vertices) * 3, np.float32)
+    body.data.vertices.foreach_get("co", points)
+    points = points.reshape(-1, 3).astype(float)
+    return (points.min(axis=0) + points.max(axis=0)) / 2
 
 
 def live_panel():

@@ -12,9 +12,16 @@ import draw_scenes
 import first_scenes
 import live_scenes
 import mesh_scenes
+import together_scenes
 from stage import perform
 
-SCENES = (*first_scenes.SCENES, *mesh_scenes.SCENES, *draw_scenes.SCENES, *live_scenes.SCENES)
+SCENES = (
+    *first_scenes.SCENES,
+    *mesh_scenes.SCENES,
+    *draw_scenes.SCENES,
+    *live_scenes.SCENES,
+    *together_scenes.SCENES,
+)
 
 
 def finish(results):

@@ -54,6 +54,11 @@ pub fn triangles(py: Python<'_>, triangles: &[[u32; 3]]) -> PyResult<Py<PyArray2
     table(py, triangles.iter().map(|t| t.map(index)).collect())
 }
 
+/// (n, 2) int32.
+pub fn edges(py: Python<'_>, edges: &[[u32; 2]]) -> PyResult<Py<PyArray2<i32>>> {
+    table(py, edges.iter().map(|edge| edge.map(index)).collect())
+}
+
 /// (n,) int32.
 pub fn indices(py: Python<'_>, vertices: impl Iterator<Item = u32>) -> Py<PyArray1<i32>> {
     row(py, vertices.map(index).collect())

@@ -84,7 +84,7 @@ pub fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 /// ----------
 /// patch : Patch
 /// depth : float
-///     Scales z; at 1 a circle becomes a sphere.
+///     Scales z, from 1e-9 to 1e9; at 1 a circle becomes a sphere.
 /// profile : {"round", "even", "flat", "peak"}
 ///     Cross section of the body. "round": a circle becomes a sphere, a long limb of half width w is about
 ///     1.41 w high; "even": the limb is about w high; "flat": a plateau with a rounded rim; "peak": a tent.
@@ -94,7 +94,7 @@ pub fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 ///     is 0, the others positive, from 1e-6 to 1e6; falling ones make rings and dents. Between values that rise
 ///     the curve rises. None, or evenly rising to 1: the profile as it is.
 /// front, back : float or (n,) array, optional
-///     Depth of each side, one number or one per point of the outline; None: `depth`.
+///     Depth of each side, one number or one per point of the outline: 0, or up to 1e9; None: `depth`.
 /// corner_angle : float
 ///     Drawn corners that turn by more than this (radians) stay sharp.
 /// uv : {"apart", "shared"}

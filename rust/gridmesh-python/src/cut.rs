@@ -1,9 +1,14 @@
 //! `cut` and the Python classes `Cut` and `Piece`.
 
 use glam::DVec3;
-use gridmesh::cut::{Cut as CoreCut, CutOptions, CutReport, Keep, Piece as CorePiece, Polygons, Sweep};
+use gridmesh::cut::{
+    Cut as CoreCut, CutOptions, CutReport, Keep, Mirror, Piece as CorePiece, Polygons, Side, Sweep,
+};
 use gridmesh::fill::Smooth;
-use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayLike2, PyUntypedArrayMethods};
+use numpy::{
+    AllowTypeChange, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayLike2, PyReadonlyArray1,
+    PyReadonlyArray2, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 
@@ -35,12 +40,22 @@ use crate::{arrays, reports};
 ///     False leaves the pieces open.
 /// edge_length : float, optional
 ///     Length of the edges along the cut, which are made even, and the faces along it rebuilt: what good
-///     caps need. None: the cut's edges are as the mesh's edges divide it.
+///     caps need. Of the stroke, what is within a hundredth of it counts as straight. None: the cut's edges are as the mesh's edges divide it.
 /// gap : float
 ///     Width of what is taken away between the pieces, half of it on either side of the stroke.
 /// smooth : {"flat", "tangent", "curvature"}
 ///     "flat": caps lie on the swept surface. The others bulge with the model, as fills do; caps with holes
-///     lie flat all the same.
+///     lie flat all the same. A cap that would leave the model through its far side, or meet another cap, bulges
+///     less ("reduced_caps" in the report).
+/// extend_ends : bool
+///     True continues the ends of an open stroke to infinity. False continues them only as far as the part of the mesh
+///     that the stroke itself crosses: cut lines that it does not meet stay whole, and parts of the mesh
+///     that it does not cross belong to the larger piece, or to the only one that is kept.
+/// mirrors : sequence of k pairs of a point and a normal, (k, 2, 3)
+///     Planes at which the mesh is open because its mirror image continues it there: cut lines with both ends on one of
+///     them are closed along it and capped.
+/// mirror_distance : float
+///     Vertices no farther from such a plane lie on it.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
 ///
@@ -77,8 +92,8 @@ use crate::{arrays, reports};
 /// 1.0
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, faces, stroke, *, direction = None, eye = None, keep = None, cap = None, edge_length = None, gap = None, smooth = None, progress = None),
-    text_signature = "(vertices, faces, stroke, *, direction=None, eye=None, keep='both', cap=True, edge_length=None, gap=0.0, smooth='flat', progress=None)"
+    signature = (vertices, faces, stroke, *, direction = None, eye = None, keep = None, cap = None, edge_length = None, gap = None, smooth = None, extend_ends = None, mirrors = None, mirror_distance = None, progress = None),
+    text_signature = "(vertices, faces, stroke, *, direction=None, eye=None, keep='both', cap=True, edge_length=None, gap=0.0, smooth='flat', extend_ends=True, mirrors=(), mirror_distance=0.0, progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn cut(
@@ -93,6 +108,9 @@ pub fn cut(
     edge_length: Option<&Bound<'_, PyAny>>,
     gap: Option<&Bound<'_, PyAny>>,
     smooth: Option<&Bound<'_, PyAny>>,
+    extend_ends: Option<&Bound<'_, PyAny>>,
+    mirrors: Option<&Bound<'_, PyAny>>,
+    mirror_distance: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Cut> {
     let held = read_positions(&positions_argument(vertices))?;
@@ -119,11 +137,73 @@ pub fn cut(
         let it = Argument { name: "smooth", value, allowed: "'flat', 'tangent' or 'curvature'" };
         options.smooth = it.word(&words)?;
     }
+    if let Some(value) = extend_ends {
+        options.extend_ends = Argument { name: "extend_ends", value, allowed: "True or False" }.bool()?;
+    }
+    let within = match mirror_distance {
+        Some(value) => Argument { name: "mirror_distance", value, allowed: "a number, 0 or more" }.float()?,
+        None => 0.0,
+    };
+    if let Some(value) = mirrors {
+        let it = Argument { name: "mirrors", value, allowed: "pairs of a point and a normal, (k, 2, 3)" };
+        let planes: Vec<[[f64; 3]; 2]> = value.extract().map_err(|_| it.wrong_type())?;
+        let plane = |[point, normal]: [[f64; 3]; 2]| Mirror {
+            point: DVec3::from_array(point),
+            normal: DVec3::from_array(normal).normalize_or_zero(),
+            within,
+        };
+        options.mirrors = planes.into_iter().map(plane).collect();
+    }
     let (positions, points) = (as_positions(&held)?, as_positions(&line)?);
     let faces = Polygons { corners: &corners, offsets: &offsets };
     let done = Watch::new(progress)?
         .run(py, |progress| gridmesh::cut::cut(&positions, faces, &points, &options, progress))?;
     Cut::new(py, done)
+}
+
+/// How far the ends of an open stroke are continued by `cut` with ``extend_ends=False``.
+///
+/// Parameters
+/// ----------
+/// vertices, faces, stroke, direction, eye, progress
+///     As of `cut`.
+///
+/// Returns
+/// -------
+/// (2, 3) float64
+///     The points up to which the first and the last end are continued, as far from the viewer as the ends. Takes
+///     as long as to find the faces that are cut.
+///
+/// Raises
+/// ------
+/// GridMeshError
+///     If the mesh or the stroke is not fit, or if the stroke itself crosses nothing ("stroke_misses").
+/// TypeError
+///     If an argument has a type that is not allowed.
+#[pyfunction]
+#[pyo3(
+    signature = (vertices, faces, stroke, *, direction = None, eye = None, progress = None),
+    text_signature = "(vertices, faces, stroke, *, direction=None, eye=None, progress=None)"
+)]
+pub fn cut_reach(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    stroke: &Bound<'_, PyAny>,
+    direction: Option<&Bound<'_, PyAny>>,
+    eye: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Py<PyArray2<f64>>> {
+    let held = read_positions(&positions_argument(vertices))?;
+    let (corners, offsets) = polygons(faces)?;
+    let line = Argument { name: "stroke", value: stroke, allowed: "an (s, 3) array of real numbers" };
+    let line = read_positions(&line)?;
+    let sweep = sweep(py, direction, eye)?;
+    let (positions, points) = (as_positions(&held)?, as_positions(&line)?);
+    let faces = Polygons { corners: &corners, offsets: &offsets };
+    let ends = Watch::new(progress)?
+        .run(py, |progress| gridmesh::cut::cut_reach(&positions, faces, &points, sweep, progress))?;
+    arrays::space_points(py, &ends)
 }
 
 /// `direction` or `eye`.
@@ -179,7 +259,7 @@ fn polygons(faces: &Bound<'_, PyAny>) -> PyResult<(Vec<u32>, Vec<u32>)> {
     }
     let (rows, columns) = (array.shape()[0], array.shape()[1]);
     let offsets = (0..=rows).map(|f| (f * columns) as u32).collect();
-    let corners = match array.extract::<numpy::PyReadonlyArray2<'_, i32>>() {
+    let corners = match array.extract::<PyReadonlyArray2<'_, i32>>() {
         Ok(held) if held.is_c_contiguous() => held.as_slice()?.iter().map(|&v| v as u32).collect(),
         _ => {
             let wide = array.extract::<PyArrayLike2<'_, i64, AllowTypeChange>>()?;
@@ -203,7 +283,8 @@ fn polygons(faces: &Bound<'_, PyAny>) -> PyResult<(Vec<u32>, Vec<u32>)> {
 ///     "cap_min_angle" (radians), "cap_radius_ratio" (mean of twice the inscribed by the circumscribed radius), "folded" (caps
 ///     whose line crosses itself on the swept surface), "rim_min_angle" (smallest angle of a face along the cut, radians), "defect" (largest distance
 ///     of rebuilt faces from the old surface), "volumes" (of the pieces), "volume" (of the input), "repeated"
-///     (divisions and caps that had to be made in another way), and "seconds", a dict of times per stage.
+///     (divisions and caps that had to be made in another way), "reduced_caps" (caps that bulge less than they should
+///     because they would leave the model), and "seconds", a dict of times per stage.
 #[pyclass(frozen, module = "gridmesh")]
 pub struct Cut {
     #[pyo3(get)]
@@ -237,6 +318,54 @@ impl Cut {
     fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
         slf
     }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let py = slf.py();
+        let fields = (slf.get().pieces.clone_ref(py), slf.get().report.clone_ref(py));
+        Ok((py.import("gridmesh._native")?.getattr("_cut")?, fields.into_pyobject(py)?.into_any()))
+    }
+}
+
+/// Makes a divided mesh from what `Cut.__reduce__` returned.
+#[pyfunction]
+pub fn _cut(pieces: Py<PyList>, report: Py<PyDict>) -> Cut {
+    Cut { pieces, report }
+}
+
+/// Makes a piece from what `Piece.__reduce__` returned.
+#[pyfunction]
+pub fn _piece(
+    py: Python<'_>,
+    left: bool,
+    positions: (PyReadonlyArray2<'_, f64>, PyReadonlyArray2<'_, i32>, PyReadonlyArray2<'_, f64>),
+    faces: (PyReadonlyArray1<'_, i32>, PyReadonlyArray1<'_, i32>, PyReadonlyArray1<'_, i32>),
+    cap_loops: Vec<PyReadonlyArray1<'_, i32>>,
+) -> PyResult<Piece> {
+    let broken = || crate::error::error(py, "invalid_shape", "the pickled piece is damaged".to_owned());
+    let points = |array: &PyReadonlyArray2<'_, f64>| -> PyResult<Py<PyArray2<f64>>> {
+        let rows = array.as_array();
+        let rows = rows.rows().into_iter().map(|row| match row.as_slice() {
+            Some(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
+            _ => Err(broken()),
+        });
+        arrays::space_points(py, &rows.collect::<PyResult<Vec<_>>>()?)
+    };
+    let row = |array: &PyReadonlyArray1<'_, i32>| arrays::row(py, array.as_array().to_vec());
+    let sources = positions.1.as_array();
+    let sources = sources.rows().into_iter().map(|row| match row.as_slice() {
+        Some(&[a, b, c]) => Ok([a, b, c].map(|v| v as u32)),
+        _ => Err(broken()),
+    });
+    Ok(Piece {
+        side: if left { Side::Left.word() } else { Side::Right.word() },
+        vertices: points(&positions.0)?,
+        corners: row(&faces.0),
+        offsets: row(&faces.1),
+        source_face: row(&faces.2),
+        source_vertices: arrays::triangles(py, &sources.collect::<PyResult<Vec<_>>>()?)?,
+        source_weights: points(&positions.2)?,
+        cap_loops: arrays::list(py, &cap_loops, |l| Ok(row(l)))?,
+    })
 }
 
 /// One side of a divided mesh; made by `cut`.
@@ -316,6 +445,22 @@ impl Piece {
     fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
         slf
     }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let py = slf.py();
+        let this = slf.get();
+        let fields = (
+            this.side == Side::Left.word(),
+            (
+                this.vertices.clone_ref(py),
+                this.source_vertices.clone_ref(py),
+                this.source_weights.clone_ref(py),
+            ),
+            (this.corners.clone_ref(py), this.offsets.clone_ref(py), this.source_face.clone_ref(py)),
+            this.cap_loops.clone_ref(py),
+        );
+        Ok((py.import("gridmesh._native")?.getattr("_piece")?, fields.into_pyobject(py)?.into_any()))
+    }
 }
 
 fn report(py: Python<'_>, report: &CutReport) -> PyResult<Py<PyDict>> {
@@ -332,6 +477,7 @@ fn report(py: Python<'_>, report: &CutReport) -> PyResult<Py<PyDict>> {
     dict.set_item("cap_irregular", report.cap_irregular)?;
     dict.set_item("cap_min_angle", report.cap_min_angle)?;
     dict.set_item("cap_radius_ratio", report.cap_radius_ratio)?;
+    dict.set_item("reduced_caps", report.reduced_caps)?;
     dict.set_item("folded", report.folded)?;
     dict.set_item("rim_min_angle", report.rim_min_angle)?;
     dict.set_item("defect", report.defect)?;

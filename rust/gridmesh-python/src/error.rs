@@ -8,6 +8,9 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::process;
+use crate::watch::SIGNALS_EVERY;
+
 create_exception!(
     gridmesh,
     GridMeshError,
@@ -22,12 +25,12 @@ create_exception!(
          A stable word for programs: \"not_finite\", \"too_few_points\", \"zero_area\",\n    \
          \"self_intersecting\", \"hole_misplaced\", \"not_symmetric\", \"invalid_option\", \"invalid_shape\",\n    \
          \"invalid_type\" (only inside the list of `map_sketches`; elsewhere a TypeError is raised),\n    \
-         \"too_coarse\", \"too_large\", \"no_patch\", \"solver\", \"cancelled\"; of fills\n    \
+         \"too_coarse\", \"too_large\", \"no_patch\", \"inverted\", \"solver\", \"cancelled\"; of fills\n    \
          \"index_out_of_range\", \"repeated_vertex\", \"figure_eight\", \"zero_length_edge\",\n    \
          \"self_touching\", \"faces_on_both_sides\", \"non_manifold\", \"shared_edge\",\n    \
          \"fill_intersects\", \"not_a_disk\"; of cuts\n    \
          \"invalid_face\", \"stroke_too_short\", \"stroke_misses\", \"behind_eye\",\n    \
-         \"cut_failed\"; or \"internal\" (a bug in gridmesh: please report it)."
+         \"cut_failed\", \"still_joined\"; or \"internal\" (a bug in gridmesh: please report it)."
 );
 
 /// A [`GridMeshError`] with its `kind`.
@@ -46,7 +49,7 @@ pub fn from_core(py: Python<'_>, err: &Error) -> PyErr {
 
 /// Runs `work` without the interpreter lock; a panic, always a bug, becomes an error of kind `internal`.
 pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> Result<T, Failure> {
-    py.detach(|| guarded(work))
+    py.detach(|| guarded(|| process::run(work, SIGNALS_EVERY, || {})))
 }
 
 /// Runs `work`; a panic becomes [`Failure::Panic`].

@@ -11,7 +11,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::error::{detached, error, from_core};
 use crate::input::Argument;
-use crate::mesh::{Mesh, as_positions, indices, loop_argument, positions_argument, read_positions};
+use crate::mesh::{Mesh, as_positions, indices, loop_argument, pairs, positions_argument, read_positions};
 use crate::watch::Watch;
 use crate::{arrays, reports};
 
@@ -22,7 +22,8 @@ use crate::{arrays, reports};
 /// vertices : (n, 3) array of real numbers
 ///     Positions of the mesh, in any units. Not modified.
 /// triangles : (m, 3) array of int
-///     Its triangles; (0, 3) for a loop of edges without a mesh. Only those near the loop matter.
+///     Its triangles; (0, 3) for a loop of edges without a mesh. Only those near the loop matter: coordinates
+///     further away than two rings of triangles need not even be finite.
 /// loop : (k,) array of int, k >= 3
 ///     The vertices of the hole's boundary in order, either way round, each once.
 /// smooth : {"flat", "tangent", "curvature"}
@@ -33,8 +34,16 @@ use crate::{arrays, reports};
 /// polygons : (m,) array of int, optional
 ///     The polygon that each triangle is a part of, the triangles of one following each other: the loop's
 ///     vertices then get the edges that quads want, whichever diagonals cut them.
+/// sharp : float, optional
+///     Hard edges go on: edges of the mesh that run into the loop with more than this angle (in radians) between
+///     their triangles are continued in the patch, if they meet in one line or one point and the surface
+///     between them is planar, as at a cut-off corner of a cube. Otherwise the patch is smooth; the report has
+///     "creases" and "creases_kept". None: always smooth.
+/// creases : (e, 2) array of int, optional
+///     With `sharp`: edges that are hard whatever their angle is.
 /// progress : callable, optional
-///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
+///     Called with a fraction from 0 to 1, which never falls; cancels by returning False. What it raises is
+///     raised here.
 ///
 /// Returns
 /// -------
@@ -54,8 +63,8 @@ use crate::{arrays, reports};
 ///
 /// Notes
 /// -----
-/// Nealen, Pett, Alexa, Igarashi: GridMesh, section V. Arrays of float64 and int32 in C order are read in
-/// place: leave them alone meanwhile. Other Python threads run.
+/// Nealen, Pett, Alexa, Igarashi: GridMesh, section V. The arrays are copied first; other Python
+/// threads run meanwhile.
 ///
 /// Examples
 /// --------
@@ -68,8 +77,8 @@ use crate::{arrays, reports};
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, triangles, r#loop, *, smooth = None, strict = None, polygons = None, progress = None),
-    text_signature = "(vertices, triangles, loop, *, smooth='tangent', strict=False, polygons=None, progress=None)"
+    signature = (vertices, triangles, r#loop, *, smooth = None, strict = None, polygons = None, sharp = None, creases = None, progress = None),
+    text_signature = "(vertices, triangles, loop, *, smooth='tangent', strict=False, polygons=None, sharp=None, creases=None, progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn fill_hole(
@@ -80,12 +89,14 @@ pub fn fill_hole(
     smooth: Option<&Bound<'_, PyAny>>,
     strict: Option<&Bound<'_, PyAny>>,
     polygons: Option<&Bound<'_, PyAny>>,
+    sharp: Option<&Bound<'_, PyAny>>,
+    creases: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Fill> {
     let mesh = Mesh::read(vertices, triangles)?;
     let indices = indices(&loop_argument("loop", r#loop))?;
-    let options = options(smooth, strict, polygons)?;
-    let (positions, faces) = (mesh.positions()?, mesh.faces()?);
+    let options = hard(options(smooth, strict, polygons)?, sharp, creases)?;
+    let (positions, faces) = (mesh.positions()?.into_owned(), mesh.faces()?.into_owned());
     let fill = Watch::new(progress)?
         .run(py, |progress| gridmesh::fill::fill_hole(&positions, &faces, &indices, &options, progress))?;
     Fill::new(py, fill)
@@ -101,7 +112,7 @@ pub fn fill_hole(
 ///     Loops as `fill_hole` takes them; None: all boundary loops of the mesh.
 /// max_edges : int, optional
 ///     Without `loops`: holes with more edges are left open (an open sheet's own border, say).
-/// smooth, strict, polygons, progress
+/// smooth, strict, polygons, sharp, creases, progress
 ///     As in `fill_hole`.
 ///
 /// Returns
@@ -129,8 +140,8 @@ pub fn fill_hole(
 /// [22, 22]
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, triangles, loops = None, *, max_edges = None, smooth = None, strict = None, polygons = None, progress = None),
-    text_signature = "(vertices, triangles, loops=None, *, max_edges=None, smooth='tangent', strict=False, polygons=None, progress=None)"
+    signature = (vertices, triangles, loops = None, *, max_edges = None, smooth = None, strict = None, polygons = None, sharp = None, creases = None, progress = None),
+    text_signature = "(vertices, triangles, loops=None, *, max_edges=None, smooth='tangent', strict=False, polygons=None, sharp=None, creases=None, progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn fill_holes(
@@ -142,10 +153,12 @@ pub fn fill_holes(
     smooth: Option<&Bound<'_, PyAny>>,
     strict: Option<&Bound<'_, PyAny>>,
     polygons: Option<&Bound<'_, PyAny>>,
+    sharp: Option<&Bound<'_, PyAny>>,
+    creases: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Py<PyList>> {
     let mesh = Mesh::read(vertices, triangles)?;
-    let mut options = options(smooth, strict, polygons)?;
+    let mut options = hard(options(smooth, strict, polygons)?, sharp, creases)?;
     if let Some(value) = max_edges {
         let it = Argument { name: "max_edges", value, allowed: "a whole number not below 0, or None" };
         options.max_edges = Some(it.count()?);
@@ -163,7 +176,7 @@ pub fn fill_holes(
             Some(read)
         }
     };
-    let (positions, faces) = (mesh.positions()?, mesh.faces()?);
+    let (positions, faces) = (mesh.positions()?.into_owned(), mesh.faces()?.into_owned());
     let fills = Watch::new(progress)?.run(py, |progress| {
         gridmesh::fill::fill_holes(&positions, &faces, loops.as_deref(), &options, progress)
     })?;
@@ -189,6 +202,8 @@ pub fn fill_holes(
 ///     The new vertices only.
 /// triangles : (t, 3) int32
 ///     The new triangles only. Numbers below n are those of the mesh; n + i is the new vertex i.
+/// creases : (e, 2) int32
+///     Edges of the patch along which hard edges of the mesh go on, numbered as `triangles` are.
 /// report : dict
 ///     Plain numbers: "triangles", "vertices", "irregular" (new vertices whose valence is not 6),
 ///     "irregular_loop" (loop vertices whose valence is not 6 now), "grid" ("lattice", "grown", "graded",
@@ -199,7 +214,8 @@ pub fn fill_holes(
 ///     of a loop edge thereby), "winding_conflicts" (loop edges whose neighbour is wound against most
 ///     others), "wire_edges" (loop edges without a neighbour), "min_angle" (radians), "folds" (edges with
 ///     more than 120 degrees between new triangles), "self_intersections" (pairs of triangles that meet, at
-///     least one of them new), "repaired" (fallbacks taken), and "seconds", a dict of times per stage.
+///     least one of them new), "creases" (hard edges that run into the loop, counted with `sharp`) and
+///     "creases_kept" (those that go on: all or none), "repaired" (fallbacks taken), and "seconds", a dict of times per stage.
 #[pyclass(frozen, module = "gridmesh")]
 pub struct Fill {
     inner: CoreFill,
@@ -209,6 +225,8 @@ pub struct Fill {
     vertices: Py<PyArray2<f64>>,
     #[pyo3(get)]
     triangles: Py<PyArray2<i32>>,
+    #[pyo3(get)]
+    creases: Py<PyArray2<i32>>,
     #[pyo3(get)]
     report: Py<PyDict>,
 }
@@ -224,6 +242,7 @@ impl Fill {
             r#loop: arrays::indices(py, inner.loop_.iter().copied()),
             vertices: arrays::space_points(py, &inner.vertices)?,
             triangles: arrays::triangles(py, &inner.triangles)?,
+            creases: arrays::edges(py, &inner.creases)?,
             report,
             inner,
         })
@@ -296,7 +315,7 @@ impl Fill {
     #[pyo3(text_signature = "($self, vertices)")]
     fn refit(&self, py: Python<'_>, vertices: &Bound<'_, PyAny>) -> PyResult<Py<PyArray2<f64>>> {
         let held = read_positions(&positions_argument(vertices))?;
-        let positions = as_positions(&held)?;
+        let positions = as_positions(&held)?.into_owned();
         let found = detached(py, || self.inner.refit(&positions)).map_err(|err| err.into_py(py))?;
         arrays::space_points(py, &found)
     }
@@ -324,6 +343,7 @@ impl Fill {
             arrays::indices(py, parts.outer.into_iter()),
             arrays::triangles(py, &parts.triangles)?,
             parts.patch,
+            arrays::edges(py, &parts.creases)?,
             slf.get().report.clone_ref(py),
         );
         Ok((py.import("gridmesh._native")?.getattr("_fill")?, fields.into_pyobject(py)?.into_any()))
@@ -344,6 +364,7 @@ pub fn _fill(
     outer: PyReadonlyArray1<'_, i32>,
     triangles: PyReadonlyArray2<'_, i32>,
     patch: usize,
+    creases: PyReadonlyArray2<'_, i32>,
     report: Py<PyDict>,
 ) -> PyResult<Fill> {
     let broken = || error(py, "invalid_shape", "the pickled fill is damaged");
@@ -351,7 +372,11 @@ pub fn _fill(
     // Negative numbers become large ones, which are refused.
     let numbers = |array: &PyReadonlyArray1<'_, i32>| array.as_array().iter().map(|&v| v as u32).collect();
     let columns = |array: &PyReadonlyArray2<'_, f64>, n| array.as_array().ncols() == n;
-    if !columns(&flat, 2) || !columns(&positions, 3) || triangles.as_array().ncols() != 3 {
+    if !columns(&flat, 2)
+        || !columns(&positions, 3)
+        || triangles.as_array().ncols() != 3
+        || creases.as_array().ncols() != 2
+    {
         return Err(broken());
     }
     let parts = FillParts {
@@ -364,6 +389,7 @@ pub fn _fill(
         outer: numbers(&outer),
         triangles: triangles.as_array().rows().into_iter().map(|t| [0, 1, 2].map(|k| t[k] as u32)).collect(),
         patch,
+        creases: creases.as_array().rows().into_iter().map(|e| [0, 1].map(|k| e[k] as u32)).collect(),
     };
     let inner = CoreFill::from_parts(parts, FillReport::default()).map_err(|_| broken())?;
     Fill::made(py, inner, report)
@@ -393,6 +419,23 @@ pub(crate) fn options(
     Ok(options)
 }
 
+/// Adds what is said about hard edges.
+fn hard(
+    mut options: FillOptions,
+    sharp: Option<&Bound<'_, PyAny>>,
+    creases: Option<&Bound<'_, PyAny>>,
+) -> PyResult<FillOptions> {
+    if let Some(value) = sharp {
+        let allowed = "an angle from 0 to pi, in radians, or None";
+        options.sharp = Some(Argument { name: "sharp", value, allowed }.float()?);
+    }
+    if let Some(value) = creases {
+        options.creases =
+            pairs(&Argument { name: "creases", value, allowed: "an (e, 2) array of whole numbers" })?;
+    }
+    Ok(options)
+}
+
 fn report(py: Python<'_>, report: &FillReport) -> PyResult<Py<PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("triangles", report.triangles)?;
@@ -409,6 +452,8 @@ fn report(py: Python<'_>, report: &FillReport) -> PyResult<Py<PyDict>> {
     dict.set_item("min_angle", report.min_angle)?;
     dict.set_item("folds", report.folds)?;
     dict.set_item("self_intersections", report.self_intersections)?;
+    dict.set_item("creases", report.creases)?;
+    dict.set_item("creases_kept", report.creases_kept)?;
     dict.set_item("repaired", report.repaired)?;
     dict.set_item("seconds", reports::seconds(py, &report.seconds)?)?;
     Ok(dict.unbind())

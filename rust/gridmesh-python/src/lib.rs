@@ -1,6 +1,6 @@
 //! The Python module `gridmesh._native`: conversions only, no algorithm.
 //!
-//! `input` and `options` read what Python hands over, `watch` carries progress and signals, `arrays`
+//! `input` and `options` read what Python hands over, `watch` carries progress and signals, `process` finds threads after a fork, `arrays`
 //! and `reports` hand results back, `patch`, `surface`, `fill` and `cut` are the classes, `sketch`, `body` and `map` make them
 //! of drawings, `batch` is the parallel map, `combine` unites drawings, `thickness` measures them.
 #![forbid(unsafe_code)]
@@ -17,6 +17,7 @@ mod map;
 mod mesh;
 mod options;
 mod patch;
+mod process;
 mod regrid;
 mod reports;
 mod sketch;
@@ -55,9 +56,12 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<cut::Cut>()?;
     module.add_class::<cut::Piece>()?;
     module.add_function(wrap_pyfunction!(cut::cut, module)?)?;
+    module.add_function(wrap_pyfunction!(cut::cut_reach, module)?)?;
     module.add_function(wrap_pyfunction!(patch::_patch, module)?)?;
     module.add_function(wrap_pyfunction!(surface::_surface, module)?)?;
     module.add_function(wrap_pyfunction!(fill::_fill, module)?)?;
     module.add_function(wrap_pyfunction!(regrid::_regrid, module)?)?;
+    module.add_function(wrap_pyfunction!(cut::_cut, module)?)?;
+    module.add_function(wrap_pyfunction!(cut::_piece, module)?)?;
     Ok(())
 }

@@ -90,7 +90,7 @@ pub fn map_sketches(
             }
         }
     }
-    let results = watch.finish(py, error::detached(py, || job.run(&drawings, &watch)))?;
+    let results = watch.finish(py, py.detach(|| error::guarded(|| job.run(&drawings, &watch))))?;
     let mut unreadable = unreadable.into_iter();
     let items = PyList::empty(py);
     for result in results {

@@ -108,6 +108,22 @@ pub fn indices(it: &Argument<'_, '_>) -> PyResult<Vec<u32>> {
     Ok(wide.as_array().iter().map(|&v| narrow(v)).collect())
 }
 
+/// Rows of two whole numbers.
+pub fn pairs(it: &Argument<'_, '_>) -> PyResult<Vec<[u32; 2]>> {
+    let array = it.array()?;
+    if array.len() == 0 {
+        return Ok(vec![]);
+    }
+    if array.ndim() != 2 || array.shape()[1] != 2 {
+        return Err(it.wrong_shape(&format!("has shape {:?}", array.shape())));
+    }
+    if array.dtype().kind() == b'f' {
+        return Err(it.wrong_type());
+    }
+    let wide = array.extract::<PyArrayLike2<'_, i64, AllowTypeChange>>()?;
+    Ok(wide.as_array().rows().into_iter().map(|row| [narrow(row[0]), narrow(row[1])]).collect())
+}
+
 /// As the library numbers vertices; what no mesh can have stays out of range.
 fn narrow(v: i64) -> u32 {
     i32::try_from(v).unwrap_or(-1) as u32

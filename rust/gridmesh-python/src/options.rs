@@ -70,6 +70,7 @@ pub fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyA
         }
         "proof_nodes" => options.proof_nodes = argument("a whole number not below 0").count()?,
         "relax" => options.relax = argument("True or False").bool()?,
+        "least" => options.least = argument("True or False").bool()?,
         _ => return Ok(false),
     }
     Ok(true)

@@ -72,7 +72,7 @@ pub fn regrid(
     let options = options(smooth, strict, polygons)?;
     let keep = keep_shape
         .map_or(Ok(true), |value| Argument { name: "keep_shape", value, allowed: "True or False" }.bool())?;
-    let (positions, all) = (mesh.positions()?, mesh.faces()?);
+    let (positions, all) = (mesh.positions()?.into_owned(), mesh.faces()?.into_owned());
     let done = Watch::new(progress)?
         .run(py, |progress| gridmesh::fill::regrid(&positions, &all, &region, keep, &options, progress))?;
     let (numbers, weights) = done

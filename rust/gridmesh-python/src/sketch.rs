@@ -23,9 +23,10 @@ use crate::{options, reports};
 /// edge_length : float, optional
 ///     Edge length of the mesh, in the units of the outline; positive. Not together with `triangles`.
 /// triangles : int or "auto", optional
-///     Number of triangles of the flat patch, from 6 to 20 million, reached within 10 %. 2000 if
-///     neither is given. "auto": four across the thinnest limb (see `thickness`), but at least 1000 and at most
-///     `max_triangles`; where those cannot follow the outline, the least number that can.
+///     Number of triangles of the flat patch, from 6 to 20 million; 2000 if neither is given. Reached within
+///     10 %, below 60 within 6 triangles (a handful comes in few sizes): `report["triangles"]` says how many.
+///     "auto": four across the thinnest limb (see `thickness`), but at least 1000 and at most `max_triangles`;
+///     where those cannot follow the outline, the least number that can.
 /// max_triangles : int
 ///     The largest number that "auto" chooses.
 /// boundary : {"optimal", "grown"}
@@ -53,10 +54,14 @@ use crate::{options, reports};
 /// self_crossing : {"error", "union"}
 ///     "error": an outline that crosses itself is refused. "union": its outer outline is taken.
 /// proof_nodes : int
-///     Bounds the search that proves optimality where the first solution had conflicts; 0 beside `mirror`.
+///     Bounds the search that proves optimality where the first solution had conflicts: so many parts of the search
+///     space at most, and for each lattice angle tried 30 million states of it, some seconds; 0 beside `mirror`.
 /// relax : bool
 ///     False leaves the interior vertices where the lattice has them; triangles may then be inverted,
-///     and such a patch is refused.
+///     and such a patch is refused (kind "inverted").
+/// least : bool
+///     True: the refusal of a drawing too thin for its mesh (kind "too_coarse") names the least number of triangles
+///     that works, in steps of a tenth; the search may take some seconds. False: it is refused at once.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
 ///
@@ -71,8 +76,8 @@ use crate::{options, reports};
 ///     boundary's, before it is straightened), "turns_bound", "cost", "cost_bound" (None where none
 ///     was computed), "optimal", "max_distance_used", "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
 ///     (radians), "corners" (drawn ones), "released_corners" (those without a vertex of their own), "bridged_inlets" (with mesh vertices in them: 0, unless `relax` is off),
-///     "across" (triangles across the thinnest limb; None where no part is longer than it is wide),
-///     "triangles_for_four" (about how many triangles put four across it; None likewise),
+///     "across" (triangles across the thinnest limb; None unless `triangles` is "auto", and where no part is
+///     longer than it is wide),
 ///     "repaired" (repeated points dropped), "mirror_error" (greatest distance of a vertex from the
 ///     image of its partner, in edge lengths; None without `mirror`), "placements" (of the lattice, tried) and "seconds" (per
 ///     stage).
@@ -98,7 +103,7 @@ use crate::{options, reports};
 #[pyfunction]
 #[pyo3(
     signature = (outline, holes = None, *, progress = None, **options),
-    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, max_triangles=20000, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, progress=None)"
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, max_triangles=20000, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, least=True, progress=None)"
 )]
 pub fn mesh_sketch(
     py: Python<'_>,

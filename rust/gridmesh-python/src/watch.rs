@@ -9,7 +9,8 @@ use gridmesh::progress::Progress;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use crate::error::{Failure, detached};
+use crate::error::{Failure, guarded};
+use crate::process;
 
 /// How often signals (Ctrl-C) are looked for while no callback is called.
 pub const SIGNALS_EVERY: Duration = Duration::from_millis(20);
@@ -53,7 +54,8 @@ impl Watch {
         work: impl FnOnce(Progress<'_>) -> Result<T> + Send,
     ) -> PyResult<T> {
         let callback = |fraction| self.report(fraction);
-        let result = detached(py, || work(Progress::new(&callback)));
+        let work = || work(Progress::new(&callback));
+        let result = py.detach(|| guarded(|| process::run(work, SIGNALS_EVERY, || self.listen())));
         self.finish(py, result)
     }
 
@@ -81,6 +83,14 @@ impl Watch {
             self.stopped.store(true, Ordering::Relaxed);
         }
         go_on
+    }
+
+    /// Looks for signals, which Python delivers to its main thread alone.
+    fn listen(&self) {
+        if let Err(raised) = Python::attach(|py| py.check_signals()) {
+            *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(raised);
+            self.stopped.store(true, Ordering::Relaxed);
+        }
     }
 
     fn ask(&self, py: Python<'_>, fraction: f64) -> PyResult<bool> {

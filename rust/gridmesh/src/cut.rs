@@ -5,7 +5,9 @@
 //! the cut even, `loops` and `regions` find what is to be capped, `cap` and `bridge` cap it, `pieces` puts the pieces
 //! together.
 
+mod beside;
 mod bridge;
+mod bulge;
 mod cap;
 mod chains;
 mod cross;
@@ -15,23 +17,28 @@ mod input;
 mod line;
 mod locate;
 mod loops;
+mod mirrored;
 mod nearness;
 mod offset;
 mod options;
 mod parted;
 mod pieces;
+mod reach;
 mod regions;
 mod report;
 mod reshape;
 mod rim;
 mod roll;
 mod sheet;
+mod simplify;
 mod slide;
 mod sources;
 mod spacing;
 mod split;
 mod strip;
+mod thin;
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use glam::DVec3;
@@ -39,9 +46,10 @@ use rustc_hash::FxHashSet;
 
 pub use self::input::Polygons;
 use self::input::check;
-pub use self::options::{CutOptions, Keep, Sweep};
+pub use self::options::{CutOptions, Keep, Mirror, Sweep};
 use self::parted::Parted;
 pub use self::pieces::{Piece, Side};
+use self::reach::Alone;
 pub use self::report::CutReport;
 use self::report::Tally;
 use self::sheet::Sheet;
@@ -71,7 +79,8 @@ pub struct Cut {
 /// the cut does not meet come back as they were. Where the input was a closed manifold, so are the pieces
 /// (with `cap`); vertices in which a piece would touch itself are doubled.
 ///
-/// With an `edge_length` the edges along the cut get about this length, and the faces along it are rebuilt.
+/// With an `edge_length` the edges along the cut get about this length, and the faces along it are rebuilt; of the
+/// stroke, what is within a hundredth of it counts as straight.
 ///
 /// Caps lie on the swept surface (with [`Smooth::Flat`](crate::fill::Smooth)), both pieces get the same vertices and
 /// triangles, the right one's wound the other way. Cut lines that are not closed, because the mesh is not, get no
@@ -81,7 +90,8 @@ pub struct Cut {
 /// # Errors
 /// [`Error::NotFinite`], [`Error::IndexOutOfRange`], [`Error::InvalidFace`], [`Error::InvalidOption`];
 /// [`Error::StrokeTooShort`] and [`Error::SelfIntersecting`] for strokes that sweep no surface,
-/// [`Error::BehindEye`], [`Error::StrokeMisses`] if nothing is divided, [`Error::CutFailed`] where rounding leaves no
+/// [`Error::BehindEye`], [`Error::StrokeMisses`] if nothing is divided, [`Error::StillJoined`] if what a stroke crosses
+/// without its ends continued does not come apart, [`Error::CutFailed`] where rounding leaves no
 /// consistent division, [`Error::Cancelled`]. Nothing is returned half cut.
 ///
 /// Source: Nealen et al. 2009, section V and figure 2. The paper takes the cut itself from FiberMesh.
@@ -92,22 +102,80 @@ pub fn cut(
     options: &CutOptions,
     progress: Progress<'_>,
 ) -> Result<Cut> {
+    // Where a stage is repeated, what is reported does not go back.
+    let most = AtomicU64::new(0);
+    let onward = |fraction: f64| {
+        let most = most.fetch_max(fraction.max(0.0).to_bits(), Ordering::Relaxed);
+        progress.report(fraction.max(f64::from_bits(most))).is_ok()
+    };
+    let progress = Progress::new(&onward);
     progress.report(0.0)?;
     options.check()?;
     check(vertices, faces, stroke)?;
+    if let Some(length) = options.edge_length
+        && let Some(fewer) = simplify::simplified(vertices, stroke, options.sweep, length)
+    {
+        match cut_along(vertices, faces, &fewer, options, progress) {
+            // Strands that nearly touch may cross when they are simplified.
+            Err(Error::SelfIntersecting { .. } | Error::StrokeTooShort { .. }) => {}
+            done => return done,
+        }
+    }
+    cut_along(vertices, faces, stroke, options, progress)
+}
+
+/// How far the ends of an open stroke are continued without [`CutOptions::extend_ends`]: the points in front of, and
+/// behind, which nothing is cut, as far away from the viewer as the ends themselves.
+///
+/// # Errors
+/// As of [`cut`].
+pub fn cut_reach(
+    vertices: &[DVec3],
+    faces: Polygons<'_>,
+    stroke: &[DVec3],
+    sweep: Sweep,
+    progress: Progress<'_>,
+) -> Result<[DVec3; 2]> {
+    CutOptions::new(sweep).check()?;
+    check(vertices, faces, stroke)?;
+    let sheet = Sheet::new(vertices, stroke, sweep)?;
+    let locator = locate::Locator::new(vertices, &sheet)?;
+    let met = locator.find(vertices, faces)?;
+    let edges = cross::cross(vertices, faces, &sheet, &locator, &met);
+    let reach = reach::reach(vertices, &sheet, &met, &edges, progress)?;
+    let ends = [(reach.from, stroke[0]), (reach.to, stroke[stroke.len() - 1])];
+    let [from, to] = sheet.drawn();
+    Ok(ends.map(
+        |(place, end)| {
+            if place == from || place == to { end } else { sheet.lift(place, sheet.view.height(end)) }
+        },
+    ))
+}
+
+fn cut_along(
+    vertices: &[DVec3],
+    faces: Polygons<'_>,
+    stroke: &[DVec3],
+    options: &CutOptions,
+    progress: Progress<'_>,
+) -> Result<Cut> {
     if options.gap == 0.0 {
         let sheet = Sheet::new(vertices, stroke, options.sweep)?;
-        return divide(vertices, faces, sheet, options, progress);
+        return divide(vertices, faces, sheet, options, Alone::Kept(options.keep), progress)
+            .map(|done| done.0);
     }
     // A kerf is two cuts: one to either side of the stroke.
     let mut both: Option<Cut> = None;
+    // What is not crossed goes to the same side in both.
+    let mut alone = Alone::Kept(options.keep);
     let sides = [(Keep::Left, 0.5 * options.gap), (Keep::Right, -0.5 * options.gap)];
     for (k, (keep, shift)) in sides.into_iter().filter(|(k, _)| options.keep.has(*k)).enumerate() {
         let half = CutOptions { keep, ..options.clone() };
         let sheet =
             Sheet::new(vertices, &offset::shifted(vertices, stroke, options.sweep, shift)?, options.sweep)?;
         let here = progress.part(0.5 * k as f64, 0.5 * (k + 1) as f64);
-        let one = divide(vertices, faces, sheet, &half, here)?;
+        let (one, side) = divide(vertices, faces, sheet, &half, alone, here)?;
+        alone = side.map_or(alone, Alone::On);
         both = Some(match both {
             None => one,
             Some(mut first) => {
@@ -145,8 +213,9 @@ fn divide(
     faces: Polygons<'_>,
     sheet: Sheet,
     options: &CutOptions,
+    alone: Alone,
     progress: Progress<'_>,
-) -> Result<Cut> {
+) -> Result<(Cut, Option<bool>)> {
     let coarse = options.edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
     // Drawn through vertices near by, lines may touch that were apart; and through a vertex exactly, a line may touch
     // itself there. Then without the one, and moved by the least bit.
@@ -160,10 +229,11 @@ fn divide(
         }
         let from = if tries == 0 { 0.0 } else { 0.9 + 0.025 * tries as f64 };
         let to = if tries == 0 { 0.9 } else { from + 0.025 };
-        match divide_with(vertices, faces, sheet.clone(), options, coarse, progress.part(from, to)) {
-            Ok(mut cut) => {
+        let ends = (alone, progress.part(from, to));
+        match divide_with(vertices, faces, sheet.clone(), options, coarse, ends) {
+            Ok((mut cut, side)) => {
                 cut.report.repeated += tries;
-                return progress.report(1.0).map(|()| cut);
+                return progress.report(1.0).map(|()| (cut, side));
             }
             Err(error @ Error::CutFailed { .. }) => failed = error,
             Err(error) => return Err(error),
@@ -179,15 +249,15 @@ fn divide_with(
     sheet: Sheet,
     options: &CutOptions,
     coarse: Option<Tolerance>,
-    progress: Progress<'_>,
-) -> Result<Cut> {
+    (alone, progress): (Alone, Progress<'_>),
+) -> Result<(Cut, Option<bool>)> {
     let mut tally = Tally::new();
     let since = Instant::now();
     let (sheet, parted) =
-        part(vertices, faces, sheet, options.edge_length, coarse, &mut tally, progress.part(0.0, 0.4))?;
+        part(vertices, faces, sheet, options, alone, coarse, &mut tally, progress.part(0.0, 0.4))?;
     progress.report(0.4)?;
     let loops = loops::trace(faces, &parted, &sheet);
-    tally.report.open_lines = loops.open;
+    tally.report.open_lines = loops.open.len();
     tally.report.loops = loops.closed.len();
     let caps = if options.cap {
         let caps = cap::close(
@@ -210,16 +280,18 @@ fn divide_with(
     tally.stage("pieces");
     tally.report.seconds.push(("total", since.elapsed().as_secs_f64()));
     progress.report(1.0)?;
-    Ok(Cut { pieces, report: tally.report })
+    Ok((Cut { pieces, report: tally.report }, parted.alone))
 }
 
 /// Divides the faces, evenly along the cut with an edge length; if rounding stands in the way, with finer tolerances
 /// and with the stroke moved by the least bit that matters, which is counted.
+#[expect(clippy::too_many_arguments, reason = "a stage of the whole")]
 fn part(
     vertices: &[DVec3],
     faces: Polygons<'_>,
     sheet: Sheet,
-    edge_length: Option<f64>,
+    options: &CutOptions,
+    alone: Alone,
     coarse: Option<Tolerance>,
     tally: &mut Tally,
     progress: Progress<'_>,
@@ -228,14 +300,19 @@ fn part(
     for nudge in 0..3 {
         let sheet = sheet.nudged(nudge);
         let locator = locate::Locator::new(vertices, &sheet)?;
-        let met = locator.find(vertices, faces)?;
-        let edges = cross::cross(vertices, faces, &sheet, &locator, &met);
+        let mut met = locator.find(vertices, faces)?;
+        let mut edges = cross::cross(vertices, faces, &sheet, &locator, &met);
+        if !options.extend_ends && !sheet.closed {
+            let reach = reach::reach(vertices, &sheet, &met, &edges, progress.part(0.0, 0.2))?;
+            reach.restrict(vertices, faces, &mut met, &mut edges, alone)?;
+        }
         tally.stage("search");
         progress.report(0.5)?;
         for tolerance in coarse.into_iter().chain(TOLERANCES) {
             let (mut wanted, mut released) = (FxHashSet::default(), FxHashSet::default());
             let mut redrawn = 0;
             for _ in 0..RELEASES {
+                progress.report(0.5)?;
                 let crossed = edges.named(vertices, tolerance, &wanted, &released);
                 match split::split(vertices, faces, &sheet, &met, crossed, tolerance) {
                     Ok(mut parted) => {
@@ -250,7 +327,7 @@ fn part(
                         }
                         tally.stage("faces");
                         tally.report.cut_faces = parted.cut_faces;
-                        if let Some(length) = edge_length {
+                        if let Some(length) = options.edge_length {
                             redrawn += 1;
                             let again = |in_the_way: Vec<u32>| {
                                 let before = wanted.len();
@@ -262,8 +339,16 @@ fn part(
                                 false => locator.off(vertices[v as usize], v, tolerance.length),
                             };
                             let through = rim::Through { reach: tolerance.length, off: &off };
-                            let done =
-                                rim::even_out(vertices, faces, &mut parted, length, &through, tally, again);
+                            let done = rim::even_out(
+                                vertices,
+                                faces,
+                                &mut parted,
+                                length,
+                                &through,
+                                tally,
+                                again,
+                                progress.part(0.5, 1.0),
+                            )?;
                             tally.stage("rim");
                             if !done {
                                 continue;

@@ -84,8 +84,8 @@ pub enum Error {
     TooCoarse {
         /// The number of triangles that was asked for.
         triangles: usize,
-        /// The least number that works.
-        least: usize,
+        /// What is known of the number that would do.
+        needed: Needed,
     },
     /// The mesh asked for is larger than is supported.
     TooLarge {
@@ -110,6 +110,16 @@ pub enum Error {
     },
     /// The caller asked to stop.
     Cancelled,
+    /// Without relaxation some triangles of the patch are inverted.
+    Inverted {
+        /// A corner of one of them, in the units of the drawing.
+        at: [f64; 2],
+    },
+    /// The library contradicts itself: a bug, whatever the input.
+    Internal {
+        /// What should not be.
+        reason: &'static str,
+    },
     /// A vertex number that does not exist.
     IndexOutOfRange {
         /// What names it, such as `loop` or `triangle 7`.
@@ -221,6 +231,22 @@ pub enum Error {
         /// Where.
         at: [f64; 3],
     },
+    /// What a stroke crosses without its ends continued hangs together around the cut.
+    StillJoined {
+        /// Where.
+        at: [f64; 3],
+    },
+}
+
+/// What is known of the number of triangles that a drawing needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needed {
+    /// This number works, and none that is a tenth smaller was found to.
+    Least(usize),
+    /// Numbers up to this one were tried, and none of them works.
+    MoreThan(usize),
+    /// It was not searched for.
+    Unknown,
 }
 
 impl Error {
@@ -241,6 +267,8 @@ impl Error {
             Error::NoPatch { .. } => "no_patch",
             Error::Solver { .. } => "solver",
             Error::Cancelled => "cancelled",
+            Error::Inverted { .. } => "inverted",
+            Error::Internal { .. } => "internal",
             Error::IndexOutOfRange { .. } => "index_out_of_range",
             Error::RepeatedVertex { .. } => "repeated_vertex",
             Error::FigureEight { .. } => "figure_eight",
@@ -258,6 +286,7 @@ impl Error {
             Error::StrokeMisses => "stroke_misses",
             Error::BehindEye { .. } => "behind_eye",
             Error::CutFailed { .. } => "cut_failed",
+            Error::StillJoined { .. } => "still_joined",
         }
     }
 }
@@ -269,7 +298,11 @@ impl fmt::Display for Error {
                 write!(f, "point {point} of the {what} is NaN or infinite; all coordinates must be finite")
             }
             Error::ExtremeSize { what, size } => {
-                write!(f, "the {what} is {size:.3e} across; allowed: 1e-60 to 1e60, scale the drawing")
+                write!(
+                    f,
+                    "the {what} is {size:.3e} across; allowed: 1e-30 to 1e30 (meshes and loops in space: 1e-60 to 1e60), \
+                     scale it"
+                )
             }
             Error::TooFewPoints { what, distinct } => {
                 write!(
@@ -311,10 +344,17 @@ impl fmt::Display for Error {
             Error::InvalidOption { name, value, allowed } => {
                 write!(f, "{name} is {value}; allowed: {allowed}")
             }
-            Error::TooCoarse { triangles, least } => write!(
-                f,
-                "{triangles} triangles are too few to follow this drawing; {least} work (or a smaller edge length)"
-            ),
+            Error::TooCoarse { triangles, needed } => {
+                write!(f, "{triangles} triangles are too few to follow this drawing; ")?;
+                match needed {
+                    Needed::Least(least) => write!(f, "{least} work (or a smaller edge length)"),
+                    Needed::MoreThan(tried) => write!(
+                        f,
+                        "numbers up to {tried} were tried and do not work either, use more or draw its thin parts wider"
+                    ),
+                    Needed::Unknown => write!(f, "use more (or a smaller edge length)"),
+                }
+            }
             Error::TooLarge { triangles, limit } => write!(
                 f,
                 "about {triangles:.3e} triangles were asked for; at most {limit:.3e} are supported, \
@@ -330,6 +370,14 @@ impl fmt::Display for Error {
                 write!(f, "the linear solve of the {stage} failed: {reason}")
             }
             Error::Cancelled => write!(f, "cancelled"),
+            Error::Inverted { at: [x, y] } => write!(
+                f,
+                "without relaxation triangles are inverted, one of them near ({x:.6}, {y:.6}); \
+                 leave relax on, or use more triangles"
+            ),
+            Error::Internal { reason } => {
+                write!(f, "a bug in gridmesh, please report it with this input: {reason}")
+            }
             Error::IndexOutOfRange { what, index, vertices } => write!(
                 f,
                 "the {what} names vertex {index}; allowed: 0 to {}, one of the {vertices} vertices given",
@@ -407,6 +455,11 @@ impl fmt::Display for Error {
                 f,
                 "the mesh cannot be cut here: {reason}, near ({x:.6}, {y:.6}, {z:.6}); move the stroke a little, \
                  or merge vertices that nearly coincide there"
+            ),
+            Error::StillJoined { at: [x, y, z] } => write!(
+                f,
+                "what the stroke crosses still hangs together around the cut, near ({x:.6}, {y:.6}, {z:.6}); \
+                 draw it across all that must come apart, or let its ends be extended"
             ),
         }
     }

@@ -2,7 +2,10 @@
 
 use glam::DVec2;
 
+use crate::curve::bounds;
+use crate::error::Result;
 use crate::pockets::{Fans, Pockets, depth_in};
+use crate::progress::Progress;
 use crate::segments::nearest_on_segment;
 
 /// No triangle is bent below this angle, unless it was so before: 10 degrees.
@@ -16,17 +19,27 @@ const BEYOND: [f64; 7] = [0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.6];
 ///
 /// `limit` as for [`pockets`](crate::pockets::pockets), `h` the length of an edge. True if any vertex
 /// moved.
-pub(crate) fn expel(pockets: &Pockets, vertices: &mut [DVec2], fans: &Fans<'_>, limit: f64, h: f64) -> bool {
+pub(crate) fn expel(
+    pockets: &Pockets,
+    vertices: &mut [DVec2],
+    fans: &Fans<'_>,
+    limit: f64,
+    h: f64,
+    progress: Progress<'_>,
+) -> Result<bool> {
+    let boxes: Vec<(DVec2, DVec2)> = pockets.inlets.iter().map(|pocket| bounds(pocket)).collect();
     let mut moved = false;
     for &(v, inlet) in &pockets.inside {
+        progress.report(0.0)?;
         let at = vertices[v];
         let cotangent = |p: DVec2| {
             let with = |t: [u32; 3]| sharpness([p, vertices[t[1] as usize], vertices[t[2] as usize]]);
             fans.at(v).map(with).fold(f64::NEG_INFINITY, f64::max)
         };
         let is_out = |p: DVec2| {
-            let depth = |pocket: &Vec<DVec2>| depth_in(pocket, p).unwrap_or(0.0);
-            pockets.inlets.iter().all(|pocket| depth(pocket) <= limit)
+            let is_beside = |&(low, high): &(DVec2, DVec2)| p.cmpge(low).all() && p.cmple(high).all();
+            let near = pockets.inlets.iter().zip(&boxes).filter(|(_, bounds)| is_beside(bounds));
+            near.map(|(pocket, _)| depth_in(pocket, p).unwrap_or(0.0)).all(|depth| depth <= limit)
         };
         let walls = pockets.inlets[inlet]
             .windows(2)
@@ -35,18 +48,19 @@ pub(crate) fn expel(pockets: &Pockets, vertices: &mut [DVec2], fans: &Fans<'_>, 
             let ahead = (wall - at).normalize_or_zero();
             BEYOND.map(|beyond| wall + beyond * h * ahead)
         });
-        let best = places
+        let allowed = cotangent(at).max(1.0 / LEAST_ANGLE.tan());
+        let mut good: Vec<(f64, DVec2)> = places
             .map(|place| (cotangent(place), place))
-            .filter(|&(cotangent, place)| cotangent.is_finite() && is_out(place))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((worst, place)) = best
-            && worst <= cotangent(at).max(1.0 / LEAST_ANGLE.tan())
-        {
+            .filter(|&(cotangent, _)| cotangent.is_finite() && cotangent <= allowed)
+            .collect();
+        good.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // The best place that is outside all inlets: asked last, since inlets may have many points.
+        if let Some((_, place)) = good.into_iter().find(|&(_, place)| is_out(place)) {
             vertices[v] = place;
             moved = true;
         }
     }
-    moved
+    Ok(moved)
 }
 
 /// Cotangent of the least angle of a triangle; infinite if it is not counter-clockwise.
@@ -66,7 +80,7 @@ mod tests {
     const MIDDLE: DVec2 = DVec2::new(30.0, 50.0);
 
     #[test]
-    fn a_vertex_leaves_the_inlet_and_its_triangles_stay_in_shape() {
+    fn a_vertex_leaves_the_inlet_and_its_triangles_stay_in_shape() -> Result<()> {
         let rim: Vec<DVec2> =
             (0..6).map(|i| MIDDLE + DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
         let mut vertices = rim.clone();
@@ -75,15 +89,16 @@ mod tests {
         let inlet = vec![rim[1], MIDDLE - DVec2::new(0.0, 0.2), rim[2]];
         let pockets = Pockets { inlets: vec![inlet.clone()], occupied: vec![], inside: vec![(6, 0)] };
         assert!(depth_in(&inlet, vertices[6]).is_some_and(|depth| depth > 0.05));
-        assert!(expel(&pockets, &mut vertices, &Fans::new(7, &triangles), 0.05, 1.0));
+        assert!(expel(&pockets, &mut vertices, &Fans::new(7, &triangles), 0.05, 1.0, Progress::NONE)?);
         assert!(depth_in(&inlet, vertices[6]).is_none_or(|depth| depth <= 0.05), "{}", vertices[6]);
         for t in triangles {
             assert!(sharpness(t.map(|v| vertices[v as usize])) < 1.0 / LEAST_ANGLE.tan());
         }
+        Ok(())
     }
 
     #[test]
-    fn a_vertex_without_a_good_place_stays() {
+    fn a_vertex_without_a_good_place_stays() -> Result<()> {
         let rim: Vec<DVec2> =
             (0..6).map(|i| MIDDLE + DVec2::from_angle(std::f64::consts::FRAC_PI_3 * f64::from(i))).collect();
         let mut vertices = rim.clone();
@@ -91,7 +106,8 @@ mod tests {
         let triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
         let inlet = vec![rim[1], MIDDLE + DVec2::new(2.0, -3.0), MIDDLE - DVec2::new(2.0, 3.0), rim[2]];
         let pockets = Pockets { inlets: vec![inlet], occupied: vec![], inside: vec![(6, 0)] };
-        assert!(!expel(&pockets, &mut vertices, &Fans::new(7, &triangles), 0.05, 1.0));
+        assert!(!expel(&pockets, &mut vertices, &Fans::new(7, &triangles), 0.05, 1.0, Progress::NONE)?);
         assert_eq!(vertices[6], MIDDLE);
+        Ok(())
     }
 }

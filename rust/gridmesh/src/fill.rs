@@ -14,10 +14,11 @@ mod grown;
 pub mod holes;
 mod lobes;
 mod mean_value;
-mod meet;
+pub(crate) mod meet;
 mod mesh;
 mod one;
 mod options;
+mod parallel;
 mod parts;
 mod patchwork;
 mod place;
@@ -26,6 +27,7 @@ mod regrid;
 mod report;
 mod reserve;
 mod settle;
+mod sharp;
 mod small;
 mod solver;
 mod span;
@@ -38,13 +40,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
-use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use self::check::check_loop;
-use self::meet::{Box3, count_meetings, is_graph, near_boxes};
+use self::check::{check_loop, check_near};
+use self::meet::{Box3, MOST, count_meetings, is_graph, near_boxes};
 use self::mesh::Rim;
 pub use self::options::{FillOptions, Smooth};
+use self::parallel::{in_parallel, steady};
 pub use self::parts::FillParts;
 use self::patchwork::Patchwork;
 pub use self::regrid::{Regrid, regrid};
@@ -54,8 +56,8 @@ pub use self::unroll::Unrolling;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 
-/// Groups of loops filled between two reports of progress.
-const BATCH: usize = 64;
+/// Vertices this many rings of triangles around a loop must be finite.
+const SOUND_RINGS: usize = 2;
 
 /// A filled hole.
 #[derive(Clone, Debug)]
@@ -69,6 +71,8 @@ pub struct Fill {
     pub triangles: Vec<[u32; 3]>,
     /// Numbers about it.
     pub report: FillReport,
+    /// Edges of the patch along which a hard edge of the surroundings goes on, numbered as the triangles are.
+    pub creases: Vec<[u32; 2]>,
     shape: Arc<Shape>,
 }
 
@@ -82,6 +86,8 @@ struct Shape {
     smooth: Smooth,
     vertices: usize,
     positions: Vec<DVec3>,
+    /// Hard edges; where there are some, `flat` has each planar part in a place of its own.
+    creases: Vec<[u32; 2]>,
 }
 
 /// Fills one hole of a mesh, or a loop of edges without a mesh.
@@ -92,6 +98,9 @@ struct Shape {
 /// disagree). The patch is a disk, and no new edge or face repeats one of the mesh. It may meet itself or
 /// the mesh, as any filling of a knotted loop has to; the report counts this and `strict` refuses it.
 ///
+/// With `sharp`, hard edges of the surroundings that run into the loop go on in the patch, if they meet in one line
+/// or one point and the surface between them is planar; the report says how many do.
+///
 /// Work is local but for passes over the mesh that find the triangles near the loop. The same input
 /// gives the same output for any number of threads.
 ///
@@ -100,6 +109,7 @@ struct Shape {
 /// [`Error::TooFewPoints`], [`Error::RepeatedVertex`], [`Error::FigureEight`], [`Error::NotFinite`],
 /// [`Error::ExtremeSize`], [`Error::ZeroLengthEdge`], [`Error::SelfTouching`], [`Error::FacesOnBothSides`],
 /// [`Error::NonManifold`]. [`Error::InvalidOption`]; [`Error::FillIntersects`] if `strict`; [`Error::Cancelled`].
+/// Vertices within two rings of triangles around the loop have to be finite, wherever else they need not.
 ///
 /// Source: Nealen et al. 2009, section V, for the patch. The paper leaves the positions of the inner
 /// vertices to its surroundings (FiberMesh); here they come from [`Smooth`].
@@ -111,9 +121,11 @@ pub fn fill_hole(
     progress: Progress<'_>,
 ) -> Result<Fill> {
     let job = Job { vertices, triangles, options };
-    let mut fills = job.run(&[Ok(loop_.to_vec())], progress)?;
-    fills.pop().unwrap_or(Err(Error::Cancelled))
+    let mut fills = steady(progress, |progress| job.run(&[Ok(loop_.to_vec())], progress))?;
+    fills.pop().unwrap_or(Err(NO_ITEM))
 }
+
+const NO_ITEM: Error = Error::Internal { reason: "a loop has neither a fill nor an error" };
 
 /// Fills the given loops, or all holes, as [`fill_hole`] does, in parallel.
 ///
@@ -142,7 +154,7 @@ pub fn fill_holes(
             found
         }
     };
-    Job { vertices, triangles, options }.run(&loops, progress)
+    steady(progress, |progress| Job { vertices, triangles, options }.run(&loops, progress))
 }
 
 struct Job<'a> {
@@ -164,10 +176,17 @@ impl Job<'_> {
             _ => 1,
         };
         let rim = Rim::new(n_vertices, self.triangles, &seeds, rings)?;
-        let mut checked = loops
-            .iter()
-            .map(|l| l.as_ref().map_err(Clone::clone).and_then(|l| check_loop(l, self.vertices, &rim)))
-            .collect::<Vec<_>>();
+        // The second ring is looked at only where something is wrong somewhere.
+        let sound = self.vertices.iter().all(|p| p.is_finite());
+        let wide =
+            if sound { None } else { Some(Rim::new(n_vertices, self.triangles, &seeds, SOUND_RINGS)?) };
+        let check = |loop_: &Result<Vec<u32>>| {
+            let loop_ = loop_.as_ref().map_err(Clone::clone)?;
+            let checked = check_loop(loop_, self.vertices, &rim)?;
+            wide.as_ref().map_or(Ok(()), |wide| check_near(loop_, self.vertices, wide))?;
+            Ok(checked)
+        };
+        let mut checked = loops.iter().map(check).collect::<Vec<_>>();
         refuse_shared_edges(&mut checked);
         let search = since.elapsed().as_secs_f64();
         progress.report(0.1)?;
@@ -177,45 +196,47 @@ impl Job<'_> {
             // Fills of one group could repeat each other's edges: one after the other, each knows the edges
             // of those before.
             let mut reserved = FxHashSet::default();
-            let fills = group.iter().map(|&k| {
-                let fill = checked[k].as_ref().map_err(Clone::clone).and_then(|checked| {
-                    let mut fill = self.one(checked, &rim, &reserved, progress)?;
-                    fill.report.seconds.insert(0, ("search", search));
-                    Ok(fill)
-                });
-                if let Ok(fill) = &fill {
-                    let old = |e: &[u32; 2]| e.iter().all(|&v| (v as usize) < n_vertices);
-                    reserved.extend(fill.triangles.iter().flat_map(edges).filter(old));
+            let mut fills = Vec::with_capacity(group.len());
+            for (i, &k) in group.iter().enumerate() {
+                let part = |i: usize| i as f64 / group.len() as f64;
+                let here = progress.part(part(i), part(i + 1));
+                let fill = match &checked[k] {
+                    Ok(checked) => self.one(checked, &rim, &reserved, here),
+                    Err(error) => Err(error.clone()),
+                };
+                match fill {
+                    Ok(mut fill) => {
+                        fill.report.seconds.insert(0, ("search", search));
+                        let old = |e: &[u32; 2]| e.iter().all(|&v| (v as usize) < n_vertices);
+                        reserved.extend(fill.triangles.iter().flat_map(edges).filter(old));
+                        fills.push((k, Ok(fill)));
+                    }
+                    Err(Error::Cancelled) => return Err(Error::Cancelled),
+                    Err(error) => fills.push((k, Err(error))),
                 }
-                (k, fill)
-            });
-            fills.collect::<Vec<_>>()
-        };
-        let mut filled = vec![];
-        // Reports come from the calling thread alone, between batches.
-        for batch in groups.chunks(BATCH) {
-            let part = |k: usize| 0.1 + 0.7 * k as f64 / groups.len() as f64;
-            let here = progress.part(part(filled.len()), part(filled.len() + batch.len()));
-            match batch {
-                [single] => filled.push(fill_group(single, here)),
-                _ => filled.par_extend(batch.par_iter().map(|group| fill_group(group, Progress::NONE))),
             }
-            here.report(1.0)?;
-        }
+            Ok(fills)
+        };
+        let here = progress.part(0.1, 0.8);
+        let filled = match groups.as_slice() {
+            [single] => vec![fill_group(single, here)?],
+            several => {
+                let vertices = |k: &usize| checked[*k].as_ref().map_or(1, |checked| checked.vertices.len());
+                let size = |group: &Vec<usize>| group.iter().map(vertices).sum();
+                in_parallel(several, size, here, fill_group)?
+            }
+        };
         let mut fills = filled.into_iter().flatten().collect::<Vec<_>>();
         fills.sort_unstable_by_key(|(k, _)| *k);
         let mut fills = fills.into_iter().map(|(_, fill)| fill).collect::<Vec<_>>();
         progress.report(0.8)?;
-        if fills.iter().any(|fill| fill == &Err(Error::Cancelled)) {
-            return Err(Error::Cancelled);
-        }
-        self.count_meetings(&mut fills);
+        self.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
         progress.report(1.0)?;
         Ok(fills)
     }
 
     /// Counts what new triangles meet: the mesh, themselves, and those of fills that come before.
-    fn count_meetings(&self, fills: &mut [Result<Fill>]) {
+    fn count_meetings(&self, fills: &mut [Result<Fill>], progress: Progress<'_>) -> Result<()> {
         let since = Instant::now();
         let n = self.vertices.len() as u32;
         let done = fills.iter().flatten().map(|fill| {
@@ -243,16 +264,17 @@ impl Job<'_> {
             .map(|k| Box3::around(named(k).iter().flatten().map(|&v| position(v))))
             .collect::<Vec<_>>();
         let near = near_boxes(&boxes, self.vertices, self.triangles);
-        let count = |k: usize| {
+        let count = |&k: &usize, progress: Progress<'_>| {
             let mut others = near[k].iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
             others.extend((0..k).filter(|&j| boxes[j].meets(&boxes[k])).flat_map(named));
             let (around, positions, own) = done[k].2.graph();
             let apart = is_graph(around, positions, own);
-            count_meetings(position, &named(k), &others, apart)
+            count_meetings(position, &named(k), &others, apart, MOST, progress)
         };
-        let counts: Vec<_> = match done.len() {
-            0 | 1 => (0..done.len()).map(count).collect(),
-            several => (0..several).into_par_iter().map(count).collect(),
+        let counts = match (0..done.len()).collect::<Vec<_>>().as_slice() {
+            [] => vec![],
+            [single] => vec![count(single, progress)?],
+            several => in_parallel(several, |&k| done[k].0.len(), progress, count)?,
         };
         let seconds = since.elapsed().as_secs_f64();
         for (item, (pairs, at)) in fills.iter_mut().filter(|fill| fill.is_ok()).zip(counts) {
@@ -264,6 +286,7 @@ impl Job<'_> {
                 *item = Err(Error::FillIntersects { pairs, at: at.into() });
             }
         }
+        Ok(())
     }
 }
 
@@ -296,7 +319,10 @@ impl Fill {
         if let Some(&v) = near.into_iter().find(|&&v| !vertices[v as usize].is_finite()) {
             return Err(Error::NotFinite { what: "mesh".into(), point: v as usize });
         }
-        let positions = self.shape.solve(vertices)?.positions;
+        if !self.shape.creases.is_empty() {
+            return self.shape.carried(vertices);
+        }
+        let positions = self.shape.solve(vertices, Progress::NONE)?.positions;
         Ok(positions[self.shape.work.inner()].to_vec())
     }
 }

@@ -18,7 +18,7 @@ use glam::DVec2;
 use crate::embed::count_self_intersections;
 use crate::error::{Error, Result};
 use crate::patch::Patch;
-use crate::progress::Progress;
+use crate::progress::{Progress, Rising};
 use crate::stitch::projects_well;
 use crate::surface::{Surface, UvLayout};
 use field::Field;
@@ -49,7 +49,7 @@ pub enum Profile {
 /// How [`inflate`] works.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InflateOptions {
-    /// Scales the height of both sides; positive.
+    /// Scales the height of both sides: 1e-9 to 1e9.
     pub depth: f64,
     /// Shape of the cross-section.
     pub profile: Profile,
@@ -104,9 +104,9 @@ impl Default for InflateOptions {
 /// factorisations included.
 ///
 /// # Errors
-/// [`Error::InvalidOption`] for a depth that is not positive, a side's depth that is negative, not
-/// finite or zero on both sides, or too few values per point; [`Error::Solver`] if the patch has no
-/// interior vertex or a triangle that is not positive; [`Error::Cancelled`].
+/// [`Error::InvalidOption`] for a depth out of range, a side's depth that is negative, above 1e9 or zero on
+/// both sides, or too few values per point; [`Error::Solver`] if the patch has no interior vertex or a
+/// triangle that is not positive; [`Error::Cancelled`].
 ///
 /// Source: the job is that of Nealen et al., FiberMesh, SIGGRAPH 2007, which diffuses curvature and
 /// refits positions in rounds. We differ: its rounds start from an even mesh and lose height on an
@@ -116,6 +116,9 @@ impl Default for InflateOptions {
 pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) -> Result<Surface> {
     let mut clock = Stages::new();
     options.check()?;
+    let rising = Rising::new(progress);
+    let callback = |fraction: f64| rising.report(fraction);
+    let progress = Progress::new(&callback);
     let first = patch.n_boundary();
     if first >= patch.vertices.len() {
         return Err(Error::Solver { stage: "inflation", reason: "the patch has no interior vertex".into() });
@@ -129,7 +132,7 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
     let middle = 0.5 * (low + high);
     let vertices = patch.vertices.iter().map(|&p| p - middle).collect::<Vec<_>>();
-    let flat = Flat::new(patch, &vertices, &topology, &pattern)?;
+    let flat = Flat::new(patch, &vertices, &topology, &pattern, progress.part(0.2, 0.4))?;
     clock.stage("analyse");
     progress.report(0.2)?;
 
@@ -178,6 +181,9 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         .map(|v| if v < first { positions[v].extend(0.0) } else { lift(&scales.front, 1.0, v) })
         .collect::<Vec<_>>();
     let bottom = (first..positions.len()).map(|v| lift(&scales.back, -1.0, v)).collect::<Vec<_>>();
+    if !top.iter().chain(&bottom).all(|p| p.is_finite()) {
+        return Err(Error::Solver { stage: "inflation", reason: "a height is not a number".into() });
+    }
     let apart = top[first..].iter().zip(&bottom).all(|(a, b)| a.z >= 0.0 && b.z <= 0.0 && a.z > b.z);
     let mut surface = Surface::assemble(patch, top, Some(bottom), options.uv);
     let report = &mut surface.report;

@@ -105,13 +105,20 @@ pub fn corners(arcs: &[f64], turning: &[f64], length: f64, angle: f64, separatio
         .map(|(&arc, &angle)| Corner { arc, angle })
         .collect();
     found.sort_by(|a, b| b.angle.abs().total_cmp(&a.angle.abs()).then(a.arc.total_cmp(&b.arc)));
+    // Cells as long as the separation, or a little longer: only neighbours can be too near.
+    let n = ((length / separation) as usize).clamp(1, found.len().max(1));
+    let cell_of = |arc: f64| ((arc.rem_euclid(length) / length * n as f64) as usize).min(n - 1);
+    let mut cells: Vec<Vec<f64>> = vec![Vec::new(); n];
     let mut kept: Vec<Corner> = Vec::new();
     for corner in found {
-        let apart = |other: &Corner| {
-            let d = (corner.arc - other.arc).rem_euclid(length);
+        let apart = |other: &f64| {
+            let d = (corner.arc - other).rem_euclid(length);
             d.min(length - d) >= separation
         };
-        if kept.iter().all(apart) {
+        let cell = cell_of(corner.arc);
+        // Rounding may put a corner one cell aside.
+        if (0..5).all(|k| cells[(cell + n * 2 + k - 2) % n].iter().all(apart)) {
+            cells[cell].push(corner.arc);
             kept.push(corner);
         }
     }
@@ -217,6 +224,33 @@ mod tests {
                     prop_assert!(d.min(100.0 - d) < 1e-9);
                 }
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn corners_are_the_sharpest_apart(
+            turns in prop::collection::vec((0.0f64..3.0, 0.01f64..2.0), 1..80),
+            separation in 0.05f64..4.0,
+        ) {
+            let mut length = 0.0;
+            let arcs: Vec<f64> = turns.iter().map(|t| { length += t.1; length - t.1 }).collect();
+            let turning: Vec<f64> = turns.iter().map(|t| t.0).collect();
+            let kept = corners(&arcs, &turning, length, 0.5, separation);
+            let gap = |a: f64, b: f64| {
+                let d = (a - b).rem_euclid(length);
+                d.min(length - d)
+            };
+            let mut expected: Vec<Corner> = Vec::new();
+            let mut found: Vec<Corner> =
+                arcs.iter().zip(&turning).map(|(&arc, &angle)| Corner { arc, angle }).collect();
+            found.sort_by(|a, b| b.angle.total_cmp(&a.angle).then(a.arc.total_cmp(&b.arc)));
+            for corner in found.into_iter().filter(|corner| corner.angle > 0.5) {
+                if expected.iter().all(|other| gap(corner.arc, other.arc) >= separation) {
+                    expected.push(corner);
+                }
+            }
+            prop_assert_eq!(kept, expected);
         }
     }
 

@@ -84,7 +84,7 @@ pub(crate) fn traced(
         Err(failure) => {
             let near = contours[0].points()[0];
             let at = failure.at().map_or(near, |at| lattice.from_units(Lattice::units(at)));
-            return Ok(Err(Obstacle { reason: failure.to_string(), at }));
+            return Ok(Err(Obstacle::new(failure.to_string(), at)));
         }
     };
     let mut outline = Outline {

@@ -56,7 +56,8 @@ pub enum Mirror {
 pub struct SketchOptions {
     /// Edge length of the lattice in the units of the drawing; exclusive with `triangles`.
     pub edge_length: Option<f64>,
-    /// Triangles of the flat patch, reached within 10 %; 2000 if neither is given.
+    /// Triangles of the flat patch, 6 or more; 2000 if neither is given. Reached within 10 %, below 60 within 6
+    /// triangles: the report says how many there are.
     pub triangles: Option<usize>,
     /// Choose the number of triangles: four across the thinnest limb, but at least 1000 and at most
     /// `max_triangles`; where those cannot follow the drawing, the least number that can. Exclusive with
@@ -82,12 +83,15 @@ pub struct SketchOptions {
     pub mirror: Option<Mirror>,
     /// What to do with an outline that crosses itself.
     pub self_crossing: SelfCrossing,
-    /// Search nodes spent on proving a boundary optimal whose first solution had conflicts; not
-    /// beside `mirror`.
+    /// Search nodes spent on proving a boundary optimal whose first solution had conflicts, at most; a proof ends
+    /// after 30 million states too, some seconds, whatever this number. Not beside `mirror`.
     pub proof_nodes: usize,
-    /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and
-    /// may hold inverted triangles.
+    /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and is
+    /// refused ([`Error::Inverted`]) where that inverts triangles.
     pub relax: bool,
+    /// Whether a drawing too thin for its mesh is told the least number of triangles that works. The
+    /// search may take some seconds; without it such a drawing is refused at once.
+    pub least: bool,
 }
 
 impl Default for SketchOptions {
@@ -107,6 +111,7 @@ impl Default for SketchOptions {
             self_crossing: SelfCrossing::Error,
             proof_nodes: 0,
             relax: true,
+            least: true,
         }
     }
 }
@@ -234,10 +239,9 @@ pub struct SketchReport {
     pub corners: usize,
     /// Corners that got no vertex of their own.
     pub released_corners: usize,
-    /// Triangles across the thinnest limb; `None` where no part is longer than it is wide.
+    /// Triangles across the thinnest limb; `None` where no part is longer than it is wide, and unless the
+    /// number of triangles was left to the drawing (`automatic`).
     pub across: Option<f64>,
-    /// About how many triangles the patch needs for four across that limb.
-    pub triangles_for_four: Option<usize>,
     /// Input points dropped because they repeat their predecessor.
     pub repaired: usize,
     /// Greatest distance of a vertex from the mirror image of its partner, in edges: rounding, if the

@@ -43,6 +43,14 @@ pub(crate) struct Outline {
 pub(crate) struct Obstacle {
     pub(crate) reason: String,
     pub(crate) at: DVec2,
+    /// Triangles are inverted, and relaxation was not allowed.
+    pub(crate) is_inverted: bool,
+}
+
+impl Obstacle {
+    pub(crate) fn new(reason: impl Into<String>, at: DVec2) -> Self {
+        Self { reason: reason.into(), at, is_inverted: false }
+    }
 }
 
 impl Outline {
@@ -102,8 +110,7 @@ pub(crate) fn grown(
     let band = Band::new(&faired, reach);
     let raster = Raster::new(&widened, reach.ceil() as i32 + 2);
     progress.report(0.3)?;
-    let obstacle =
-        |reason: &str, at: DVec2| Ok(Err(Obstacle { reason: reason.to_owned(), at: lattice.from_units(at) }));
+    let obstacle = |reason: &str, at: DVec2| Ok(Err(Obstacle::new(reason, lattice.from_units(at))));
     let Some(mut boundary) = grow_inside(&raster, progress.part(0.3, 0.6))? else {
         return obstacle("no lattice hexagon fits inside the drawing", faired.points[0]);
     };
@@ -151,7 +158,7 @@ pub(crate) fn traced(
         Err(TraceFailure::Cancelled) => return Err(Error::Cancelled),
         Err(failure) => {
             let at = failure.at().map_or(targets[0].points[0], Lattice::units);
-            return Ok(Err(Obstacle { reason: failure.to_string(), at: lattice.from_units(at) }));
+            return Ok(Err(Obstacle::new(failure.to_string(), lattice.from_units(at))));
         }
     };
     let arcs = traced

@@ -41,6 +41,9 @@ const ROUNDS: usize = 4;
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     pub(crate) patch: Patch,
+    /// For each loop the arc length of each vertex on its contour, from the contour's own first point:
+    /// unlike that from the first input point it does not depend on where the drawing starts.
+    pub(crate) arcs: Vec<Vec<f64>>,
     pub(crate) corners: usize,
     pub(crate) released_corners: usize,
     /// Greatest distance of the drawing from the boundary, in edges.
@@ -57,7 +60,7 @@ impl Placed {
         self.bridged_inlets + self.crossings
     }
 
-    /// Why the patch is not to be had, if it is not; without relaxation nothing is a fault.
+    /// Why the patch is not to be had, if it is not; without relaxation bridges and crossings are no fault.
     pub(crate) fn fault(&self, options: &SketchOptions) -> Option<&'static str> {
         match self {
             _ if !options.relax => None,
@@ -103,8 +106,7 @@ pub(crate) fn place(
     let mut relaxation = Relaxation::new(&region.triangles, &lattice_positions, &lines, &rims, &relaxed)?;
     // A valid patch that bridges an inlet serves if following the inlet leads to none.
     let mut valid: Option<Placed> = None;
-    let mut obstacle =
-        Obstacle { reason: "a part of the drawing is lost".to_owned(), at: contours[0].points()[0] };
+    let mut obstacle = Obstacle::new("a part of the drawing is lost", contours[0].points()[0]);
     let mut held: Vec<(usize, f64)> = Vec::new();
     let mut fans = Fans::new(lattice_positions.len(), &region.triangles);
     for round in 0..ROUNDS {
@@ -118,15 +120,15 @@ pub(crate) fn place(
             relaxation.store(&mut rims);
         }
         let mut vertices: Vec<DVec2> = relaxation.positions.iter().map(|&p| lattice.from_units(p)).collect();
-        let (loops, arcs) = loops(contours, &rims, &found, h, &mut vertices);
-        let inverted = first_inverted(&vertices, &region.triangles, lattice.origin);
-        if let Some(triangle) = inverted.filter(|_| options.relax) {
+        let (loops, arcs, own) = loops(contours, &rims, &found, h, &mut vertices);
+        if let Some(triangle) = first_inverted(&vertices, &region.triangles, lattice.origin) {
             let at = vertices[region.triangles[triangle][0] as usize];
-            obstacle = Obstacle { reason: "a triangle stays inverted".to_owned(), at };
+            obstacle =
+                Obstacle { is_inverted: !options.relax, ..Obstacle::new("a triangle stays inverted", at) };
             break;
         }
         let beside = beside(contours, &vertices, &arcs);
-        let (farthest, mut strays) = deviation(&beside, &vertices, &arcs, CLOSE * h);
+        let (farthest, mut strays) = deviation(&beside, &vertices, &arcs, CLOSE * h, STRAY * h);
         if farthest > STRAY * h {
             strays.retain(|stray| stray.distance > STRAY * h);
             obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
@@ -141,7 +143,7 @@ pub(crate) fn place(
         let mut bridged_inlets = occupied.len();
         if !occupied.is_empty() && options.relax {
             let mut expelled = vertices.clone();
-            if expel(&pockets_now, &mut expelled, &fans, INLET * h, h)
+            if expel(&pockets_now, &mut expelled, &fans, INLET * h, h, progress)?
                 && first_inverted(&expelled, &region.triangles, lattice.origin).is_none()
             {
                 let left = pockets(&beside, &expelled, &mut fans, &arcs, INLET * h);
@@ -162,6 +164,7 @@ pub(crate) fn place(
                 inlets: pockets_now.inlets,
                 lattice: *lattice,
             },
+            arcs: own,
             corners: n_corners,
             released_corners: n_corners - kept,
             max_deviation: farthest / h,
@@ -218,20 +221,23 @@ fn rims(
 }
 
 /// Puts the boundary vertices exactly on their contours; the patch's loops, and the arc lengths in
-/// the units of the drawing, unwrapped.
+/// the units of the drawing, unwrapped, and as they are placed.
 fn loops(
     contours: &[ClosedCurve],
     rims: &[Rim],
     corners: &[Vec<Corner>],
     h: f64,
     vertices: &mut [DVec2],
-) -> (Vec<Loop>, Vec<Vec<f64>>) {
+) -> (Vec<Loop>, Vec<Vec<f64>>, Vec<Vec<f64>>) {
     let mut loops = Vec::new();
     let mut arcs = Vec::new();
+    let mut own = Vec::new();
     for ((contour, rim), corners) in contours.iter().zip(rims).zip(corners) {
         let mut placed = Loop { start: rim.start as u32, length: contour.length(), ..Loop::default() };
+        let mut at = Vec::with_capacity(rim.s.len());
         for (i, &s) in rim.s.iter().enumerate() {
             let s = if rim.pinned[i] { nearest_drawn(contour, s * h) } else { contour.wrap(s * h) };
+            at.push(contour.wrap(s));
             vertices[rim.start + i] = contour.point_at(s);
             placed.arc.push(contour.input_arc(s));
             placed.source.push(contour.source(s));
@@ -239,8 +245,9 @@ fn loops(
         }
         loops.push(placed);
         arcs.push(rim.s.iter().map(|s| s * h).collect());
+        own.push(at);
     }
-    (loops, arcs)
+    (loops, arcs, own)
 }
 
 /// The angle of the corner at arc length `s`, however its vertex came there; zero if there is none.

@@ -1,5 +1,7 @@
 //! Progress reports and cancelling.
 
+use std::sync::{Mutex, PoisonError};
+
 use crate::error::{Error, Result};
 
 /// Hands fractions of the work done to a callback, which may ask to stop.
@@ -43,10 +45,48 @@ impl<'a> Progress<'a> {
     }
 }
 
+/// Progress that only rises, for work that is done side by side or begins again.
+///
+/// What is lower than before is passed on as the highest fraction so far. Once the callback has asked to
+/// stop it is not asked again, and all parts of the work hear of it.
+pub(crate) struct Rising<'a> {
+    progress: Progress<'a>,
+    /// The highest fraction, and whether to stop.
+    state: Mutex<(f64, bool)>,
+}
+
+impl<'a> Rising<'a> {
+    pub(crate) fn new(progress: Progress<'a>) -> Self {
+        Self { progress, state: Mutex::new((0.0, false)) }
+    }
+
+    /// Passes a fraction on; false asks to stop.
+    pub(crate) fn report(&self, fraction: f64) -> bool {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.0 = state.0.max(fraction.min(1.0));
+        state.1 = state.1 || self.progress.report(state.0).is_err();
+        !state.1
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::sync::Mutex;
+
+    #[test]
+    fn rising_progress_never_falls_and_stops_for_good() {
+        let seen = Mutex::new(Vec::new());
+        let callback = |f: f64| {
+            let mut seen = seen.lock().unwrap_or_else(PoisonError::into_inner);
+            seen.push(f);
+            seen.len() < 4
+        };
+        let rising = Rising::new(Progress::new(&callback));
+        let answers = [0.2, 0.1, 0.5, 0.3, 0.9].map(|f| rising.report(f));
+        assert_eq!(answers, [true, true, true, false, false]);
+        assert_eq!(*seen.lock().unwrap_or_else(PoisonError::into_inner), [0.2, 0.2, 0.5, 0.5]);
+    }
 
     #[test]
     fn parts_nest_and_false_cancels() {

@@ -4,7 +4,6 @@ mod lattices;
 mod least;
 mod size;
 
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use glam::DVec2;
@@ -13,7 +12,7 @@ use size::Miss;
 
 use crate::contours::read_contours;
 use crate::curve::ClosedCurve;
-use crate::error::{Error, Result};
+use crate::error::{Error, Needed, Result};
 use crate::lattice::Lattice;
 use crate::mirror;
 use crate::options::{
@@ -22,7 +21,7 @@ use crate::options::{
 use crate::outline::{Obstacle, Outline};
 use crate::patch::Patch;
 use crate::place::{Placed, min_angle, min_angle_off_corners, place};
-use crate::progress::Progress;
+use crate::progress::{Progress, Rising};
 use crate::symmetry::Symmetry;
 use crate::thickness::{self, Limb};
 use crate::union::{nearest_source, outer_outline};
@@ -50,9 +49,10 @@ pub struct Sketch {
 /// direction it runs. Time is linear in the number of triangles and points for ordinary drawings.
 ///
 /// # Errors
-/// [`Error::TooCoarse`] with a number of triangles that works, if no valid patch of about the size
-/// asked for was found; [`Error::NoPatch`] if none was found at any size; and the errors of
-/// [`ClosedCurve::new`] and [`SketchOptions::check`].
+/// [`Error::TooCoarse`] if no valid patch of about the size asked for was found, with the least number of
+/// triangles that works unless [`SketchOptions::least`] is off or the search for it would take too long;
+/// [`Error::NoPatch`] if there is none at any size up to [`MAX_TRIANGLES`]; [`Error::Inverted`] without
+/// relaxation; and the errors of [`ClosedCurve::new`] and [`SketchOptions::check`].
 ///
 /// Source: Nealen et al., GridMesh, 2009, section IV.
 pub fn mesh_sketch(
@@ -64,15 +64,9 @@ pub fn mesh_sketch(
     options.check()?;
     progress.report(0.0)?;
     // Angles are solved side by side, and failed placements start again: only what rises is passed on.
-    let state = Mutex::new((0.0f64, false));
-    let rising = |fraction: f64| {
-        let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.0 = state.0.max(fraction);
-        // Once cancelled, the other angles hear of it without asking again.
-        state.1 = state.1 || progress.report(state.0).is_err();
-        !state.1
-    };
-    let progress = Progress::new(&rising);
+    let rising = Rising::new(progress);
+    let callback = |fraction: f64| rising.report(fraction);
+    let progress = Progress::new(&callback);
     let started = Instant::now();
     let union = match options.self_crossing {
         SelfCrossing::Error => None,
@@ -87,11 +81,12 @@ pub fn mesh_sketch(
     }
     let contours = read_contours(union.as_ref().map_or(outline, |(points, _)| points), holes)?;
     let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
-    let thinnest = thickness::limbs_of(&contours)?.first().copied();
-    let for_four = thinnest.map(|limb| thickness::triangles_for(area, limb.width, thickness::ACROSS));
-    let triangles = match options.automatic {
-        false => options.triangles.unwrap_or(DEFAULT_TRIANGLES),
-        true => chosen_triangles(for_four, options.max_triangles),
+    let mut thinnest = None;
+    let triangles = if options.automatic {
+        thinnest = thickness::limbs_of(&contours)?.first().copied();
+        chosen_triangles(area, thinnest, options.max_triangles)
+    } else {
+        options.triangles.unwrap_or(DEFAULT_TRIANGLES)
     };
     let edge_length = match options.edge_length {
         Some(h) => h,
@@ -115,10 +110,12 @@ pub fn mesh_sketch(
         None => Asked::Triangles(triangles),
     };
     let mut attempt = job.attempt_unless_hopeless(asked, expected, progress)?;
-    if let (true, Err(obstacle)) = (options.automatic, &attempt) {
+    if let (true, Err(obstacle)) = (options.automatic, &attempt)
+        && !obstacle.is_inverted
+    {
         // A number that was chosen gives way to one that works.
         match job.least_that_works(expected, obstacle.clone(), progress)? {
-            Error::TooCoarse { least, .. } if least <= options.max_triangles => {
+            Error::TooCoarse { needed: Needed::Least(least), .. } if least <= options.max_triangles => {
                 attempt = job.attempt(Asked::Triangles(least), Effort::Full, progress)?;
             }
             refused => return Err(refused),
@@ -126,6 +123,11 @@ pub fn mesh_sketch(
     }
     let mut sketch = match attempt {
         Ok(sketch) => sketch,
+        Err(Obstacle { at, is_inverted: true, .. }) => return Err(Error::Inverted { at: at.to_array() }),
+        Err(_) if !options.least => {
+            let triangles = expected.round().max(1.0) as usize;
+            return Err(Error::TooCoarse { triangles, needed: Needed::Unknown });
+        }
         Err(obstacle) => return Err(job.least_that_works(expected, obstacle, progress)?),
     };
     if let Some((_, slivers)) = union {
@@ -182,8 +184,8 @@ impl Job<'_> {
         progress: Progress<'_>,
     ) -> Result<Result<Sketch, Obstacle>> {
         if self.is_hopeless(expected.round() as usize) {
-            let reason = "the drawing is too thin for two rows of triangles".to_owned();
-            return Ok(Err(Obstacle { reason, at: self.contours[0].points()[0] }));
+            let at = self.contours[0].points()[0];
+            return Ok(Err(Obstacle::new("the drawing is too thin for two rows of triangles", at)));
         }
         self.attempt(asked, Effort::Full, progress)
     }
@@ -273,12 +275,14 @@ impl Job<'_> {
         if let Some((_, outline, placed, mirror_error)) = best {
             if let Some(reason) = placed.fault(self.options) {
                 let at = placed.patch.inlets.first().map_or(self.centre, |inlet| inlet[0]);
-                return Ok(Err(Obstacle { reason: reason.to_owned(), at }));
+                return Ok(Err(Obstacle::new(reason, at)));
             }
             return Ok(Ok(self.report(&outline, placed, mirror_error)));
         }
-        let none = || Obstacle { reason: "no lattice was tried".to_owned(), at: DVec2::ZERO };
-        Ok(Err(obstacle.unwrap_or_else(none)))
+        match obstacle {
+            Some(obstacle) => Ok(Err(obstacle)),
+            None => Err(Error::Internal { reason: "no lattice was tried" }),
+        }
     }
 
     /// The patch of an outline, symmetric if that was asked for; and by how much it is not.
@@ -319,10 +323,6 @@ impl Job<'_> {
             corners: placed.corners,
             released_corners: placed.released_corners,
             across: self.thinnest.map(|limb| thickness::across(limb.width, patch.lattice.edge_length)),
-            triangles_for_four: self.thinnest.map(|limb| {
-                thickness::triangles_for(self.area, limb.width, thickness::ACROSS).min(MAX_TRIANGLES).ceil()
-                    as usize
-            }),
             repaired: self.contours.iter().map(ClosedCurve::repaired).sum(),
             mirror_error,
             placements: self.placements,
@@ -335,8 +335,9 @@ impl Job<'_> {
 }
 
 /// The number of triangles where it is left to the drawing.
-fn chosen_triangles(for_four: Option<f64>, limit: usize) -> usize {
-    let wanted = for_four.map_or(0, |n| n.min(MAX_TRIANGLES).ceil() as usize);
+fn chosen_triangles(area: f64, thinnest: Option<Limb>, limit: usize) -> usize {
+    let wanted = |limb: Limb| thickness::triangles_for(area, limb.width, thickness::ACROSS);
+    let wanted = thinnest.map_or(0, |limb| wanted(limb).min(MAX_TRIANGLES).ceil() as usize);
     wanted.max(LEAST_CHOSEN).min(limit)
 }
 

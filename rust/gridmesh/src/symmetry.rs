@@ -98,6 +98,11 @@ impl Symmetry {
         let difference = pairings.iter().map(|pairing| pairing.matching().difference).fold(0.0, f64::max);
         Ok(Self { axis, pairings, difference })
     }
+
+    /// Finer meshes than of this edge length would show that the sides differ.
+    pub(crate) fn least_edge_length(&self) -> f64 {
+        self.difference / OF_EDGE
+    }
 }
 
 impl Pairing {

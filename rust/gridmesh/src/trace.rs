@@ -15,6 +15,7 @@ mod mirrored;
 mod parameters;
 mod prices;
 mod proof;
+mod pulse;
 mod queue;
 mod search;
 mod sides;
@@ -38,6 +39,7 @@ use graph::{Graph, TURN};
 pub use mirrored::{Part, trace_mirrored};
 use prices::Prices;
 use proof::Proof;
+use pulse::Pulse;
 use search::{Search, Walk};
 
 /// Where the distance goes when no boundary is found within the one asked for.
@@ -187,7 +189,7 @@ impl From<Error> for TraceFailure {
 /// First each contour gets its cheapest path: a shortest path over (band node, direction), found
 /// with a lower bound from every state to the end. If the paths conflict, by a repeated point or an
 /// edge inside the patch between two vertices, the conflicts are priced and the paths searched
-/// again, at most 100 rounds; then Lagrange prices, and as far as `proof_nodes` allows branch and
+/// again, at most 100 rounds and a bounded number of states; then Lagrange prices, and as far as `proof_nodes` allows branch and
 /// bound, improve the result and the lower bound. If no boundary is found within `max_distance` a
 /// distance of 2 is tried.
 ///
@@ -238,6 +240,11 @@ impl Refusal {
         let is_final = HOPELESS * (dive.conflicts.len() + dive.wrong.len()) > vertices;
         Self { failure, is_final }
     }
+
+    /// Final also if the search has been at it for too long.
+    fn or_final(self, is_spent: bool) -> Self {
+        Self { is_final: self.is_final || is_spent, ..self }
+    }
 }
 
 impl From<TraceFailure> for Refusal {
@@ -258,8 +265,14 @@ impl From<Error> for Refusal {
 ///
 /// `max_distance` is the one that was used. O(n) in the total length in edges.
 pub fn fewest_turns(targets: &[Target], max_distance: f64) -> Option<usize> {
-    let fewest =
-        |target| straightest::fewest_turns(&Graph::new(&Band::new(target, max_distance), 0.0), u32::MAX);
+    fewest(targets, max_distance, &mut Pulse::new(Progress::NONE))
+}
+
+fn fewest(targets: &[Target], max_distance: f64, pulse: &mut Pulse<'_>) -> Option<usize> {
+    let mut fewest = |target| {
+        let graph = Graph::new(&Band::new(target, max_distance), 0.0);
+        straightest::fewest_turns(&graph, u32::MAX, pulse)
+    };
     targets
         .iter()
         .map(|target| Some(fewest(target)).filter(|&turns| turns < u32::MAX).map(|turns| turns as usize))
@@ -272,32 +285,46 @@ fn attempt(
     max_distance: f64,
     progress: Progress<'_>,
 ) -> Result<Traced, Refusal> {
-    let mut search = Search::new();
-    let (contours, roots) = relaxed(targets, options, max_distance, &mut search, progress)?;
+    let mut search = Search::new(Pulse::new(progress));
+    let result = attempt_with(&mut search, targets, options, max_distance, progress);
+    if search.pulse.is_stopped() { Err(TraceFailure::Cancelled.into()) } else { result }
+}
+
+fn attempt_with(
+    search: &mut Search<'_>,
+    targets: &[Target],
+    options: &TraceOptions,
+    max_distance: f64,
+    progress: Progress<'_>,
+) -> Result<Traced, Refusal> {
+    let (contours, roots) = relaxed(targets, options, max_distance, search, progress)?;
+    search.pulse.limit(contours.iter().map(|contour| contour.graph.n_states()).sum());
     let none = |contour: &Contour| Prices::none(contour.graph.n_nodes());
     let mut prices: Vec<Prices> = contours.iter().map(none).collect();
     let mut walks = roots.clone();
     let share = progress.part(0.3, 0.7);
-    let mut dive = dive::dive(&contours, &mut walks, &mut prices, &mut search, share)?;
+    let mut dive = dive::dive(&contours, &mut walks, &mut prices, search, share)?;
     let first_conflicts = dive.first;
     if failure(&dive, &contours, &walks).is_some() {
-        dive::keep_apart(&contours, &mut walks, &mut prices, &mut search);
+        dive::keep_apart(&contours, &mut walks, &mut prices, search);
         let rounds = dive.rounds;
-        dive = dive::dive(&contours, &mut walks, &mut prices, &mut search, share)?;
+        dive = dive::dive(&contours, &mut walks, &mut prices, search, share)?;
         dive.rounds += rounds;
     }
     if let Some(failure) = failure(&dive, &contours, &walks) {
-        return Err(Refusal::new(failure, &dive, &walks));
+        let refusal = Refusal::new(failure, &dive, &walks);
+        return Err(refusal.or_final(search.pulse.is_spent()));
     }
     let best = total(&walks);
     let root = total(&roots);
     let mut proof = Proof { bound: root, walks: None, optimal: root == best };
     // Unasked only where it is not far.
     let is_near = first_conflicts * QUICK_SHARE <= walks.iter().map(Walk::len).sum();
+    search.pulse.unlimit();
     if dive.rounds > 0 && (options.proof_nodes > 0 || is_near) {
         let share = progress.part(0.7, 1.0);
         let nodes = options.proof_nodes;
-        proof = proof::prove(&contours, &roots, best, nodes, &mut search, share)?;
+        proof = proof::prove(&contours, &roots, best, nodes, search, share)?;
     }
     if let Some(better) = proof.walks {
         walks = better;
@@ -306,7 +333,9 @@ fn attempt(
     let turns_bound = contours
         .iter()
         .zip(&roots)
-        .map(|(contour, root)| straightest::fewest_turns(&contour.graph, root.turns()) as usize)
+        .map(|(contour, root)| {
+            straightest::fewest_turns(&contour.graph, root.turns(), &mut search.pulse) as usize
+        })
         .sum();
     let turns = turns(&walks);
     let cost = turns as f64 + options.closeness * squared_distances(&contours, &walks);
@@ -335,7 +364,7 @@ fn relaxed(
     targets: &[Target],
     options: &TraceOptions,
     max_distance: f64,
-    search: &mut Search,
+    search: &mut Search<'_>,
     progress: Progress<'_>,
 ) -> Result<(Vec<Contour>, Vec<Walk>), TraceFailure> {
     let mut contours = Vec::with_capacity(targets.len());

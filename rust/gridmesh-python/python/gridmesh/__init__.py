@@ -4,7 +4,7 @@
 a flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. ``combine`` unites drawings or
 cuts one from another, ``thickness`` measures their limbs. ``fill_hole`` and ``fill_holes`` close holes of a
 mesh with patches that fit their boundaries vertex for vertex, ``regrid`` replaces a region by one. ``cut``
-divides a mesh along a stroke and caps it.
+divides a mesh along a stroke and caps it; ``cut_reach`` tells how far a stroke's ends go.
 Positions are float64, indices int32, angles radians, options keyword-only. The same input gives the same
 bytes. The one exception for what cannot be done is ``GridMeshError``.
 """
@@ -20,6 +20,7 @@ from gridmesh._native import (
     __version__,
     combine,
     cut,
+    cut_reach,
     fill_hole,
     fill_holes,
     flat,
@@ -42,6 +43,7 @@ __all__ = [
     "__version__",
     "combine",
     "cut",
+    "cut_reach",
     "fill_hole",
     "fill_holes",
     "flat",

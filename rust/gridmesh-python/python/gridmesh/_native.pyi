@@ -14,12 +14,15 @@ __all__ = [
     "Regrid",
     "Surface",
     "__version__",
+    "_cut",
     "_fill",
     "_patch",
+    "_piece",
     "_regrid",
     "_surface",
     "combine",
     "cut",
+    "cut_reach",
     "fill_hole",
     "fill_holes",
     "flat",
@@ -51,6 +54,7 @@ class _Options(TypedDict, total=False):
     self_crossing: Literal["error", "union"]
     proof_nodes: int
     relax: bool
+    least: bool
     depth: float
     profile: Literal["round", "even", "flat", "peak"]
     curve: npt.ArrayLike | None
@@ -110,6 +114,8 @@ class Fill:
     @property
     def triangles(self) -> npt.NDArray[np.int32]: ...
     @property
+    def creases(self) -> npt.NDArray[np.int32]: ...
+    @property
     def report(self) -> dict[str, Any]: ...
     def extend(self, values: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
     def refit(self, vertices: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
@@ -133,6 +139,7 @@ def mesh_sketch(
     self_crossing: Literal["error", "union"] = "error",
     proof_nodes: int = 0,
     relax: bool = True,
+    least: bool = True,
     progress: _Progress | None = None,
 ) -> Patch: ...
 def combine(
@@ -181,6 +188,8 @@ def fill_hole(
     smooth: Literal["flat", "tangent", "curvature"] = "tangent",
     strict: bool = False,
     polygons: npt.ArrayLike | None = None,
+    sharp: float | None = None,
+    creases: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> Fill: ...
 def fill_holes(
@@ -192,6 +201,8 @@ def fill_holes(
     smooth: Literal["flat", "tangent", "curvature"] = "tangent",
     strict: bool = False,
     polygons: npt.ArrayLike | None = None,
+    sharp: float | None = None,
+    creases: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> list[Fill | GridMeshError]: ...
 def regrid(
@@ -226,6 +237,7 @@ class Piece:
     def side(self) -> Literal["left", "right"]: ...
     def __copy__(self) -> Piece: ...
     def __deepcopy__(self, _memo: object, /) -> Piece: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Cut:
@@ -235,6 +247,7 @@ class Cut:
     def report(self) -> dict[str, Any]: ...
     def __copy__(self) -> Cut: ...
     def __deepcopy__(self, _memo: object, /) -> Cut: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 def cut(
     vertices: npt.ArrayLike,
@@ -248,8 +261,20 @@ def cut(
     edge_length: float | None = None,
     gap: float = 0.0,
     smooth: Literal["flat", "tangent", "curvature"] = "flat",
+    extend_ends: bool = True,
+    mirrors: Sequence[Sequence[Sequence[float]]] | npt.NDArray[np.float64] = (),
+    mirror_distance: float = 0.0,
     progress: _Progress | None = None,
 ) -> Cut: ...
+def cut_reach(
+    vertices: npt.ArrayLike,
+    faces: npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike],
+    stroke: npt.ArrayLike,
+    *,
+    direction: npt.ArrayLike | None = None,
+    eye: npt.ArrayLike | None = None,
+    progress: _Progress | None = None,
+) -> npt.NDArray[np.float64]: ...
 def map_sketches(
     outlines: Iterable[_Points | tuple[_Points, Sequence[_Points]]],
     *,
@@ -271,6 +296,9 @@ def _fill(
     outer: Any,
     triangles: Any,
     patch: Any,
+    creases: Any,
     report: Any,
 ) -> Fill: ...
+def _cut(pieces: Any, report: Any) -> Cut: ...
+def _piece(left: Any, positions: Any, faces: Any, cap_loops: Any) -> Piece: ...
 def _regrid(fill: Any, source_faces: Any, source_weights: Any, unused: Any, off: Any) -> Regrid: ...

@@ -55,11 +55,11 @@ def _groups(outlines: Iterable[Any]) -> Iterator[list[Any]]:
 
 
 def _watch(tasks: list[Future[Any]], progress: Callable[[float], object] | None) -> None:
-    """Wait until all are done, or `progress` asks to stop."""
+    """Wait until all are done, or `progress`, asked at least ten times a second, wants to stop."""
     from gridmesh import _native
 
     left = set(tasks)
     while left:
-        _, left = wait(left, return_when=FIRST_COMPLETED)
+        _, left = wait(left, timeout=0.1, return_when=FIRST_COMPLETED)
         if progress is not None and progress(1 - len(left) / len(tasks)) is False:
             _native.map_sketches([], progress=lambda _: False)  # raises what a cancelled map raises

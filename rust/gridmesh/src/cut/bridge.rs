@@ -123,12 +123,25 @@ impl Bridges<'_> {
             }
         }
         let n = lower.len();
+        let off = |i: usize, j: usize| low[i].at.distance_squared(high[j].at);
         let nearest = |i: usize| {
-            let best = (0..high.len())
-                .min_by(|&a, &b| low[i].at.distance(high[a].at).total_cmp(&low[i].at.distance(high[b].at)))?;
-            is_clear(&walls, low[i].at, high[best].at).then(|| (low[i].at.distance(high[best].at), i, best))
+            let best = (0..high.len()).min_by(|&a, &b| off(i, a).total_cmp(&off(i, b)))?;
+            is_clear(&walls, low[i].at, high[best].at).then(|| (off(i, best).sqrt(), i, best))
         };
-        let links = (n..2 * n).filter_map(nearest).collect::<Vec<_>>();
+        // Where the nearest vertex is behind others of its own loop, the nearest that is not.
+        let in_sight = |i: usize| {
+            let mut near = (0..high.len()).collect::<Vec<_>>();
+            near.sort_by(|&a, &b| off(i, a).total_cmp(&off(i, b)));
+            let best = near.into_iter().find(|&j| is_clear(&walls, low[i].at, high[j].at))?;
+            Some((off(i, best).sqrt(), i, best))
+        };
+        let m = upper.len();
+        let apart =
+            |l: &(f64, usize, usize), other: &(f64, usize, usize)| l.1 != other.1 && l.2 % m != other.2 % m;
+        let mut links = (n..2 * n).filter_map(nearest).collect::<Vec<_>>();
+        if !links.iter().any(|l| apart(l, &links[0])) {
+            links = (n..2 * n).filter_map(in_sight).collect();
+        }
         let first = *links.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         let middle = low[first.1].at.x + 0.5 * width;
         // Another one about half around.
@@ -137,10 +150,15 @@ impl Bridges<'_> {
             let off = [x - middle, x + width - middle, x - width - middle];
             off.into_iter().map(f64::abs).fold(f64::INFINITY, f64::min)
         };
-        let m = upper.len();
+        let crosses = |l: &(f64, usize, usize)| {
+            let own = [low[l.1].at, high[l.2].at];
+            [0.0, -width, width].into_iter().any(|shift| {
+                segments_meet(own, [low[first.1].at, high[first.2].at].map(|p| p + DVec2::new(shift, 0.0)))
+            })
+        };
         let second = *links
             .iter()
-            .filter(|l| l.1 != first.1 && l.2 % m != first.2 % m)
+            .filter(|l| apart(l, &first) && !crosses(l))
             .min_by(|a, b| rank(a).total_cmp(&rank(b)))?;
         let one = self.bridge(&low, first.1, &high, first.2);
         let two = self.bridge(&low, second.1, &high, second.2);

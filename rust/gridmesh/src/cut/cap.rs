@@ -4,13 +4,15 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
 use super::bridge::Bridges;
+use super::bulge::Bulged;
 use super::cross::Node;
-use super::input::{Polygons, triangles};
+use super::input::Polygons;
 use super::loops::Loops;
-use super::options::{CutOptions, Keep};
+use super::mirrored;
+use super::options::CutOptions;
 use super::parted::Parted;
 use super::regions::{self, Region, Spot};
 use super::report::Tally;
@@ -18,8 +20,8 @@ use super::roll::Roll;
 use super::sheet::Sheet;
 use super::sources;
 use crate::error::{Error, Result};
+use crate::fill::Smooth;
 use crate::fill::flat::{FlatFill, FlatOptions, fill_flat};
-use crate::fill::{FillOptions, Smooth, fill_hole};
 use crate::progress::Progress;
 
 /// What closes the pieces.
@@ -40,18 +42,20 @@ const ENOUGH: f64 = 2.0;
 /// Polygons filled between two reports of progress.
 const BATCH: usize = 16;
 
-struct Capper<'a> {
-    vertices: &'a [DVec3],
-    faces: Polygons<'a>,
-    parted: &'a Parted,
+pub(super) struct Capper<'a> {
+    pub vertices: &'a [DVec3],
+    pub faces: Polygons<'a>,
+    pub parted: &'a Parted,
     sheet: &'a Sheet,
-    options: &'a CutOptions,
+    pub options: &'a CutOptions,
     /// Edges between vertices of the cut that are there already, and triangles.
-    edges: FxHashSet<(u32, u32)>,
+    pub edges: FxHashSet<(u32, u32)>,
     facets: FxHashSet<[u32; 3]>,
     /// Number of the first new vertex.
-    first: u32,
-    caps: Caps,
+    pub first: u32,
+    pub caps: Caps,
+    /// Edges of the caps along planes of symmetry.
+    seams: FxHashSet<(u32, u32)>,
 }
 
 #[expect(clippy::too_many_arguments, reason = "a stage of the whole")]
@@ -65,8 +69,10 @@ pub(super) fn close(
     tally: &mut Tally,
     progress: Progress<'_>,
 ) -> Result<Caps> {
-    let found = regions::find(vertices, parted, sheet, loops);
     let first = (parted.n_old + parted.nodes.len()) as u32;
+    let seams = mirrored::close(vertices, parted, sheet, loops, &options.mirrors, first);
+    tally.report.open_lines -= seams.outlines.len();
+    let found = regions::find(vertices, parted, sheet, loops, seams.outlines);
     let mut capper = Capper {
         vertices,
         faces,
@@ -76,24 +82,24 @@ pub(super) fn close(
         edges: FxHashSet::default(),
         facets: FxHashSet::default(),
         first,
-        caps: Caps::default(),
+        caps: Caps { vertices: seams.vertices, triangles: vec![] },
+        seams: seams.edges,
     };
     capper.reserve();
     let report = &mut tally.report;
     report.uncapped = found.uncapped;
     report.caps = found.regions.len();
-    let mut polygons = vec![];
+    let (mut polygons, mut bulging) = (vec![], vec![]);
     for region in found.regions {
         if let Region::Sheet { outline, holes } = &region
             && holes.is_empty()
         {
-            if options.smooth != Smooth::Flat {
-                if capper.bulge(outline, progress.part(0.0, 0.0))? {
-                    continue;
-                }
-                report.repeated += 1;
+            let is_seamed = outline.iter().any(|s| s.node >= first);
+            if options.smooth == Smooth::Flat || is_seamed {
+                polygons.push(outline.clone());
+            } else {
+                bulging.push(outline.clone());
             }
-            polygons.push(outline.clone());
             continue;
         }
         report.rings += 1;
@@ -106,12 +112,16 @@ pub(super) fn close(
             first: capper.first + capper.caps.vertices.len() as u32,
             spots: vec![],
         };
-        let opened = bridges.open(region, sheet.width());
+        // An angle between rays of the eye as the length that it spans.
+        let unit = if sheet.view.central { region.height() } else { 1.0 };
+        let opened = bridges.open(region.stretched(unit), unit * sheet.width());
         let spots = bridges.spots;
         match opened {
-            Some(opened) => {
-                let new = spots.iter().map(|&at| capper.node(at)).collect::<Vec<_>>();
+            Some(mut opened) => {
+                let new =
+                    spots.iter().map(|&at| capper.node(DVec2::new(at.x / unit, at.y))).collect::<Vec<_>>();
                 capper.caps.vertices.extend(new);
+                opened.iter_mut().flatten().for_each(|s| s.at.x /= unit);
                 polygons.extend(opened);
             }
             None if alone.is_empty() => {
@@ -128,8 +138,12 @@ pub(super) fn close(
         }
     }
     // Reports come from the calling thread alone, between batches.
-    for (k, batch) in polygons.chunks(BATCH).enumerate() {
-        progress.report((k * BATCH) as f64 / polygons.len() as f64)?;
+    let is_small = |a: &Vec<Spot>, b: &Vec<Spot>| a.len().max(b.len()) < LARGE;
+    let batches = polygons.chunk_by(is_small).flat_map(|same| same.chunks(BATCH));
+    let mut done = 0;
+    for batch in batches {
+        progress.report(0.5 * done as f64 / polygons.len() as f64)?;
+        done += batch.len();
         // With a single one, there is somebody to ask whether to go on.
         let plans: Vec<_> = match batch {
             [polygon] => vec![capper.plan(polygon, progress.part(0.0, 0.0))],
@@ -138,11 +152,26 @@ pub(super) fn close(
         for (polygon, plan) in batch.iter().zip(plans) {
             let mut plan = plan?;
             if capper.repeats(polygon, &plan) {
-                plan = capper.plan(polygon, Progress::NONE)?;
+                plan = capper.plan(polygon, progress.part(0.0, 0.0))?;
             }
             report.folded += usize::from(plan.folded);
             capper.roll_up(polygon, &plan, found.inverted);
         }
+    }
+    for (k, outline) in bulging.iter().enumerate() {
+        let here = k as f64 / bulging.len() as f64;
+        match capper.bulge(outline, found.inverted, progress.part(0.5 + 0.5 * here, 0.5 + 0.5 * here))? {
+            Bulged::Whole => continue,
+            Bulged::Reduced => {
+                report.reduced_caps += 1;
+                continue;
+            }
+            Bulged::Leaves => report.reduced_caps += 1,
+            Bulged::Repeats => report.repeated += 1,
+        }
+        let plan = capper.plan(outline, progress.part(1.0, 1.0))?;
+        report.folded += usize::from(plan.folded);
+        capper.roll_up(outline, &plan, found.inverted);
     }
     capper.name_sources(&polygons);
     capper.prove()?;
@@ -151,7 +180,7 @@ pub(super) fn close(
 }
 
 /// An edge, its lower vertex first.
-fn key(a: u32, b: u32) -> (u32, u32) {
+pub(super) fn key(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
@@ -277,53 +306,9 @@ impl Capper<'_> {
         }
     }
 
-    /// Fills a loop so that it continues the piece around it. False if that repeats an edge of the other piece.
-    fn bulge(&mut self, outline: &[Spot], progress: Progress<'_>) -> Result<bool> {
-        let left = self.options.keep != Keep::Right;
-        let n = outline.len();
-        let mut positions = self.vertices.to_vec();
-        positions.extend(self.parted.nodes.iter().map(|node| node.position));
-        let mut around = vec![];
-        for f in (0..self.faces.len()).filter(|&f| !self.parted.divided[f] && self.parted.left[f] == left) {
-            triangles(self.vertices, self.faces.face(f), |t| around.push(t));
-        }
-        around.extend(self.parted.parts.iter().filter(|p| p.left == left).map(|p| p.corners));
-        let nodes = outline.iter().map(|s| s.node).collect::<Vec<_>>();
-        let options = FillOptions { smooth: self.options.smooth, ..FillOptions::default() };
-        let fill = fill_hole(&positions, &around, &nodes, &options, progress)?;
-        let place: FxHashMap<u32, usize> = nodes.iter().enumerate().map(|(k, &v)| (v, k)).collect();
-        let repeats = |t: &[u32; 3]| {
-            (0..3).any(|k| {
-                let (a, b) = (t[k], t[(k + 1) % 3]);
-                let (Some(&i), Some(&j)) = (place.get(&a), place.get(&b)) else { return false };
-                (i + 1) % n != j && (j + 1) % n != i && self.edges.contains(&key(a, b))
-            })
-        };
-        if fill.triangles.iter().any(repeats) {
-            return Ok(false);
-        }
-        let base = self.first + self.caps.vertices.len() as u32;
-        let old = positions.len() as u32;
-        let known = nodes.iter().map(|&v| GeomWithData::new(positions[v as usize].to_array(), v));
-        let tree = RTree::bulk_load(known.collect::<Vec<_>>());
-        for &position in &fill.vertices {
-            let near = tree.nearest_neighbor(&position.to_array()).map_or(nodes[0], |near| near.data);
-            self.caps.vertices.push(Node { position, ..self.parted.source(self.vertices, near) });
-        }
-        for t in &fill.triangles {
-            let mut t = t.map(|v| if v < old { v } else { base + v - old });
-            // Wound for the piece that it was made for.
-            if left {
-                t.swap(1, 2);
-            }
-            self.push(t, base);
-        }
-        Ok(true)
-    }
-
     /// Adds a triangle of a patch whose own vertices begin with `base`; others ask only for edges between vertices
     /// that they know.
-    fn push(&mut self, t: [u32; 3], base: u32) {
+    pub fn push(&mut self, t: [u32; 3], base: u32) {
         let edges = (0..3).map(|k| key(t[k], t[(k + 1) % 3]));
         self.edges.extend(edges.filter(|edge| edge.1 < base));
         self.caps.triangles.push(t);
@@ -340,7 +325,11 @@ impl Capper<'_> {
         edges.par_sort_unstable();
         let is_right = |group: &[((u32, u32), bool)]| {
             let is_cut = self.parted.cut.contains_key(&group[0].0);
-            if is_cut { group.len() == 1 } else { group.len() == 2 && group[0].1 != group[1].1 }
+            if is_cut || self.seams.contains(&group[0].0) {
+                group.len() == 1
+            } else {
+                group.len() == 2 && group[0].1 != group[1].1
+            }
         };
         match edges.chunk_by(|a, b| a.0 == b.0).find(|group| !is_right(group)) {
             None => Ok(()),

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::cross::Node;
-use super::sheet::side_of_edge;
+use super::sheet::{Sheet, side_of_edge};
 use super::split::Divider;
 use crate::error::Result;
 
@@ -18,6 +18,30 @@ pub(super) type Chains = Vec<([u32; 2], [f64; 2], bool)>;
 struct Stop {
     node: u32,
     place: f64,
+}
+
+/// Of a triangle's crossings, told by their segments in order, one at which the line enters: it begins where it is
+/// outside, at a segment with two crossings, or after one that leaves.
+pub(super) fn start(segments: &[u32], is_inside: impl Fn(usize) -> bool) -> Option<usize> {
+    let is_alone = |k: usize| {
+        let same = |j: usize| segments[j] == segments[k];
+        !((k > 0 && same(k - 1)) || (k + 1 < segments.len() && same(k + 1)))
+    };
+    (0..segments.len()).find(|&k| {
+        let first_of_pair = k + 1 < segments.len() && segments[k] == segments[k + 1];
+        first_of_pair || (is_alone(k) && !is_inside(segments[k] as usize))
+    })
+}
+
+/// True if the stroke's point `k` is in the triangle.
+pub(super) fn is_inside(sheet: &Sheet, corners: [u32; 3], k: usize) -> bool {
+    let [a, b, c] = corners.map(|v| sheet.seen[v as usize]);
+    if a == b || b == c || c == a {
+        return false;
+    }
+    let p = sheet.point(k);
+    let left = side_of_edge(a, b, p) > 0.0;
+    (side_of_edge(b, c, p) > 0.0) == left && (side_of_edge(c, a, p) > 0.0) == left
 }
 
 impl Divider<'_> {
@@ -34,7 +58,7 @@ impl Divider<'_> {
         events.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.place.total_cmp(&y.1.place)));
         let mut chains = Chains::new();
         if events.is_empty() {
-            if self.sheet.closed && self.is_inside(corners, 0) {
+            if self.sheet.closed && is_inside(self.sheet, corners, 0) {
                 let n = self.sheet.n_segments();
                 let stops = (0..n).map(|k| self.inner(corners, k)).collect::<Option<Vec<_>>>();
                 let Some(mut stops) = stops else { return Ok(chains) };
@@ -43,16 +67,8 @@ impl Divider<'_> {
             }
             return Ok(chains);
         }
-        // Begin where the line is outside: at a segment with two crossings, or after one that leaves.
-        let is_alone = |k: usize| {
-            let same = |j: usize| events[j].0 == events[k].0;
-            !((k > 0 && same(k - 1)) || (k + 1 < events.len() && same(k + 1)))
-        };
-        let start = (0..events.len())
-            .find(|&k| {
-                let first_of_pair = k + 1 < events.len() && events[k].0 == events[k + 1].0;
-                first_of_pair || (is_alone(k) && !self.is_inside(corners, events[k].0 as usize))
-            })
+        let segments = events.iter().map(|e| e.0).collect::<Vec<_>>();
+        let start = start(&segments, |k| is_inside(self.sheet, corners, k))
             .ok_or_else(|| self.failed(corners, "the line never enters a face"))?;
         let n = self.sheet.n_segments() as u32;
         let count = events.len();
@@ -73,17 +89,6 @@ impl Divider<'_> {
             add_chain(&mut chains, &stops);
         }
         Ok(chains)
-    }
-
-    /// True if the stroke's point `k` is in the triangle.
-    fn is_inside(&self, corners: [u32; 3], k: usize) -> bool {
-        let [a, b, c] = corners.map(|v| self.sheet.seen[v as usize]);
-        if a == b || b == c || c == a {
-            return false;
-        }
-        let p = self.sheet.point(k);
-        let left = side_of_edge(a, b, p) > 0.0;
-        (side_of_edge(b, c, p) > 0.0) == left && (side_of_edge(c, a, p) > 0.0) == left
     }
 
     /// The stroke's point `k` as a vertex within a triangle; none if that is seen edge on.

@@ -44,11 +44,11 @@ pub(super) struct Hit {
 /// Crossings of all edges near the line.
 pub(super) struct Edges {
     /// Triangles of the faces near the line, with their faces.
-    triangles: Vec<([u32; 3], u32)>,
+    pub triangles: Vec<([u32; 3], u32)>,
     /// Edges that are crossed, lower vertex first, ascending.
-    keys: Vec<(u32, u32)>,
+    pub keys: Vec<(u32, u32)>,
     /// Crossings of each, along it.
-    hits: Vec<Vec<Hit>>,
+    pub hits: Vec<Vec<Hit>>,
 }
 
 /// All crossings, as vertices.

@@ -7,13 +7,18 @@ use rustc_hash::FxHashSet;
 use super::input::{Polygons, triangles};
 use super::nearness::{closest, within};
 use super::strip::Strip;
+use crate::error::Result;
+use crate::progress::Progress;
 
 /// Largest distance of the changed triangles from the old surface.
-pub(super) fn defect(faces: Polygons<'_>, strip: &Strip<'_>) -> f64 {
+pub(super) fn defect(faces: Polygons<'_>, strip: &Strip<'_>, progress: Progress<'_>) -> Result<f64> {
     let mut tree = None;
     let mut most = 0.0f64;
     let parts = strip.parts.iter().flatten();
-    for part in parts.filter(|p| strip.altered.contains(&p.face)) {
+    for (k, part) in parts.filter(|p| strip.altered.contains(&p.face)).enumerate() {
+        if k % 256 == 0 {
+            progress.report(1.0)?;
+        }
         // The distance from something convex is greatest at corners.
         let own = strip.home(part.home);
         if part.corners.iter().all(|&v| within(strip.position(v), own, most).is_some()) {
@@ -28,7 +33,7 @@ pub(super) fn defect(faces: Polygons<'_>, strip: &Strip<'_>) -> f64 {
             most = most.max(off);
         }
     }
-    most
+    Ok(most)
 }
 
 /// The triangles of all faces that the strip had or has.

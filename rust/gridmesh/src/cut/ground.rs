@@ -80,7 +80,8 @@ impl Strip<'_> {
 
     /// True if the triangle stays near the old ones, of which `own`, with the corners `home`, is the likeliest.
     pub fn is_near(&self, corners: [u32; 3], own: &Facet, home: [u32; 3], homes: &[Home]) -> bool {
-        let near = |p: DVec3, old: &Facet| old.within(p, self.tolerance).is_some();
+        let tolerance = self.tolerance_at(homes);
+        let near = |p: DVec3, old: &Facet| old.within(p, tolerance).is_some();
         // The distance from something convex is no greater between the corners than at them.
         if corners.iter().all(|&v| near(self.position(v), own)) {
             return true;
@@ -94,7 +95,7 @@ impl Strip<'_> {
                 last = old;
                 return true;
             }
-            self.distance(p, home, self.tolerance) <= self.tolerance
+            self.distance(p, home, tolerance) <= tolerance
         })
     }
 }

@@ -30,6 +30,8 @@ pub(super) struct Met {
     pub faces: Vec<u32>,
     /// For every vertex: on the left.
     pub left: Vec<bool>,
+    /// Where the parts are that are not cut, on the left or not, if that was chosen.
+    pub alone: Option<bool>,
 }
 
 impl<'a> Locator<'a> {
@@ -211,6 +213,6 @@ impl<'a> Locator<'a> {
         if near.is_empty() {
             return Err(Error::StrokeMisses);
         }
-        Ok(Met { faces: near, left })
+        Ok(Met { faces: near, left, alone: None })
     }
 }

@@ -22,8 +22,8 @@ pub(super) struct Loop {
 #[derive(Default)]
 pub(super) struct Loops {
     pub closed: Vec<Loop>,
-    /// Lines that end at the mesh's border.
-    pub open: usize,
+    /// Lines that end at the mesh's border: their vertices, and where each is on the unrolled line.
+    pub open: Vec<(Vec<u32>, Vec<f64>)>,
 }
 
 /// Follows the cut's edges, each of which divides a face of the left from one of the right.
@@ -43,7 +43,6 @@ pub(super) fn trace(faces: Polygons<'_>, parted: &Parted, sheet: &Sheet) -> Loop
         let surplus = balance.insert(v, 0).unwrap_or(0);
         starts.extend((0..surplus).map(|_| v));
     }
-    loops.open = starts.len();
     starts.extend(edges.iter().map(|e| e.0));
     for start in starts {
         let mut path = vec![start];
@@ -66,8 +65,30 @@ pub(super) fn trace(faces: Polygons<'_>, parted: &Parted, sheet: &Sheet) -> Loop
                 path.push(next);
             }
         }
+        if path.len() > 1 {
+            let places = places(&path, parted);
+            loops.open.push((path, places));
+        }
     }
     loops
+}
+
+/// Where the vertices of an open line are on the unrolled line.
+fn places(path: &[u32], parted: &Parted) -> Vec<f64> {
+    let ends = path.windows(2).map(|pair| {
+        let (a, b) = (pair[0], pair[1]);
+        let [x, y] = parted.cut.get(&(a.min(b), a.max(b))).copied().unwrap_or_default();
+        if a < b { [x, y] } else { [y, x] }
+    });
+    let mut places = vec![];
+    for [from, to] in ends {
+        if places.is_empty() {
+            places.push(from);
+        }
+        let last = places[places.len() - 1];
+        places.push(last + to - from);
+    }
+    places
 }
 
 impl Loop {

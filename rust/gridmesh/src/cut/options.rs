@@ -33,6 +33,28 @@ pub enum Sweep {
     Through(DVec3),
 }
 
+/// A plane of symmetry: the mesh is half of a symmetric one, open at this plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mirror {
+    /// A point of the plane.
+    pub point: DVec3,
+    /// Its normal, of length 1.
+    pub normal: DVec3,
+    /// Vertices no farther from it lie on it.
+    pub within: f64,
+}
+
+impl Mirror {
+    fn is_sound(&self) -> bool {
+        self.point.is_finite() && self.normal.is_normalized() && self.within.is_finite() && self.within >= 0.0
+    }
+
+    /// Signed distance of a point from the plane.
+    pub(super) fn off(&self, p: DVec3) -> f64 {
+        (p - self.point).dot(self.normal)
+    }
+}
+
 /// Options of [`cut`](super::cut).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutOptions {
@@ -49,12 +71,27 @@ pub struct CutOptions {
     pub gap: f64,
     /// How caps continue the surface.
     pub smooth: Smooth,
+    /// Continue the ends of an open stroke to infinity. Otherwise they are continued as far as the part of the
+    /// mesh that the stroke itself crosses: only those cut lines are cut that it meets, and others around the
+    /// same caps. What it does not cross stays whole, in the larger piece, or in the only one that is kept.
+    pub extend_ends: bool,
+    /// Planes that the mesh is open at: cut lines with both ends on one of them are closed along it, flat.
+    pub mirrors: Vec<Mirror>,
 }
 
 impl CutOptions {
     /// Both pieces, capped on the swept surface.
     pub fn new(sweep: Sweep) -> Self {
-        CutOptions { sweep, keep: Keep::Both, cap: true, edge_length: None, gap: 0.0, smooth: Smooth::Flat }
+        CutOptions {
+            sweep,
+            keep: Keep::Both,
+            cap: true,
+            edge_length: None,
+            gap: 0.0,
+            smooth: Smooth::Flat,
+            extend_ends: true,
+            mirrors: vec![],
+        }
     }
 
     pub(super) fn check(&self) -> Result<()> {
@@ -70,6 +107,13 @@ impl CutOptions {
         }
         if let Some(length) = self.edge_length.filter(|l| !(l.is_finite() && *l > 0.0)) {
             return invalid("edge_length", length.to_string(), "a finite number above 0, or None");
+        }
+        if let Some(m) = self.mirrors.iter().find(|m| !m.is_sound()) {
+            return invalid(
+                "mirrors",
+                format!("{m:?}"),
+                "finite points and normals of length 1, distances of 0 or more",
+            );
         }
         if !(self.gap.is_finite() && self.gap >= 0.0) {
             return invalid("gap", self.gap.to_string(), "a finite number, 0 or more");

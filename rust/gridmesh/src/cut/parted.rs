@@ -33,6 +33,8 @@ pub(super) struct Parted {
     /// one of the two may be off by a turn, their difference is right.
     pub cut: FxHashMap<(u32, u32), [f64; 2]>,
     pub cut_faces: usize,
+    /// Where the parts are that are not cut, on the left or not, if that was chosen.
+    pub alone: Option<bool>,
 }
 
 impl Parted {

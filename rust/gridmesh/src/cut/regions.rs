@@ -28,7 +28,14 @@ pub(super) struct Regions {
     pub uncapped: usize,
 }
 
-pub(super) fn find(vertices: &[glam::DVec3], parted: &Parted, sheet: &Sheet, loops: &Loops) -> Regions {
+/// `more` are loops that are closed along a plane of symmetry.
+pub(super) fn find(
+    vertices: &[glam::DVec3],
+    parted: &Parted,
+    sheet: &Sheet,
+    loops: &Loops,
+    more: Vec<Vec<Spot>>,
+) -> Regions {
     let spots = |l: &Loop| {
         let spot = |(&node, &place): (&u32, &f64)| {
             let height = sheet.view.height(parted.position(vertices, node));
@@ -55,6 +62,8 @@ pub(super) fn find(vertices: &[glam::DVec3], parted: &Parted, sheet: &Sheet, loo
             _ => uncapped += 1,
         }
     }
+    total += more.iter().map(|l| area(l)).sum::<f64>();
+    flat.extend(more);
     let inverted = total < 0.0;
     if inverted {
         flat.iter_mut().for_each(|l| l.reverse());
@@ -112,6 +121,26 @@ pub(super) fn area(spots: &[Spot]) -> f64 {
 }
 
 impl Region {
+    /// The same with all places this many times as far along the line.
+    pub fn stretched(mut self, by: f64) -> Self {
+        let loops: Vec<&mut Vec<Spot>> = match &mut self {
+            Region::Sheet { outline, holes } => std::iter::once(outline).chain(holes).collect(),
+            Region::Tube { lower, upper, holes } => [lower, upper].into_iter().chain(holes).collect(),
+        };
+        loops.into_iter().flatten().for_each(|spot| spot.at.x *= by);
+        self
+    }
+
+    /// Mean height of its corners.
+    pub fn height(&self) -> f64 {
+        let loops: Vec<&Vec<Spot>> = match self {
+            Region::Sheet { outline, holes } => std::iter::once(outline).chain(holes).collect(),
+            Region::Tube { lower, upper, holes } => [lower, upper].into_iter().chain(holes).collect(),
+        };
+        let count = loops.iter().map(|l| l.len()).sum::<usize>().max(1);
+        loops.into_iter().flatten().map(|s| s.at.y).sum::<f64>() / count as f64
+    }
+
     /// How far a loop must be moved along the line to lie within, if it does.
     fn contains(&self, inner: &[Spot], sheet: &Sheet) -> Option<f64> {
         let probes = [0, inner.len() / 3, 2 * inner.len() / 3].map(|k| inner[k].at);

@@ -29,6 +29,8 @@ pub struct CutReport {
     pub cap_min_angle: f64,
     /// Mean of twice the inscribed by the circumscribed radius over the caps; 1 without caps.
     pub cap_radius_ratio: f64,
+    /// Caps that bulge less than they should, or not at all, because they would leave the model.
+    pub reduced_caps: usize,
     /// Caps that lie folded on the swept surface, because their line crosses itself there.
     pub folded: usize,
     /// Smallest angle of a face along the cut, caps aside, in radians; pi if there is none.
@@ -63,6 +65,7 @@ impl CutReport {
         self.cap_vertices += other.cap_vertices;
         self.cap_irregular += other.cap_irregular;
         self.cap_min_angle = self.cap_min_angle.min(other.cap_min_angle);
+        self.reduced_caps += other.reduced_caps;
         self.folded += other.folded;
         self.rim_min_angle = self.rim_min_angle.min(other.rim_min_angle);
         self.defect = self.defect.max(other.defect);

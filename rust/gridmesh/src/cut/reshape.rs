@@ -16,11 +16,7 @@ impl Strip<'_> {
         let (Some(&p), Some(&q)) = (self.part(s), self.part(t)) else { return false };
         let apex = |part: &Part| part.corners.into_iter().find(|&v| v != a && v != b);
         let (Some(c), Some(d)) = (apex(&p), apex(&q)) else { return false };
-        if c == d
-            || p.left != q.left
-            || (self.is_border(c) && self.is_border(d))
-            || self.neighbours(c).contains(&d)
-        {
+        if c == d || p.left != q.left || (self.is_border(c) && self.is_border(d)) || self.has_edge(c, d) {
             return false;
         }
         let (x, y) =

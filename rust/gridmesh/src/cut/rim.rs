@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
+use super::beside;
 use super::defect::defect;
 use super::input::{Polygons, triangles};
 use super::nearness::closest;
@@ -16,6 +17,8 @@ use super::report::Tally;
 use super::slide::Course;
 use super::spacing::resample;
 use super::strip::{Strip, Trial};
+use crate::error::Result;
+use crate::progress::Progress;
 
 /// Vertices nearer to the line than this, in edge lengths, are taken out where the surface allows it.
 const BESIDE: f64 = 0.45;
@@ -50,8 +53,16 @@ pub(super) struct Through<'a> {
     pub off: &'a dyn Fn(u32) -> f64,
 }
 
+/// Triangles looked at between two reports of progress.
+const BATCH: usize = 32;
+
+/// The longest edge of a triangle is halved if the triangle is at least this wide across it, in edge lengths: narrower
+/// ones are between walls, and no better in halves.
+const WIDE: f64 = 0.1;
+
 /// Evens out the line and the faces along it. `again` is shown the old vertices beside the line that stay
 /// at thin triangles, in order; if it wants the line drawn anew, it is not brought to an end: false.
+#[expect(clippy::too_many_arguments, reason = "a stage of the whole")]
 pub(super) fn even_out(
     vertices: &[DVec3],
     faces: Polygons<'_>,
@@ -60,20 +71,27 @@ pub(super) fn even_out(
     through: &Through<'_>,
     tally: &mut Tally,
     again: impl FnOnce(Vec<u32>) -> bool,
-) -> bool {
+    progress: Progress<'_>,
+) -> Result<bool> {
     let parts = gather(vertices, faces, parted);
     let old = std::mem::take(&mut parted.parts);
     let own = old.iter().map(|p| p.face).collect::<FxHashSet<_>>();
     let mut strip = Strip::new(vertices, parted, parts, length);
     let (mut kept, mut course) = resample(&mut strip, length);
+    progress.report(0.0)?;
+    beside::divide(&mut strip, length, progress.part(0.0, 0.0))?;
+    let mut part = 0.0;
     // Once the line is drawn through others, only what is new there is looked at.
     for from in [0].into_iter().chain([ROUNDS / 2; DRAWN]) {
         for round in from..ROUNDS {
-            let mut changes = thin_out(&mut strip, &kept);
-            changes += clear_beside(&mut strip, BESIDE * length);
-            changes += thin_out(&mut strip, &kept);
-            changes += improve(&mut strip, &kept, length, round);
-            changes += slide(&mut strip, &mut course, length);
+            // Later rounds have less and less to do.
+            let here = progress.part(part, 0.5 * (1.0 + part));
+            part = 0.5 * (1.0 + part);
+            let mut changes = thin_out(&mut strip, &kept, here)?;
+            changes += clear_beside(&mut strip, BESIDE * length, here)?;
+            changes += thin_out(&mut strip, &kept, here)?;
+            changes += improve(&mut strip, &kept, length, round, here)?;
+            changes += slide(&mut strip, &mut course, length, here)?;
             if changes == 0 {
                 break;
             }
@@ -83,16 +101,43 @@ pub(super) fn even_out(
         }
     }
     if again(in_the_way(&strip, through.reach)) {
-        return false;
+        return Ok(false);
     }
-    tally.report.defect = defect(faces, &strip);
+    tally.report.defect = defect(faces, &strip, progress)?;
     let Strip { parts, altered, .. } = strip;
     let parts = parts.into_iter().flatten();
     for &f in &altered {
         parted.divided[f as usize] = true;
     }
     parted.parts = parts.filter(|p| parted.divided[p.face as usize] || own.contains(&p.face)).collect();
-    true
+    Ok(true)
+}
+
+/// Turns edges of triangles with small angles while that makes them larger.
+pub(super) fn flip_all(strip: &mut Strip<'_>, progress: Progress<'_>) -> Result<()> {
+    let mut queue: BTreeSet<u32> = (0..strip.parts.len() as u32).collect();
+    let mut budget = 20 * queue.len();
+    while let Some(t) = queue.pop_first().filter(|_| budget > 0) {
+        budget -= 1;
+        if budget % BATCH == 0 {
+            progress.report(0.0)?;
+        }
+        let Some(part) = strip.part(t).copied() else { continue };
+        if strip.min_angle(part.corners) >= SMALL {
+            continue;
+        }
+        for k in 0..3 {
+            let (a, b) = (part.corners[k], part.corners[(k + 1) % 3]);
+            let both = strip.with_edge(a, b);
+            if strip.flip(a, b) {
+                let corners = both.iter().filter_map(|&t| strip.part(t)).map(|p| p.corners);
+                let sides = corners.flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]).collect::<Vec<_>>();
+                queue.extend(sides.into_iter().flat_map(|(a, b)| strip.with_edge(a, b)));
+                break;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Draws the line through vertices that are in the way, where that makes the angles there larger.
@@ -174,12 +219,15 @@ fn gather(vertices: &[DVec3], faces: Polygons<'_>, parted: &Parted) -> Vec<Part>
 }
 
 /// Collapses vertices of the line that do not stay into those beside them.
-fn thin_out(strip: &mut Strip<'_>, kept: &FxHashSet<u32>) -> usize {
+fn thin_out(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, progress: Progress<'_>) -> Result<usize> {
     let mut on = strip.parted.cut.keys().flat_map(|&(a, b)| [a, b]).collect::<Vec<_>>();
     on.sort_unstable();
     on.dedup();
     let mut changes = 0;
-    for u in on.into_iter().filter(|v| !kept.contains(v)) {
+    for (k, u) in on.into_iter().filter(|v| !kept.contains(v)).enumerate() {
+        if k % BATCH == 0 {
+            progress.report(0.0)?;
+        }
         if strip.is_hopeless(u, Trial::Thin) {
             continue;
         }
@@ -195,13 +243,16 @@ fn thin_out(strip: &mut Strip<'_>, kept: &FxHashSet<u32>) -> usize {
             strip.give_up(u, Trial::Thin);
         }
     }
-    changes
+    Ok(changes)
 }
 
 /// Collapses vertices that lie close to the line into it.
-fn clear_beside(strip: &mut Strip<'_>, distance: f64) -> usize {
+fn clear_beside(strip: &mut Strip<'_>, distance: f64, progress: Progress<'_>) -> Result<usize> {
     let mut near: BTreeSet<u32> = BTreeSet::new();
-    for &(a, b) in strip.parted.cut.keys() {
+    for (k, &(a, b)) in strip.parted.cut.keys().enumerate() {
+        if k % BATCH == 0 {
+            progress.report(0.0)?;
+        }
         let (p, q) = (strip.position(a), strip.position(b));
         for v in [a, b] {
             let corners = strip.triangles_at(v).iter().filter_map(|&t| strip.part(t)).flat_map(|t| t.corners);
@@ -211,7 +262,10 @@ fn clear_beside(strip: &mut Strip<'_>, distance: f64) -> usize {
         }
     }
     let mut changes = 0;
-    for x in near {
+    for (k, x) in near.into_iter().enumerate() {
+        if k % BATCH == 0 {
+            progress.report(0.0)?;
+        }
         if strip.is_hopeless(x, Trial::Clear) {
             continue;
         }
@@ -229,11 +283,17 @@ fn clear_beside(strip: &mut Strip<'_>, distance: f64) -> usize {
             strip.give_up(x, Trial::Clear);
         }
     }
-    changes
+    Ok(changes)
 }
 
 /// One round of edits to triangles with small angles.
-fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usize) -> usize {
+fn improve(
+    strip: &mut Strip<'_>,
+    kept: &FxHashSet<u32>,
+    length: f64,
+    round: usize,
+    progress: Progress<'_>,
+) -> Result<usize> {
     let mut changes = 0;
     // Near the line: its triangles, and those that were made.
     let touches = |strip: &Strip<'_>, part: &Part| {
@@ -256,6 +316,9 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
             break;
         }
         budget -= 1;
+        if budget % BATCH == 0 {
+            progress.report(0.0)?;
+        }
         let Some(part) = strip.part(t).copied() else { continue };
         let least = strip.min_angle(part.corners);
         if least >= SMALL {
@@ -286,8 +349,10 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
         if !done && round + 2 < ROUNDS {
             // The longest edge is halved if it is much longer than the others should be.
             let (long, a, b) = edges[0];
+            let [p, q, r] = part.corners.map(|v| strip.position(v));
             if long > 1.6 * length
                 && long > 1.6 * edges[2].0
+                && (q - p).cross(r - p).length() > WIDE * length * long
                 && !strip.parted.cut.contains_key(&(a.min(b), a.max(b)))
                 && let Some(m) = strip.split(a, b, 0.5)
             {
@@ -304,7 +369,10 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
         }
     }
     let new = (strip.parted.n_old..strip.parted.n_old + strip.parted.nodes.len()).map(|v| v as u32);
-    for v in new.collect::<Vec<_>>() {
+    for (k, v) in new.collect::<Vec<_>>().into_iter().enumerate() {
+        if k % BATCH == 0 {
+            progress.report(1.0)?;
+        }
         if strip.triangles_at(v).is_empty() || strip.is_hopeless(v, Trial::Centre) {
             continue;
         }
@@ -314,16 +382,19 @@ fn improve(strip: &mut Strip<'_>, kept: &FxHashSet<u32>, length: f64, round: usi
             strip.give_up(v, Trial::Centre);
         }
     }
-    changes
+    Ok(changes)
 }
 
 /// Slides vertices of the line at thin triangles along it.
-fn slide(strip: &mut Strip<'_>, course: &mut Course, length: f64) -> usize {
+fn slide(strip: &mut Strip<'_>, course: &mut Course, length: f64, progress: Progress<'_>) -> Result<usize> {
     let mut on = strip.parted.cut.keys().flat_map(|&(a, b)| [a, b]).collect::<Vec<_>>();
     on.sort_unstable();
     on.dedup();
     let mut changes = 0;
-    for v in on {
+    for (k, v) in on.into_iter().enumerate() {
+        if k % BATCH == 0 {
+            progress.report(1.0)?;
+        }
         if strip.is_hopeless(v, Trial::Slide) {
             continue;
         }
@@ -335,5 +406,5 @@ fn slide(strip: &mut Strip<'_>, course: &mut Course, length: f64) -> usize {
             strip.give_up(v, Trial::Slide);
         }
     }
-    changes
+    Ok(changes)
 }

@@ -261,6 +261,12 @@ impl Sheet {
         self.arc[self.arc.len() - 1]
     }
 
+    /// From where to where the line was drawn, on the unrolled line.
+    pub fn drawn(&self) -> [f64; 2] {
+        let n = self.points.len();
+        if self.closed { [0.0, self.width()] } else { [self.arc[1], self.arc[n - 2]] }
+    }
+
     /// The place on the unrolled line of the point at the share `s` of segment `k`.
     pub fn place(&self, k: usize, s: f64) -> f64 {
         let [a, b] = self.segment(k);

@@ -75,7 +75,8 @@ pub(super) fn split(
         }
     }
     let Divider { nodes, parts, cut, .. } = divider;
-    let parted = Parted { n_old: vertices.len(), nodes, left, divided, parts, cut, cut_faces };
+    let parted =
+        Parted { n_old: vertices.len(), nodes, left, divided, parts, cut, cut_faces, alone: met.alone };
     let has = |side: bool| {
         parted.parts.iter().any(|p| p.left == side)
             || parted.left.iter().zip(&parted.divided).any(|(&l, &d)| !d && l == side)

@@ -10,6 +10,7 @@ use super::cross::Node;
 use super::ground::Home;
 use super::nearness::{Facet, closest, samples, within};
 use super::parted::{Part, Parted};
+use super::thin;
 
 pub(super) struct Strip<'a> {
     pub vertices: &'a [DVec3],
@@ -24,8 +25,10 @@ pub(super) struct Strip<'a> {
     pub altered: FxHashSet<u32>,
     /// Triangles changed since somebody took the list.
     pub fresh: Vec<u32>,
-    /// How far a triangle may be off the old ones.
+    /// How far a triangle may be off the old ones, where the model is not thin.
     pub tolerance: f64,
+    /// The same for old triangles where the model is thin.
+    pub thin: FxHashMap<[u32; 3], f64>,
     /// How far apart that is looked at.
     spacing: f64,
     /// The cut's edges, by vertex.
@@ -55,6 +58,12 @@ const TOLERANCE: f64 = 0.042;
 /// How far apart these points are at most, in edge lengths.
 const SPACING: f64 = 0.5;
 
+/// Vertices with more triangles stay: to look at all of them again and again would take long.
+const HUB: usize = 96;
+
+/// Triangles have at least this part of the square over their longest edge as their area, twice.
+const SLIVER: f64 = 1e-9;
+
 /// How much of a right way up is left to a triangle.
 const UPRIGHT: f64 = 0.5;
 
@@ -82,6 +91,7 @@ impl<'a> Strip<'a> {
         let mut homes = parts.iter().map(|p| (p.face, p.home)).collect::<Vec<_>>();
         homes.sort_unstable();
         homes.dedup();
+        let thin = thin::tolerances(vertices, &homes, TOLERANCE * length);
         for (face, corners) in homes {
             let facet = Facet::new(corners.map(|v| vertices[v as usize]));
             corners.iter().for_each(|&v| old.entry(v).or_default().push(Home { face, corners, facet }));
@@ -96,6 +106,7 @@ impl<'a> Strip<'a> {
             altered: FxHashSet::default(),
             fresh: vec![],
             tolerance: TOLERANCE * length,
+            thin,
             spacing: SPACING * length,
             line,
             old,
@@ -186,6 +197,22 @@ impl<'a> Strip<'a> {
         self.triangles_at(a).iter().filter(has).copied().collect()
     }
 
+    pub fn has_edge(&self, a: u32, b: u32) -> bool {
+        let (few, other) =
+            if self.triangles_at(a).len() <= self.triangles_at(b).len() { (a, b) } else { (b, a) };
+        let mut own = self.triangles_at(few).iter().filter_map(|&t| self.part(t));
+        own.any(|p| p.corners.contains(&other))
+    }
+
+    /// How far triangles may be off these old ones.
+    pub fn tolerance_at(&self, homes: &[Home]) -> f64 {
+        if self.thin.is_empty() {
+            return self.tolerance;
+        }
+        let own = homes.iter().filter_map(|h| self.thin.get(&h.corners).copied());
+        own.fold(self.tolerance, f64::min)
+    }
+
     pub fn home(&self, home: [u32; 3]) -> [DVec3; 3] {
         home.map(|v| self.vertices[v as usize])
     }
@@ -197,7 +224,7 @@ impl<'a> Strip<'a> {
         let (own, old) = (normal(p), normal(self.home(home)));
         let longest =
             p[0].distance_squared(p[1]).max(p[1].distance_squared(p[2])).max(p[2].distance_squared(p[0]));
-        own.length() > 1e-6 * longest && own.dot(old) > UPRIGHT * own.length() * old.length()
+        own.length() > SLIVER * longest && own.dot(old) > UPRIGHT * own.length() * old.length()
     }
 
     /// Points of a triangle where its distance from the old ones is taken.
@@ -283,8 +310,11 @@ impl<'a> Strip<'a> {
 
     /// The triangles of `u` given to its neighbour `v`, if they stay near the old ones and upright.
     pub fn merge(&mut self, u: u32, v: u32, least: f64) -> bool {
+        if self.is_border(u) || self.triangles_at(u).len() > HUB {
+            return false;
+        }
         let shared = self.with_edge(u, v);
-        if self.is_border(u) || shared.len() != 2 {
+        if shared.len() != 2 {
             return false;
         }
         let (near_u, near_v) = (self.neighbours(u), self.neighbours(v));
@@ -300,12 +330,17 @@ impl<'a> Strip<'a> {
             return false;
         }
         let p = self.position(u);
-        let covers =
-            |part: &Part| within(p, with_v(part.corners).map(|w| self.position(w)), self.tolerance).is_some();
-        if !stay().any(covers) {
+        let covers = |part: &Part, reach: f64| {
+            within(p, with_v(part.corners).map(|w| self.position(w)), reach).is_some()
+        };
+        if !stay().any(|part| covers(part, self.tolerance)) {
             return false;
         }
         let homes = self.homes(&near_u);
+        let reach = self.tolerance_at(&homes);
+        if reach < self.tolerance && !stay().any(|part| covers(part, reach)) {
+            return false;
+        }
         let mut new = vec![];
         for &t in all.iter().filter(|t| !shared.contains(t)) {
             let Some(part) = self.part(t) else { return false };

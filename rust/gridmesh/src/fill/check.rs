@@ -92,8 +92,19 @@ pub(crate) fn check_loop(given: &[u32], positions: &[DVec3], rim: &Rim) -> Resul
     Ok(Checked { vertices, reversed, conflicts: along.min(against), wire })
 }
 
+/// Refuses loops that have a vertex that is not finite among the triangles of `wide`, two rings around them.
+pub(crate) fn check_near(given: &[u32], positions: &[DVec3], wide: &Rim) -> Result<()> {
+    let corners = |v: u32| wide.around(v).iter().flat_map(|&t| wide.triangles[t as usize]);
+    let beside = given.iter().filter_map(|&v| wide.local(v)).flat_map(corners);
+    let near = beside.flat_map(corners).map(|v| wide.ids[v as usize]);
+    match near.into_iter().find(|&v| !positions[v as usize].is_finite()) {
+        Some(v) => Err(Error::NotFinite { what: "mesh".into(), point: v as usize }),
+        None => Ok(()),
+    }
+}
+
 /// Refuses loops whose areas and volumes would leave the range of floating point.
-fn check_size(given: &[u32], positions: &[DVec3]) -> Result<()> {
+pub(crate) fn check_size(given: &[u32], positions: &[DVec3]) -> Result<()> {
     let (low, high) = given.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &v| {
         let p = positions[v as usize];
         (low.min(p), high.max(p))

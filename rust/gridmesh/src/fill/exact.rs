@@ -14,7 +14,9 @@ use rustc_hash::FxHashMap;
 
 use crate::axial::Axial;
 use crate::dir::Dir;
+use crate::error::Result;
 use crate::lattice::Lattice;
+use crate::progress::Progress;
 
 /// Integer cost of one turn.
 pub(super) const TURN: u32 = 64;
@@ -169,13 +171,14 @@ impl<'a> Layers<'a> {
     }
 
     /// The cheapest closed path, if there is one; with `starts` the number of starts tried at most.
-    pub fn solve(&self, starts: usize) -> Option<(Vec<Axial>, u32)> {
+    pub fn solve(&self, starts: usize, progress: Progress<'_>) -> Result<Option<(Vec<Axial>, u32)>> {
         let states = self.stencil.len() * 6;
         let bound = |s: usize| self.to_go[s / 6][s % 6];
         let mut order: Vec<usize> = (0..states).filter(|&s| bound(s) < NEVER).collect();
         order.sort_by_key(|&s| (bound(s), s));
         let mut came = vec![0; (self.len() + 1) * states];
-        let least = bound(*order.first()?);
+        let Some(&first) = order.first() else { return Ok(None) };
+        let least = bound(first);
         // The optimum costs little more than the bound, as a rule: look there first.
         for slack in [2 * TURN, 8 * TURN, 32 * TURN] {
             let mut best: Option<(Vec<Axial>, u32)> = None;
@@ -184,16 +187,17 @@ impl<'a> Layers<'a> {
                 if bound(start) >= limit {
                     break;
                 }
+                progress.report(0.0)?;
                 if let Some((points, cost)) = self.closed_from(start, limit, &mut came) {
                     limit = cost;
                     best = Some((points, cost));
                 }
             }
             if best.is_some() {
-                return best;
+                return Ok(best);
             }
         }
-        None
+        Ok(None)
     }
 
     /// The cheapest path from a state of layer 0 back to it that costs less than `limit`.
@@ -272,13 +276,16 @@ pub(super) fn route(
     taken: &dyn Fn(usize, usize) -> bool,
     starts: usize,
     rounds: usize,
-) -> Option<Vec<Axial>> {
+    progress: Progress<'_>,
+) -> Result<Option<Vec<Axial>>> {
     let mut layers = Layers::new(wishes);
     for round in 0..=rounds {
-        let (points, _) = layers.solve(if round == 0 { starts } else { REPAIR_STARTS })?;
+        progress.report(0.0)?;
+        let starts = if round == 0 { starts } else { REPAIR_STARTS };
+        let Some((points, _)) = layers.solve(starts, progress)? else { return Ok(None) };
         let conflicts = conflicts(&points, taken);
         if conflicts.is_empty() && turning(&points) == 6 {
-            return Some(points);
+            return Ok(Some(points));
         }
         for &(i, j) in &conflicts {
             // Ever dearer, so that stubborn conflicts do not come round and round.
@@ -288,11 +295,11 @@ pub(super) fn route(
         }
         // Where a loop is thinner than the lattice in many places, prices do not help.
         if conflicts.is_empty() || (round >= 2 && conflicts.len() > HOPELESS) {
-            return None;
+            return Ok(None);
         }
         layers.bound();
     }
-    None
+    Ok(None)
 }
 
 /// The sum of turns of a closed path; 100 stands for a step that is none.
@@ -366,7 +373,7 @@ mod tests {
         for n in (8..120).chain([6, 300]) {
             let (target, turns) = (circle(n), plain(n));
             let wishes = Wishes { target: &target, turns: &turns, closeness: 0.1, reach: 2 };
-            let path = route(&wishes, &|_, _| true, 1000, 60);
+            let path = route(&wishes, &|_, _| true, 1000, 60, Progress::NONE).unwrap();
             let Some(path) = path else { panic!("no path for {n}") };
             assert_eq!(path.len(), n);
             assert_eq!(turning(&path), 6);

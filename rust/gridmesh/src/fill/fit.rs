@@ -1,6 +1,6 @@
 //! Positions and data of the new vertices.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::fair::{Bending, Membrane, seams};
 use super::meet::{count_meetings, is_graph};
@@ -9,6 +9,7 @@ use super::sweep::sweep;
 use super::unroll::area_vector;
 use super::{Shape, Smooth};
 use crate::error::{Error, Result};
+use crate::progress::Progress;
 
 /// Weight of the angles across the loop's edges against the curvatures at the vertices. Chosen on disks cut
 /// from meshes: with 0.7 the seam is rougher than its surroundings by a fifth, with more than 3 the
@@ -30,6 +31,9 @@ const SETTLED: f64 = 1e-3;
 /// Weights are limited to this from below where all must be positive, so that no value leaves the range
 /// of those given.
 pub(super) const LEAST_WEIGHT: f64 = 1e-3;
+
+/// Patches with this many meetings count as equally tangled: to count on takes time and helps nobody.
+const TANGLED: usize = 2000;
 
 /// A loop counts as planar if it leaves its plane by less than this share of its size.
 const PLANAR: f64 = 1e-12;
@@ -57,11 +61,18 @@ pub(super) struct Faults {
 }
 
 impl Faults {
-    fn of(work: &Patchwork, positions: &[DVec3]) -> Faults {
+    /// Meetings are counted up to `most`, or some more.
+    pub(super) fn of(
+        work: &Patchwork,
+        positions: &[DVec3],
+        most: usize,
+        progress: Progress<'_>,
+    ) -> Result<Faults> {
         let (own, around) = work.triangles.split_at(work.n_patch);
         let apart = is_graph(&positions[..work.n], &positions[..work.end], own);
-        let (meetings, _) = count_meetings(|v| positions[v as usize], own, around, apart);
-        Faults { meetings, film: false, folds: folds(work, positions) }
+        let (meetings, _) = count_meetings(|v| positions[v as usize], own, around, apart, most, progress)?;
+        let meetings = meetings.min(TANGLED);
+        Ok(Faults { meetings, film: false, folds: folds(work, positions) })
     }
 }
 
@@ -72,7 +83,7 @@ impl Shape {
     /// thin plate on the film's metric. Then rounds that separate shape and sampling: sweeps within
     /// the surface make the triangles good, a step along the normals makes the bending small. Neither undoes
     /// the other, as each solve in three coordinates would.
-    pub(super) fn solve(&self, mesh: &[DVec3]) -> Result<Solved> {
+    pub(super) fn solve(&self, mesh: &[DVec3], progress: Progress<'_>) -> Result<Solved> {
         let work = &self.work;
         let mut positions = vec![DVec3::ZERO; work.len()];
         for (k, &v) in self.loop_.iter().enumerate() {
@@ -83,33 +94,75 @@ impl Shape {
         }
         let membrane = if work.inner().is_empty() { None } else { self.film(&mut positions)? };
         let rim_angle = rim_angle(work, &positions);
+        progress.report(0.2)?;
         let mut solved = Solved { positions, faults: Faults::default(), repaired: 0, rim_angle };
         let mut stages = vec![];
         if !work.inner().is_empty() && self.smooth != Smooth::Flat && work.closed[..work.n].contains(&true) {
             stages.push(solved.positions.clone());
-            match self.bend(&mut solved.positions, membrane, &mut stages) {
+            match self.bend(&mut solved.positions, membrane, &mut stages, progress.part(0.2, 0.6)) {
                 Ok(()) => {}
                 // Triangles without area can spoil the equations: what was reached before has to do.
                 Err(Error::Solver { .. }) => {
-                    solved.positions = stages.pop().unwrap_or_default();
+                    let before = stages.pop().ok_or(Error::Internal { reason: "no film to fall back on" })?;
+                    solved.positions = before;
                     solved.repaired = 1;
                 }
                 Err(other) => return Err(other),
             }
         }
-        solved.faults = Faults::of(work, &solved.positions);
+        solved.faults = Faults::of(work, &solved.positions, TANGLED, progress.part(0.6, 0.8))?;
         // The film has the fewest faults, but it does not continue the surface: it is for patches that meet
         // something and could do without.
         for (k, stage) in stages.into_iter().enumerate().rev() {
             if solved.faults == Faults::default() || (k == 0 && solved.faults.meetings == 0) {
                 break;
             }
-            let faults = Faults { film: k == 0, ..Faults::of(work, &stage) };
+            // More than these need not be counted: such a stage is no better.
+            let most = if k == 0 { 1 } else { solved.faults.meetings + 1 };
+            let faults = Faults::of(work, &stage, most, progress.part(0.8, 1.0))?;
+            let faults = Faults { film: k == 0, ..faults };
             if faults < solved.faults && (k > 0 || faults.meetings == 0) {
                 (solved.positions, solved.faults, solved.repaired) = (stage, faults, 1);
             }
         }
         Ok(solved)
+    }
+
+    /// New vertices for a mesh at `mesh`, moved with the loop: by the affine map that fits its displacement best,
+    /// and what that leaves extended harmonically. So hard edges stay straight.
+    pub(super) fn carried(&self, mesh: &[DVec3]) -> Result<Vec<DVec3>> {
+        let work = &self.work;
+        let before = |v: usize| self.positions[v];
+        let after = |v: usize| {
+            if v < work.n { mesh[self.loop_[v] as usize] } else { mesh[work.outer[v - work.end] as usize] }
+        };
+        let given = (0..work.n).chain(work.end..work.len()).collect::<Vec<_>>();
+        let count = given.len() as f64;
+        let centre = given.iter().map(|&v| before(v)).sum::<DVec3>() / count;
+        let shift = given.iter().map(|&v| after(v) - before(v)).sum::<DVec3>() / count;
+        let size = given.iter().map(|&v| before(v).distance(centre)).fold(f64::MIN_POSITIVE, f64::max);
+        let (mut spread, mut moved) = (DMat3::ZERO, DMat3::ZERO);
+        for &v in &given {
+            let (x, d) = ((before(v) - centre) / size, after(v) - before(v) - shift);
+            spread += DMat3::from_cols(x * x.x, x * x.y, x * x.z);
+            moved += DMat3::from_cols(d * x.x, d * x.y, d * x.z);
+        }
+        // Of planar surroundings the way across the plane is not known: it stays as it is.
+        let turned = moved * (spread + DMat3::IDENTITY * 1e-9).inverse();
+        let affine = |p: DVec3| shift + turned * ((p - centre) / size);
+        let mut found = self.positions[work.inner()].iter().map(|&p| p + affine(p)).collect::<Vec<_>>();
+        let left = |v: usize| after(v) - before(v) - affine(before(v));
+        if found.is_empty() || (0..work.n).all(|v| left(v) == DVec3::ZERO) {
+            return Ok(found);
+        }
+        let weights =
+            work.cotangents(&self.positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
+        let rest = Membrane::new(work)?.harmonic(&weights, |v| left(v).to_array())?;
+        for (p, rest) in found.iter_mut().zip(rest) {
+            *p += DVec3::from(rest);
+        }
+        sound(&found)?;
+        Ok(found)
     }
 
     /// Places the new vertices on a film in the loop.
@@ -137,10 +190,13 @@ impl Shape {
         positions: &mut [DVec3],
         membrane: Option<Membrane<'_>>,
         stages: &mut Vec<Vec<DVec3>>,
+        progress: Progress<'_>,
     ) -> Result<()> {
         let work = &self.work;
         let bending = Bending::new(work)?;
+        progress.report(0.1)?;
         bending.positions(positions)?;
+        sound(positions)?;
         let membrane = match (self.smooth, membrane) {
             (Smooth::Curvature, None) => Some(Membrane::new(work)?),
             (Smooth::Curvature, some) => some,
@@ -155,10 +211,13 @@ impl Shape {
         for _ in 0..rounds {
             stages.push(positions.to_vec());
             for _ in 0..SWEEPS {
+                progress.report(0.2)?;
                 sweep(work, positions);
             }
+            progress.report(0.5)?;
             let target = membrane.as_ref().map(|m| curvature_target(work, m, positions)).transpose()?;
             let [before, after] = bending.normal_step(positions, seam, target.as_deref())?;
+            sound(positions)?;
             if after > (1.0 - SETTLED) * before {
                 break;
             }
@@ -222,6 +281,14 @@ impl Shape {
     }
 }
 
+/// Refuses positions that are not finite, as surroundings of very different sizes can bring about.
+fn sound(positions: &[DVec3]) -> Result<()> {
+    if positions.iter().all(|p| p.is_finite()) {
+        return Ok(());
+    }
+    Err(Error::Solver { stage: "fill", reason: "a vertex is not finite".into() })
+}
+
 /// The way from the plane to space if the flat loop is the loop itself, moved rigidly.
 fn lift(around: &[DVec3], flat: &[DVec2]) -> Option<impl Fn(DVec2) -> DVec3 + use<>> {
     let n = around.len();
@@ -271,7 +338,7 @@ fn curvature_target(work: &Patchwork, membrane: &Membrane<'_>, positions: &[DVec
 }
 
 /// Mean angle across the loop's edges, weighted by length.
-fn rim_angle(work: &Patchwork, positions: &[DVec3]) -> f64 {
+pub(super) fn rim_angle(work: &Patchwork, positions: &[DVec3]) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
     for [a, b, c, d] in seams(work) {
         let [a, b, c, d] = [a, b, c, d].map(|v| positions[v as usize]);

@@ -183,15 +183,14 @@ impl Contest<'_> {
             // Often the lattice does not fit, and both take their time: side by side.
             let needless = AtomicBool::new(false);
             let is_needed = |_: f64| !needless.load(Ordering::Relaxed);
-            let lattice = || {
+            let (found, needless) = (&mut made, &needless);
+            // The calling thread keeps the half that reports.
+            rayon::in_place_scope(|scope| {
+                scope.spawn(|_| *found = Some(graded(points, wanted, taken, Progress::new(&is_needed))));
                 let placed = self.lattice(options, progress.part(0.0, 0.7));
                 needless.store(placed.is_err() || self.is_settled(options), Ordering::Relaxed);
                 placed
-            };
-            let (placed, found) =
-                rayon::join(lattice, || graded(points, wanted, taken, Progress::new(&is_needed)));
-            placed?;
-            made = Some(found);
+            })?;
         } else if n >= 5 {
             self.lattice(options, progress.part(0.0, 0.7))?;
         }
@@ -257,6 +256,7 @@ impl Contest<'_> {
         for &strength in strengths {
             let mut found: Vec<(u32, Vec<DVec2>)> = Vec::with_capacity(options.angles);
             for a in 0..options.angles {
+                progress.report(0.5 * a as f64 / options.angles as f64)?;
                 let angle = std::f64::consts::FRAC_PI_3 * a as f64 / options.angles as f64;
                 let target = shape.developed(strength, angle);
                 let wishes = Wishes {
@@ -272,19 +272,20 @@ impl Contest<'_> {
                 if i > 0 && self.points.len() > LARGE && self.is_good() {
                     break;
                 }
-                progress.report(i as f64 / options.placed as f64)?;
+                let here = progress.part(0.5, 1.0);
+                here.report(i as f64 / options.placed as f64)?;
                 let wishes =
                     Wishes { target, turns: &turns, closeness: options.closeness, reach: options.reach };
                 match options.boundary {
                     BoundaryMethod::Optimal => {
-                        if let Some(path) = route(&wishes, self.taken, STARTS, rounds) {
-                            self.place(&path, Method::Optimal, progress)?;
+                        if let Some(path) = route(&wishes, self.taken, STARTS, rounds, here)? {
+                            self.place(&path, Method::Optimal, here)?;
                         }
                     }
                     BoundaryMethod::Grown => {
                         let path = grown(target).filter(|path| conflicts(path, self.taken).is_empty());
                         if let Some(path) = path {
-                            self.place(&path, Method::Grown, progress)?;
+                            self.place(&path, Method::Grown, here)?;
                         }
                     }
                 }

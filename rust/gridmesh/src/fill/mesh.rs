@@ -9,7 +9,8 @@ pub(crate) const CHUNK: usize = 1 << 16;
 
 /// The triangles within some rings of given vertices, with vertices renumbered.
 ///
-/// Triangles that repeat a vertex are left out: they have no area and join nothing.
+/// Triangles that repeat a vertex are left out: they have no area and no sides. Edges that they have are kept
+/// apart, so that no patch repeats one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rim {
     /// Vertex numbers in the mesh, ascending; the place is the number here.
@@ -18,6 +19,8 @@ pub(crate) struct Rim {
     pub triangles: Vec<[u32; 3]>,
     /// Their numbers in the mesh.
     pub numbers: Vec<u32>,
+    /// Edges of triangles that repeat a vertex, by their numbers in the mesh.
+    pub loose: Vec<[u32; 2]>,
     start: Vec<u32>,
     incident: Vec<u32>,
 }
@@ -50,17 +53,25 @@ impl Rim {
             }
             found = touching(&marked, triangles)?;
         }
-        found.retain(|&t| !repeats(&triangles[t as usize]));
-        Ok(Self::of(found.iter().map(|&t| triangles[t as usize]).collect(), found))
+        let mut loose = vec![];
+        found.retain(|&t| {
+            let t @ [a, b, c] = &triangles[t as usize];
+            if repeats(t) {
+                // Of such a triangle two corners differ, or none.
+                loose.extend([[*a, *b], [*b, *c]].into_iter().find(|[u, v]| u != v));
+            }
+            !repeats(t)
+        });
+        Self::of(found.iter().map(|&t| triangles[t as usize]).collect(), found, loose)
     }
 
     /// All of the given triangles.
-    fn of(mut triangles: Vec<[u32; 3]>, numbers: Vec<u32>) -> Self {
+    fn of(mut triangles: Vec<[u32; 3]>, numbers: Vec<u32>, loose: Vec<[u32; 2]>) -> Result<Self> {
         let mut ids = triangles.iter().flatten().copied().collect::<Vec<_>>();
         ids.sort_unstable();
         ids.dedup();
         for corner in triangles.iter_mut().flatten() {
-            *corner = ids.binary_search(corner).unwrap_or_default() as u32;
+            *corner = place(&ids, *corner)? as u32;
         }
         let mut start = vec![0u32; ids.len() + 1];
         for &v in triangles.iter().flatten() {
@@ -77,7 +88,7 @@ impl Rim {
                 fill[v as usize] += 1;
             }
         }
-        Rim { ids, triangles, numbers, start, incident }
+        Ok(Rim { ids, triangles, numbers, loose, start, incident })
     }
 
     /// The number here of a vertex of the mesh, if it belongs to a triangle here.
@@ -145,6 +156,11 @@ pub(crate) fn in_chunks<T: Send>(
     triangles.par_chunks(CHUNK).enumerate().map(scan).collect()
 }
 
+/// Where a number is in an ascending list that has it.
+pub(crate) fn place(numbers: &[u32], number: u32) -> Result<usize> {
+    numbers.binary_search(&number).map_err(|_| Error::Internal { reason: "a vertex was not collected" })
+}
+
 /// True if a triangle names a vertex twice.
 pub(crate) fn repeats(t: &[u32; 3]) -> bool {
     t[0] == t[1] || t[1] == t[2] || t[2] == t[0]
@@ -164,6 +180,9 @@ mod tests {
         assert_eq!(rim.neighbours(rim.local(10).unwrap()), [0, 1, 3, 4]);
         assert_eq!(Rim::new(22, &strip, &[10], 2).unwrap().ids, (6..15).collect::<Vec<_>>());
         assert_eq!(rim.local(3), None);
+        let folded = [strip.as_slice(), &[[10, 10, 3], [4, 5, 4], [7, 10, 7], [10, 10, 10]]].concat();
+        let rim = Rim::new(22, &folded, &[10], 1).unwrap();
+        assert_eq!((rim.triangles.len(), &rim.loose[..]), (3, &[[10, 3], [7, 10]][..]));
         let wrong = Rim::new(21, &strip, &[10], 1).unwrap_err();
         assert_eq!(wrong.kind(), "index_out_of_range");
         assert!(wrong.to_string().contains("triangle 19"), "{wrong}");

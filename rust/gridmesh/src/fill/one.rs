@@ -18,11 +18,11 @@ use crate::metrics::min_angle;
 use crate::progress::Progress;
 
 /// A patch in space.
-struct Attempt {
-    unrolled: Unrolled,
-    patch: FlatFill,
-    shape: Shape,
-    solved: Solved,
+pub(super) struct Attempt {
+    pub unrolled: Unrolled,
+    pub patch: FlatFill,
+    pub shape: Shape,
+    pub solved: Solved,
 }
 
 impl Job<'_> {
@@ -37,28 +37,35 @@ impl Job<'_> {
         progress.report(0.0)?;
         let mut clock = Clock::new();
         let task = Task { job: self, checked, rim, taken: Taken::new(checked, rim, reserved) };
+        let creases = self.options.sharp.map_or(vec![], |angle| task.creases(angle));
+        let n_creases = creases.iter().flatten().count();
+        if n_creases > 0
+            && let Some(sharp) = task.sharp(&creases, &mut clock, progress.part(0.0, 0.1))?
+        {
+            return Ok(task.finish(sharp, n_creases, clock));
+        }
         let around = checked.vertices.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
         let unrolled = unroll(&around);
         clock.stage("unroll");
-        let mut best = task.attempt(unrolled, &mut clock, progress)?;
+        let mut best = task.attempt(unrolled, &mut clock, progress.part(0.1, 0.7))?;
         if best.solved.faults != Faults::default()
             && let Some(unrolled) = unroll_least_bent(&around, &task.outside())
         {
-            let other = task.attempt(unrolled, &mut clock, progress)?;
+            let other = task.attempt(unrolled, &mut clock, progress.part(0.7, 1.0))?;
             if other.solved.faults < best.solved.faults {
                 best = other;
             }
         }
-        Ok(task.finish(best, clock))
+        Ok(task.finish(best, n_creases, clock))
     }
 }
 
 /// A loop, and what has to be known about it.
-struct Task<'a> {
-    job: &'a Job<'a>,
-    checked: &'a Checked,
-    rim: &'a Rim,
-    taken: Taken,
+pub(super) struct Task<'a> {
+    pub job: &'a Job<'a>,
+    pub checked: &'a Checked,
+    pub rim: &'a Rim,
+    pub taken: Taken,
 }
 
 impl Task<'_> {
@@ -69,7 +76,7 @@ impl Task<'_> {
         let is_taken = |i: usize, j: usize| self.taken.has(i, j);
         // A triangle that the mesh has already is filled with three others.
         let options = FlatOptions { single: !self.taken.face, ..FlatOptions::default() };
-        let patch = fill_flat(&unrolled.points, &wanted, &is_taken, &options, progress)?;
+        let patch = fill_flat(&unrolled.points, &wanted, &is_taken, &options, progress.part(0.0, 0.6))?;
         if patch.quality.repeated > 0 {
             return Err(Error::NoPatch {
                 reason: "every patch repeats an edge of the mesh".into(),
@@ -77,10 +84,10 @@ impl Task<'_> {
             });
         }
         clock.stage("grid");
-        progress.report(0.0)?;
+        progress.report(0.6)?;
 
         let rings = if smooth == Smooth::Curvature { 2 } else { 1 };
-        let work = Patchwork::new(loop_, patch.interior.len(), &patch.triangles, self.rim, rings);
+        let work = Patchwork::new(loop_, patch.interior.len(), &patch.triangles, self.rim, rings)?;
         let shape = Shape {
             work,
             loop_: loop_.clone(),
@@ -89,14 +96,15 @@ impl Task<'_> {
             smooth,
             vertices: self.job.vertices.len(),
             positions: vec![],
+            creases: vec![],
         };
-        let solved = shape.solve(self.job.vertices)?;
+        let solved = shape.solve(self.job.vertices, progress.part(0.6, 1.0))?;
         clock.stage("fair");
         Ok(Attempt { unrolled, patch, shape, solved })
     }
 
     /// Normals of the triangles beyond the loop's edges, as if wound like the patch.
-    fn outside(&self) -> Vec<Option<DVec3>> {
+    pub(super) fn outside(&self) -> Vec<Option<DVec3>> {
         let loop_ = &self.checked.vertices;
         let at = |v: u32| self.job.vertices[self.rim.ids[v as usize] as usize];
         let beyond = |k: usize| {
@@ -110,7 +118,7 @@ impl Task<'_> {
         (0..loop_.len()).map(beyond).collect()
     }
 
-    fn finish(&self, attempt: Attempt, clock: Clock) -> Fill {
+    fn finish(&self, attempt: Attempt, creases: usize, clock: Clock) -> Fill {
         let Attempt { unrolled, patch, mut shape, solved } = attempt;
         let checked = self.checked;
         let loop_ = &checked.vertices;
@@ -136,6 +144,8 @@ impl Task<'_> {
             min_angle: min_angle(&shape.positions, own),
             folds: solved.faults.folds,
             self_intersections: 0,
+            creases,
+            creases_kept: if shape.creases.is_empty() { 0 } else { creases },
             repaired: solved.repaired,
             seconds: clock.seconds,
         };
@@ -144,6 +154,7 @@ impl Task<'_> {
             vertices: shape.positions[work.inner()].to_vec(),
             triangles: own.iter().map(|t| t.map(name)).collect(),
             report,
+            creases: shape.creases.iter().map(|edge| edge.map(name)).collect(),
             shape: Arc::new(shape),
         }
     }

@@ -27,11 +27,20 @@ pub struct FillOptions {
     /// if all are faces of their own. Vertices of the loop are then to be regular by the polygons' corners,
     /// not by diagonals that happen to cut them.
     pub polygons: Vec<u32>,
+    /// Hard edges of the surroundings that run into a loop go on in the patch: edges with more than this angle (in
+    /// radians) between their triangles.
+    pub sharp: Option<f64>,
+    /// With `sharp`: edges of the mesh that are hard whatever their angle is.
+    pub creases: Vec<[u32; 2]>,
 }
 
 impl FillOptions {
     /// Refuses options that do not fit a mesh.
     pub(super) fn check(&self, triangles: &[[u32; 3]]) -> Result<()> {
+        if let Some(angle) = self.sharp.filter(|angle| !(0.0..=std::f64::consts::PI).contains(angle)) {
+            let allowed = "an angle from 0 to pi, in radians, or nothing";
+            return Err(Error::InvalidOption { name: "sharp", value: angle.to_string(), allowed });
+        }
         if self.polygons.is_empty() || self.polygons.len() == triangles.len() {
             return Ok(());
         }

@@ -29,6 +29,8 @@ pub struct FillParts {
     pub triangles: Vec<[u32; 3]>,
     /// How many of them are the patch's.
     pub patch: usize,
+    /// Hard edges, by the place of their vertices in `positions`.
+    pub creases: Vec<[u32; 2]>,
 }
 
 impl Fill {
@@ -46,6 +48,7 @@ impl Fill {
             outer: work.outer.clone(),
             triangles: work.triangles.clone(),
             patch: work.n_patch,
+            creases: shape.creases.clone(),
         }
     }
 
@@ -54,7 +57,18 @@ impl Fill {
     /// # Errors
     /// [`Error::InvalidOption`] if they do not fit together.
     pub fn from_parts(parts: FillParts, report: FillReport) -> Result<Fill> {
-        let FillParts { loop_, reversed, smooth, vertices, flat, positions, outer, triangles, patch } = parts;
+        let FillParts {
+            loop_,
+            reversed,
+            smooth,
+            vertices,
+            flat,
+            positions,
+            outer,
+            triangles,
+            patch,
+            creases,
+        } = parts;
         let (n, end) = (loop_.len(), flat.len());
         let known = |v: &u32| (*v as usize) < vertices;
         let within = |t: &[u32; 3], most: usize| {
@@ -68,6 +82,7 @@ impl Fill {
             && patch <= triangles.len()
             && triangles.iter().all(|t| within(t, positions.len()))
             && triangles[..patch].iter().all(|t| within(t, end))
+            && creases.iter().flatten().all(|&v| (v as usize) < end)
             && vertices.checked_add(end).is_some_and(|most| u32::try_from(most).is_ok());
         if !sound {
             return Err(Error::InvalidOption {
@@ -78,11 +93,12 @@ impl Fill {
         }
         let name = |v: u32| if (v as usize) < n { loop_[v as usize] } else { v - n as u32 + vertices as u32 };
         let named = triangles[..patch].iter().map(|t| t.map(name)).collect();
+        let hard = creases.iter().map(|edge| edge.map(name)).collect();
         let given = if reversed { loop_.iter().rev().copied().collect() } else { loop_.clone() };
-        let work = Patchwork::of(n, end, outer, triangles, patch);
+        let work = Patchwork::of(n, end, outer, triangles, patch)?;
         let new = positions[n..end].to_vec();
-        let shape = Arc::new(Shape { work, loop_, reversed, flat, smooth, vertices, positions });
-        Ok(Fill { loop_: given, vertices: new, triangles: named, report, shape })
+        let shape = Arc::new(Shape { work, loop_, reversed, flat, smooth, vertices, positions, creases });
+        Ok(Fill { loop_: given, vertices: new, triangles: named, report, creases: hard, shape })
     }
 }
 
@@ -124,7 +140,7 @@ mod tests {
     #[test]
     fn parts_that_do_not_fit_are_refused() {
         let parts = filled().1.parts();
-        let damages: [fn(&mut FillParts); 7] = [
+        let damages: [fn(&mut FillParts); 8] = [
             |p| p.loop_[0] = 99,
             |p| p.outer.push(1),
             |p| p.triangles[0][0] = 10_000,
@@ -132,6 +148,7 @@ mod tests {
             |p| p.patch = 10_000,
             |p| p.flat.truncate(4),
             |p| p.positions.truncate(4),
+            |p| p.creases.push([0, 10_000]),
         ];
         for damage in damages {
             let mut broken = parts.clone();

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::mesh::Rim;
+use super::mesh::{Rim, place};
+use crate::error::{Error, Result};
 
 /// Patch and surroundings as one mesh: first the loop's vertices in the direction of the patch, then
 /// the new ones, then those of the mesh around.
@@ -34,7 +35,10 @@ pub(crate) struct Patchwork {
 
 impl Patchwork {
     /// `patch` over `0..n + inner`; `rim` has at least `rings` rings around the loop.
-    pub fn new(loop_: &[u32], inner: usize, patch: &[[u32; 3]], rim: &Rim, rings: usize) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Internal`].
+    pub fn new(loop_: &[u32], inner: usize, patch: &[[u32; 3]], rim: &Rim, rings: usize) -> Result<Self> {
         let n = loop_.len();
         let end = n + inner;
         let mut around = vec![];
@@ -49,20 +53,35 @@ impl Patchwork {
         }
         let mut places = loop_.iter().enumerate().map(|(k, &v)| (v, k as u32)).collect::<Vec<_>>();
         places.sort_unstable();
-        let place = |v: u32| places.binary_search_by_key(&v, |p| p.0).ok().map(|k| places[k].1);
+        let on_loop = |v: u32| places.binary_search_by_key(&v, |p| p.0).ok().map(|k| places[k].1);
         // `seeds` is ascending, and so are the mesh's numbers in it.
         let outer =
-            seeds.iter().map(|&v| rim.ids[v as usize]).filter(|&v| place(v).is_none()).collect::<Vec<_>>();
-        let number =
-            |v: u32| place(v).unwrap_or_else(|| (end + outer.binary_search(&v).unwrap_or_default()) as u32);
+            seeds.iter().map(|&v| rim.ids[v as usize]).filter(|&v| on_loop(v).is_none()).collect::<Vec<_>>();
         let mut triangles = patch.to_vec();
-        triangles
-            .extend(around.iter().map(|&t| rim.triangles[t as usize].map(|v| number(rim.ids[v as usize]))));
+        for t in around {
+            let mut corners = rim.triangles[t as usize].map(|v| rim.ids[v as usize]);
+            for v in &mut corners {
+                *v = match on_loop(*v) {
+                    Some(k) => k,
+                    None => (end + place(&outer, *v)?) as u32,
+                };
+            }
+            triangles.push(corners);
+        }
         Patchwork::of(n, end, outer, triangles, patch.len())
     }
 
     /// Of triangles over `n` loop vertices, new ones up to `end` and `outer`, those of the patch first.
-    pub fn of(n: usize, end: usize, outer: Vec<u32>, triangles: Vec<[u32; 3]>, n_patch: usize) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Internal`].
+    pub fn of(
+        n: usize,
+        end: usize,
+        outer: Vec<u32>,
+        triangles: Vec<[u32; 3]>,
+        n_patch: usize,
+    ) -> Result<Self> {
         let count = end + outer.len();
         let mut it = Patchwork {
             n,
@@ -77,11 +96,11 @@ impl Patchwork {
             closed: vec![],
             triangles,
         };
-        it.connect(count);
-        it
+        it.connect(count)?;
+        Ok(it)
     }
 
-    fn connect(&mut self, count: usize) {
+    fn connect(&mut self, count: usize) -> Result<()> {
         for &v in self.triangles.iter().flatten() {
             self.fan_start[v as usize + 1] += 1;
         }
@@ -109,15 +128,18 @@ impl Patchwork {
         }
         let slot = |p: u32, q: u32| {
             let range = self.range(p as usize);
-            (range.start + self.near[range].iter().position(|&u| u == q).unwrap_or_default()) as u32
+            let at = self.near[range.clone()].iter().position(|&u| u == q);
+            at.map(|at| (range.start + at) as u32).ok_or(Error::Internal { reason: "an edge has no slot" })
         };
         let facing = |t: &[u32; 3]| {
-            [0, 1, 2].map(|k| {
+            let one = |k: usize| {
                 let (p, q) = (t[(k + 1) % 3], t[(k + 2) % 3]);
-                [slot(p, q), slot(q, p)]
-            })
+                Ok([slot(p, q)?, slot(q, p)?])
+            };
+            Ok([one(0)?, one(1)?, one(2)?])
         };
-        self.slots = self.triangles.iter().map(facing).collect();
+        self.slots = self.triangles.iter().map(facing).collect::<Result<_>>()?;
+        Ok(())
     }
 
     /// The number of all vertices.

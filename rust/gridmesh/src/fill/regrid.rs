@@ -3,13 +3,15 @@
 use glam::{DVec2, DVec3};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
+use super::check::check_size;
 use super::fair::Membrane;
 use super::fit::{LEAST_WEIGHT, folds};
 use super::holes::boundary_loops;
-use super::mesh::{Rim, repeats};
+use super::mesh::{Rim, place, repeats};
+use super::parallel::steady;
 use super::patchwork::Patchwork;
 use super::sweep::sweep;
-use super::{Fill, FillOptions, Job, Smooth};
+use super::{Fill, FillOptions, Job, NO_ITEM, Smooth};
 use crate::error::{Error, Result};
 use crate::metrics::min_angle;
 use crate::progress::Progress;
@@ -51,6 +53,18 @@ pub fn regrid(
     options: &FillOptions,
     progress: Progress<'_>,
 ) -> Result<Regrid> {
+    steady(progress, |progress| replaced(vertices, triangles, faces, keep_shape, options, progress))
+}
+
+/// See [`regrid`].
+fn replaced(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    faces: &[u32],
+    keep_shape: bool,
+    options: &FillOptions,
+    progress: Progress<'_>,
+) -> Result<Regrid> {
     options.check(triangles)?;
     let mut chosen = vec![false; triangles.len()];
     for &face in faces {
@@ -62,7 +76,9 @@ pub fn regrid(
         *mark = true;
     }
     let pick = |wanted: bool| -> (Vec<u32>, Vec<[u32; 3]>) {
-        let kept = (0..triangles.len()).filter(|&t| chosen[t] == wanted && !repeats(&triangles[t]));
+        // Triangles that repeat a vertex are no part of a region, but their edges are not to be repeated.
+        let kept =
+            (0..triangles.len()).filter(|&t| chosen[t] == wanted && !(wanted && repeats(&triangles[t])));
         kept.map(|t| (t as u32, triangles[t])).unzip()
     };
     let ((numbers, region), (kept, rest)) = (pick(true), pick(false));
@@ -77,6 +93,10 @@ pub fn regrid(
     if others > 0 || used.len() + region.len() != edges + 1 {
         return Err(Error::NotADisk { borders: others + 1 });
     }
+    if let Some(&v) = used.iter().find(|&&v| !vertices[v as usize].is_finite()) {
+        return Err(Error::NotFinite { what: "mesh".into(), point: v as usize });
+    }
+    check_size(&used, vertices)?;
     // The patch takes the region's place: it runs as the region does, against the direction of a hole in it.
     let loop_ = border.iter().rev().copied().collect::<Vec<_>>();
     let polygons = &options.polygons;
@@ -84,16 +104,16 @@ pub fn regrid(
         if polygons.is_empty() { vec![] } else { kept.iter().map(|&t| polygons[t as usize]).collect() };
     let options = &FillOptions { polygons, ..options.clone() };
     // What counts is where the vertices come to lie in the end.
-    let first = FillOptions { smooth: Smooth::Flat, strict: false, ..options.clone() };
+    let first = FillOptions { smooth: Smooth::Flat, strict: false, sharp: None, ..options.clone() };
     let job = Job { vertices, triangles: &rest, options: if keep_shape { &first } else { options } };
     let mut fills = job.run(&[Ok(loop_)], progress.part(0.0, 0.5))?;
-    let mut fill = fills.pop().unwrap_or(Err(Error::Cancelled))?;
+    let mut fill = fills.pop().unwrap_or(Err(NO_ITEM))?;
 
     let surface = Surface::new(vertices, &numbers, &region);
     if keep_shape {
         lay_back(&mut fill, vertices, &region, &surface, progress.part(0.5, 0.9))?;
         let mut items = [Ok(fill)];
-        Job { options, ..job }.count_meetings(&mut items);
+        Job { options, ..job }.count_meetings(&mut items, progress.part(0.9, 1.0))?;
         let [item] = items;
         fill = item?;
     }
@@ -152,15 +172,19 @@ fn through_the_plane(
     let n = loop_.len();
     let mut on_loop = loop_.iter().enumerate().map(|(k, &v)| (v, k as u32)).collect::<Vec<_>>();
     on_loop.sort_unstable();
-    let place = |v: u32| on_loop.binary_search_by_key(&v, |p| p.0).ok().map(|k| on_loop[k].1);
-    let mut inner = region.iter().flatten().copied().filter(|&v| place(v).is_none()).collect::<Vec<_>>();
+    let corner = |v: u32| on_loop.binary_search_by_key(&v, |p| p.0).ok().map(|k| on_loop[k].1);
+    let mut inner = region.iter().flatten().copied().filter(|&v| corner(v).is_none()).collect::<Vec<_>>();
     inner.sort_unstable();
     inner.dedup();
-    let number =
-        |v: u32| place(v).unwrap_or_else(|| n as u32 + inner.binary_search(&v).unwrap_or_default() as u32);
-    let old = region.iter().map(|t| t.map(number)).collect::<Vec<_>>();
+    let mut old = region.to_vec();
+    for v in old.iter_mut().flatten() {
+        *v = match corner(*v) {
+            Some(k) => k,
+            None => (n + place(&inner, *v)?) as u32,
+        };
+    }
     let positions = loop_.iter().chain(&inner).map(|&v| vertices[v as usize]).collect::<Vec<_>>();
-    let work = Patchwork::new(loop_, inner.len(), &old, &Rim::default(), 0);
+    let work = Patchwork::new(loop_, inner.len(), &old, &Rim::default(), 0)?;
     let mut laid = flat[..n].to_vec();
     if !inner.is_empty() {
         let weights =

@@ -35,6 +35,10 @@ pub struct FillReport {
     pub folds: usize,
     /// Pairs of triangles, at least one of them new, that meet where they should not; counted up to 100,000.
     pub self_intersections: usize,
+    /// Hard edges of the surroundings that run into the loop; looked for only if they are to go on.
+    pub creases: usize,
+    /// Those of them that go on: all or none.
+    pub creases_kept: usize,
     /// Fallbacks: solves that failed and were replaced by simpler ones.
     pub repaired: usize,
     /// Seconds spent in each stage.

@@ -78,7 +78,7 @@ impl Taken {
                 face |= t.iter().all(|v| places.contains_key(v));
             }
         }
-        for [a, b] in reserved {
+        for [a, b] in reserved.iter().chain(&rim.loose) {
             if let (Some(&a), Some(&b)) = (places.get(a), places.get(b)) {
                 pairs.insert([a.min(b), a.max(b)]);
             }

@@ -8,6 +8,7 @@ use super::laplace::{Factor, Pattern, cotangent_weights, lumped_areas};
 use super::topology::Topology;
 use crate::error::Result;
 use crate::patch::Patch;
+use crate::progress::Progress;
 
 /// The `k` of [`bends`].
 const DRAG: f64 = 2.5;
@@ -26,6 +27,8 @@ pub(crate) struct Flat<'a> {
     pub cotangent: Vec<f64>,
     /// First interior vertex.
     pub first: usize,
+    /// Asked before each solve.
+    pub progress: Progress<'a>,
 }
 
 impl<'a> Flat<'a> {
@@ -34,9 +37,10 @@ impl<'a> Flat<'a> {
         vertices: &'a [DVec2],
         topology: &'a Topology,
         pattern: &'a Pattern,
+        progress: Progress<'a>,
     ) -> Result<Self> {
         let cotangent = cotangent_weights(topology, vertices, &patch.triangles)?;
-        Ok(Flat { patch, vertices, topology, pattern, cotangent, first: patch.n_boundary() })
+        Ok(Flat { patch, vertices, topology, pattern, cotangent, first: patch.n_boundary(), progress })
     }
 
     /// Sum over the neighbours of `v` of weight times `of(v, neighbour)`.
@@ -51,6 +55,7 @@ impl<'a> Flat<'a> {
     }
 
     fn solve(&self, factor: &Factor<'_>, rhs: impl Fn(usize) -> f64) -> Result<Vec<f64>> {
+        self.progress.report(0.5)?;
         let mut x = (self.first..self.vertices.len()).map(rhs).collect::<Vec<_>>();
         factor.solve(&mut x, 1)?;
         let mut full = vec![0.0; self.first];
@@ -61,6 +66,7 @@ impl<'a> Flat<'a> {
     /// Extends values at the first vertices (the outer contour) to all others: harmonically, with
     /// positive weights, so that no value leaves the range of the given ones.
     pub fn harmonic(&self, known: &[f64]) -> Result<Vec<f64>> {
+        self.progress.report(1.0)?;
         let pattern = Pattern::new(self.topology, known.len())?;
         let weights = self.cotangent.iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
         let factor = pattern.factor(self.topology, &weights, |_| 0.0)?;

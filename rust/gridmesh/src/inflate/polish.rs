@@ -6,7 +6,9 @@ use glam::{DVec2, DVec3};
 
 use super::field::Field;
 use super::spread::{Front, Guide, project};
+use crate::error::Result;
 use crate::patch::Loop;
+use crate::progress::Progress;
 
 /// Sum of the squared sides over twice the area of an equilateral triangle.
 const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
@@ -16,6 +18,9 @@ const SHARP: f64 = 1.732_050_807_568_877_2;
 
 /// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
 const LEVEL: f64 = 0.7;
+
+/// Vertices between two questions whether to go on.
+pub(super) const ASK_EVERY: usize = 1 << 11;
 
 /// Rounds of [`sharpen`] at most.
 const ROUNDS: u32 = 32;
@@ -53,9 +58,12 @@ pub(crate) fn rim_flatness(field: &Field<'_>, loops: &[Loop], first: usize) -> V
 /// plane of the vertex: convex in the vertex's position there. One Newton step, weighted by the
 /// badness itself so that the worst triangles count most, is taken and shortened until no triangle
 /// falls below `least_area` in projection.
-pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>) {
+pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
     let field = guide.field;
     for v in front.first..front.flat.len() {
+        if v % ASK_EVERY == 0 {
+            progress.report(0.0)?;
+        }
         let slot = v - front.first;
         let (_, gradient) = field.at(front.flat[v], front.place[slot]);
         let normal = surface_normal(gradient, front.height[v]);
@@ -134,19 +142,23 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>) {
             share *= 0.5;
         }
     }
+    Ok(())
 }
 
 /// Moves the vertices of the sharpest triangles to where the least angle around them is largest, by
 /// trial in eight directions. A vertex is left alone once it has not moved for some rounds, nor
 /// its neighbours.
-pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>) {
+pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
     let first = front.first;
     let mut patience = vec![PATIENCE; front.flat.len()];
     let mut active: Vec<u32> = (first as u32..front.flat.len() as u32).collect();
     for round in 0..ROUNDS {
         let reach = [0.3, 0.12, 0.05][round as usize % 3];
         let mut next = vec![];
-        for &v in &active {
+        for (k, &v) in active.iter().enumerate() {
+            if k % ASK_EVERY == 0 {
+                progress.report(0.8)?;
+            }
             let v = v as usize;
             let fan = guide.field.topology.fan(v);
             let present = sharpest(front, fan, front.position(v));
@@ -173,6 +185,7 @@ pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>) {
         }
         active = next;
     }
+    Ok(())
 }
 
 /// Moves `v`, the largest cotangent around which is `present`, to the best of eight places around it;

@@ -29,13 +29,23 @@ impl Scales {
     }
 }
 
+/// Depths, and the largest of one per point: heights beyond would leave the range in which areas and volumes
+/// are computed, of drawings of any size.
+const RANGE: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+const ALLOWED: &str = "a number from 1e-9 to 1e9";
+
+/// A number without a hundred zeros.
+fn told(value: f64) -> String {
+    if value == 0.0 || (1e-6..1e9).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
 impl InflateOptions {
     /// Refuses values that are not allowed.
     pub(crate) fn check(&self) -> Result<()> {
         let refuse =
-            |name, value: f64, allowed| Err(Error::InvalidOption { name, value: value.to_string(), allowed });
-        if !(self.depth > 0.0 && self.depth.is_finite()) {
-            return refuse("depth", self.depth, "a finite number above 0");
+            |name, value: f64, allowed| Err(Error::InvalidOption { name, value: told(value), allowed });
+        if !RANGE.contains(&self.depth) {
+            return refuse("depth", self.depth, ALLOWED);
         }
         if self.corner_angle.is_nan() || self.corner_angle < 0.0 {
             return refuse("corner_angle", self.corner_angle, "an angle in radians, 0 or more");
@@ -46,8 +56,12 @@ impl InflateOptions {
                 Some(Side::Uniform(value)) => std::slice::from_ref(value),
                 Some(Side::PerPoint(values)) => values,
             };
-            if let Some(&value) = values.iter().find(|v| !(**v >= 0.0 && v.is_finite())) {
-                return refuse(name, value, "finite numbers, 0 or more");
+            if let Some(&value) = values.iter().find(|v| !(0.0..=*RANGE.end()).contains(*v)) {
+                return refuse(name, value, "0, or numbers up to 1e9");
+            }
+            let largest = values.iter().copied().fold(0.0, f64::max);
+            if largest > 0.0 && largest < *RANGE.start() {
+                return refuse(name, largest, "0, or a largest number from 1e-9 on");
             }
         }
         if let Some(values) = &self.curve {

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::crease::{Crease, creases};
 use super::field::{Field, Place};
 use super::inlets::Inlets;
-use super::polish::{rim_flatness, sharpen, sweep};
+use super::polish::{ASK_EVERY, rim_flatness, sharpen, sweep};
 use crate::error::Result;
 use crate::patch::Loop;
 use crate::progress::Progress;
@@ -109,15 +109,15 @@ impl<'a> Guide<'a> {
 pub(crate) fn spread(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
     const LEGS: usize = 3;
     for leg in 0..LEGS {
-        slide(front, guide, 1.0 / (LEGS - leg) as f64);
-        sweep(front, guide);
+        slide(front, guide, 1.0 / (LEGS - leg) as f64, progress)?;
+        sweep(front, guide, progress)?;
         progress.report(0.2 * (leg + 1) as f64)?;
     }
     for _ in 0..2 {
-        sweep(front, guide);
+        sweep(front, guide, progress)?;
     }
     progress.report(0.8)?;
-    sharpen(front, guide);
+    sharpen(front, guide, progress)?;
     progress.report(1.0)
 }
 
@@ -141,11 +141,14 @@ fn unrolled(field: &Field<'_>, v: usize, limb: f64, depth: f64) -> f64 {
 }
 
 /// Slides every vertex down the slope by `share` of the way from its height to `goal`.
-fn slide(front: &mut Front, guide: &Guide<'_>, share: f64) {
+fn slide(front: &mut Front, guide: &Guide<'_>, share: f64, progress: Progress<'_>) -> Result<()> {
     let Guide { field, goal, crease, .. } = guide;
     let first = front.first;
     let target = (first..front.flat.len())
         .map(|v| {
+            if v % ASK_EVERY == 0 {
+                progress.report(0.0)?;
+            }
             let (mut point, mut place) = (front.flat[v], front.place[v - first]);
             let height = match field.section {
                 None => front.height[v],
@@ -182,10 +185,11 @@ fn slide(front: &mut Front, guide: &Guide<'_>, share: f64) {
                 let Some(found) = field.locate(next, place.triangle) else { break };
                 (point, place) = (next, found);
             }
-            point
+            Ok(point)
         })
-        .collect::<Vec<_>>();
+        .collect::<Result<Vec<_>>>()?;
     settle(front, guide, &target);
+    Ok(())
 }
 
 /// The point of the plane below the foot of `point` on the surface `z^2 = field`.

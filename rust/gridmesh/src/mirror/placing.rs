@@ -38,8 +38,7 @@ pub(crate) fn symmetrised(
     let axis = reflection(symmetry, &lattice);
     let region = assemble(&outline.paths);
     let at = contours[0].points()[0];
-    let partner =
-        partners(&region, axis).ok_or(Obstacle { reason: "the boundary is not symmetric".to_owned(), at })?;
+    let partner = partners(&region, axis).ok_or(Obstacle::new("the boundary is not symmetric", at))?;
     let both = Both { contours, symmetry, region: &region, axis, partner, placed: &placed };
     let mut best: Option<(usize, f64, Placed)> = None;
     for side in [Side::Mean, Side::Left, Side::Right] {
@@ -56,7 +55,10 @@ pub(crate) fn symmetrised(
     let exact = is_exact(symmetry, lattice.edge_length);
     let placed = match best {
         Some((.., placed)) => placed,
-        None if exact => return Err(Obstacle { reason: "a triangle stays inverted".to_owned(), at }),
+        None if exact => {
+            let is_inverted = !options.relax;
+            return Err(Obstacle { is_inverted, ..Obstacle::new("a triangle stays inverted", at) });
+        }
         None => placed.clone(),
     };
     let error = (0..region.points.len())
@@ -107,12 +109,12 @@ impl Both<'_> {
                 arcs[contour] = self.rim(pairing, of, side, &mut loops[contour], &mut vertices)?;
             }
         }
-        if options.relax && first_inverted(&vertices, &patch.triangles, patch.lattice.origin).is_some() {
+        if first_inverted(&vertices, &patch.triangles, patch.lattice.origin).is_some() {
             return None;
         }
         let h = patch.lattice.edge_length;
         let beside = beside(self.contours, &vertices, &arcs);
-        let (farthest, _) = deviation(&beside, &vertices, &arcs, STRAY * h);
+        let (farthest, _) = deviation(&beside, &vertices, &arcs, STRAY * h, STRAY * h);
         if farthest > STRAY * h {
             return None;
         }
@@ -191,10 +193,9 @@ impl Both<'_> {
                 Side::Mean => (own + 0.5 * nearest_lap(other - own), 2),
             };
             let (s, angle) = if v == w {
-                let old_s = contour.own_arc(old[contour_number].arc[i]);
-                self.on_axis(pairing, contour, own, (old_s, corner[0]))?
+                self.on_axis(pairing, contour, own, (self.placed.arcs[contour_number][i], corner[0]))?
             } else if from == 0 {
-                (contour.own_arc(old[contour_number].arc[i]), corner[0])
+                (self.placed.arcs[contour_number][i], corner[0])
             } else {
                 let right = matches!(pairing, Pairing::Own { .. }) && !is_left
                     || matches!(pairing, Pairing::Two { .. }) && of == 1;
@@ -219,10 +220,7 @@ impl Both<'_> {
     /// Where a vertex is, in turns along the target of the side on the left: partners agree.
     fn left_turns(&self, pairing: &Pairing, of: usize, v: usize) -> f64 {
         let loops = &self.placed.patch.loops;
-        let s = |contour: usize| {
-            let arc = loops[contour].arc[v - loops[contour].start as usize];
-            self.contours[contour].own_arc(arc)
-        };
+        let s = |contour: usize| self.placed.arcs[contour][v - loops[contour].start as usize];
         match pairing {
             Pairing::Own { contour, start, left, right, matching } => {
                 let length = self.contours[*contour].length();

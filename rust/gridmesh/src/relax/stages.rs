@@ -72,7 +72,7 @@ impl Motion<'_> {
             let eps = (0.04 + least * least).sqrt();
             let rings = if sweep < 8 { 1 } else { 2 };
             let moved = Active::near(&self.band, vertices, rings);
-            self.sweep(&Regularised { eps }, &mut moved.clone(), f64::INFINITY);
+            self.sweep(&Regularised { eps }, &mut moved.clone(), f64::INFINITY, progress)?;
             // Nothing else has changed, and the tangled triangles are among these.
             tangled = self.tangled_at(&moved);
         }
@@ -125,7 +125,7 @@ impl Motion<'_> {
     ) -> Result<usize> {
         for sweep in 0..sweeps {
             progress.report(sweep as f64 / sweeps as f64)?;
-            if self.sweep(energy, active, tolerance) == 0 {
+            if self.sweep(energy, active, tolerance, progress)? == 0 {
                 return Ok(sweep + 1);
             }
         }

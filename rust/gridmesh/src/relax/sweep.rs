@@ -5,6 +5,8 @@ use glam::DVec2;
 use super::band::Band;
 use super::energy::{Energy, local, value};
 use super::slide::Slide;
+use crate::error::Result;
+use crate::progress::Progress;
 
 /// What is moved, and how.
 #[derive(Debug)]
@@ -68,9 +70,22 @@ impl Active {
 impl Motion<'_> {
     /// Moves every active vertex once. Returns the number of vertices that moved by more than
     /// `tolerance`; they and their neighbours are active afterwards.
-    pub fn sweep<E: Energy>(&mut self, energy: &E, active: &mut Active, tolerance: f64) -> usize {
+    ///
+    /// # Errors
+    /// Only if cancelled: asked every few thousand vertices.
+    pub fn sweep<E: Energy>(
+        &mut self,
+        energy: &E,
+        active: &mut Active,
+        tolerance: f64,
+        progress: Progress<'_>,
+    ) -> Result<usize> {
+        const EVERY: usize = 1 << 12;
         let mut moved = 0;
         for v in 0..self.band.n_free {
+            if v % EVERY == EVERY - 1 {
+                progress.report(0.0)?;
+            }
             if !std::mem::take(&mut active.0[v]) {
                 continue;
             }
@@ -89,7 +104,7 @@ impl Motion<'_> {
                 self.band.around(v).iter().for_each(|&w| active.mark(w));
             }
         }
-        moved
+        Ok(moved)
     }
 
     /// One damped Newton step of an interior vertex; returns its length.

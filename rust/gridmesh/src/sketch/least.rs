@@ -4,39 +4,62 @@ use glam::DVec2;
 
 use super::{Asked, Effort, Job};
 use crate::curve::ClosedCurve;
-use crate::error::{Error, Result};
+use crate::error::{Error, Needed, Result};
+use crate::lattice::{Lattice, ROW_HEIGHT};
+use crate::options::MAX_TRIANGLES;
 use crate::outline::Obstacle;
 use crate::progress::Progress;
+use crate::symmetry::Symmetry;
 use crate::target::Target;
+
+/// Work that the search may take, in triangles; an edge of the boundary counts as `EDGE` of them. Some
+/// seconds, whatever the drawing.
+const WORK: f64 = 2e6;
+const EDGE: f64 = 20.0;
+
+/// Sizes are tried in steps of this factor.
+const STEP: f64 = 1.1;
 
 impl Job<'_> {
     /// The error for a drawing that has no patch of the size asked for: the least number of
-    /// triangles that works, searched in steps of a tenth, one placement each. Given up where the
-    /// boundary alone would take too many edges: parts thin as a hair fit no grid.
+    /// triangles that works, searched in steps of a tenth, one placement each.
+    ///
+    /// The search ends where a mesh is found, at the largest size there is, where a finer mesh would not be
+    /// symmetric though that was asked for, or after a bounded amount of work.
     pub(super) fn least_that_works(
         &mut self,
         asked: f64,
         obstacle: Obstacle,
         progress: Progress<'_>,
     ) -> Result<Error> {
-        const LARGEST: f64 = 1e6;
-        const MOST_EDGES: f64 = 8e3;
-        let most_edges = MOST_EDGES.max(3.0 * self.boundary_edges(asked.max(6.0) as usize));
-        let at = |step: i32| (asked.max(6.0) * 1.1f64.powi(step)).ceil() as usize;
-        let (mut fails, mut works, mut stride) = (0, None, 1);
-        let fits = |job: &Self, n: usize| (n as f64) < LARGEST && job.boundary_edges(n) < most_edges;
-        while works.is_none() && fits(self, at(fails + stride)) {
-            let step = fails + stride;
+        let triangles = asked.round().max(1.0) as usize;
+        let at = |step: i32| (asked.max(6.0) * STEP.powi(step)).ceil() as usize;
+        // The largest size, and whether it is the symmetry that allows no larger one.
+        let steps = |size: f64| ((size / asked.max(6.0)).ln() / STEP.ln()).floor().max(0.0) as i32;
+        let limit = steps(MAX_TRIANGLES);
+        let most_symmetric = self.most_symmetric();
+        let last = most_symmetric.map_or(limit, |most| steps(most - 1.0).min(limit));
+        let mut work = WORK + 4.0 * asked;
+        let mut fails = self.last_hopeless(last, at);
+        let (mut works, first) = (None, fails);
+        while works.is_none() && fails < last {
+            // Small steps first, for drawings that nearly fit; larger ones after them.
+            let step = (fails + 1 + (fails - first) / 3).min(last);
+            work -= at(step) as f64 + EDGE * self.boundary_edges(at(step));
+            if work < 0.0 {
+                return Ok(Error::TooCoarse { triangles, needed: Needed::MoreThan(at(fails)) });
+            }
             if self.works(at(step), progress)? {
                 works = Some(step);
             } else {
                 fails = step;
             }
-            // Small steps first, for drawings that nearly fit; larger ones after them.
-            stride = 1 + fails / 3;
         }
         let Some(mut works) = works else {
-            return Ok(Error::NoPatch { reason: obstacle.reason, at: obstacle.at.to_array() });
+            return match most_symmetric {
+                Some(most) if last < limit => self.asymmetry(2.0 * most),
+                _ => Ok(Error::NoPatch { reason: obstacle.reason, at: obstacle.at.to_array() }),
+            };
         };
         while works - fails > 1 {
             let step = (works + fails) / 2;
@@ -46,13 +69,48 @@ impl Job<'_> {
                 fails = step;
             }
         }
-        Ok(Error::TooCoarse { triangles: asked.round().max(1.0) as usize, least: at(works) })
+        Ok(Error::TooCoarse { triangles, needed: Needed::Least(at(works)) })
+    }
+
+    /// The last of the first steps, up to `last`, at which the length of the boundary alone leaves no hope.
+    fn last_hopeless(&self, last: i32, at: impl Fn(i32) -> usize) -> i32 {
+        // Where the boundary takes more edges there will be no attempt.
+        let most_edges = 2.0 * WORK / EDGE;
+        let (mut hopeless, mut hopeful) = (0, last + 1);
+        let mut stride = 1;
+        while hopeful - hopeless > 1 {
+            let step = if hopeful > last { (hopeless + stride).min(last) } else { (hopeless + hopeful) / 2 };
+            let n = at(step);
+            if self.boundary_edges(n) > most_edges.max(n as f64) || self.is_hopeless(n) {
+                hopeless = step;
+                stride *= 2;
+            } else {
+                hopeful = step;
+            }
+        }
+        hopeless
+    }
+
+    /// The number of triangles up to which the drawing is symmetric enough for its edge length, if that is asked for.
+    fn most_symmetric(&self) -> Option<f64> {
+        let symmetry = self.symmetry.as_ref()?;
+        Some(self.area / (0.5 * ROW_HEIGHT * symmetry.least_edge_length().powi(2)))
+    }
+
+    /// That a mesh of this many triangles would not be symmetric.
+    fn asymmetry(&self, triangles: f64) -> Result<Error> {
+        let edge_length = Lattice::edge_length_for(self.area, triangles);
+        let found = self.options.mirror.map(|mirror| Symmetry::find(&self.contours, mirror, edge_length));
+        match found {
+            Some(Err(error)) => Ok(error),
+            _ => Err(Error::Internal { reason: "the sides of the drawing differ and do not" }),
+        }
     }
 
     /// Whether the first placement at `n` triangles gives a valid patch.
     fn works(&mut self, n: usize, progress: Progress<'_>) -> Result<bool> {
         progress.report(0.9)?;
-        Ok(!self.is_hopeless(n) && self.attempt(Asked::Triangles(n), Effort::Quick, progress)?.is_ok())
+        Ok(self.attempt(Asked::Triangles(n), Effort::Quick, progress)?.is_ok())
     }
 
     /// Length of the drawing in edges at about `n` triangles.

@@ -36,10 +36,8 @@ impl Job<'_> {
             Asked::Triangles(n) => self.first_guess(n),
         };
         let mut best: Option<(f64, Lattice, Outline)> = None;
-        let mut obstacle = Obstacle {
-            reason: "the number of triangles is not reached".to_owned(),
-            at: self.contours[0].points()[0],
-        };
+        let mut obstacle =
+            Obstacle::new("the number of triangles is not reached", self.contours[0].points()[0]);
         for _ in 0..CORRECTIONS {
             progress.report(0.0)?;
             let lattice = self.lattice(edge_length, angle, shift);

@@ -53,7 +53,7 @@ pub(super) fn dive(
     contours: &[Contour],
     walks: &mut [Walk],
     prices: &mut [Prices],
-    search: &mut Search,
+    search: &mut Search<'_>,
     progress: Progress<'_>,
 ) -> Result<Dive> {
     dive_from(contours, walks, prices, search, ROUNDS, progress)
@@ -64,7 +64,7 @@ pub(super) fn dive_from(
     contours: &[Contour],
     walks: &mut [Walk],
     prices: &mut [Prices],
-    search: &mut Search,
+    search: &mut Search<'_>,
     limit: usize,
     progress: Progress<'_>,
 ) -> Result<Dive> {
@@ -80,7 +80,7 @@ pub(super) fn dive_from(
             Vec::new()
         };
         let left = conflicts.len() + wrong.len();
-        if patience.ends(rounds, left) || left == 0 || rounds == limit {
+        if patience.ends(rounds, left) || left == 0 || rounds == limit || search.pulse.is_spent() {
             return Ok(Dive { rounds, first: patience.first, conflicts, wrong });
         }
         rounds += 1;
@@ -142,7 +142,7 @@ pub(super) fn keep_apart(
     contours: &[Contour],
     walks: &mut [Walk],
     prices: &mut [Prices],
-    search: &mut Search,
+    search: &mut Search<'_>,
 ) {
     let nearest = nearest_squared(contours);
     for ((contour, prices), walk) in contours.iter().zip(prices).zip(walks) {
@@ -200,7 +200,7 @@ fn resolve(
     contour: &Contour,
     walk: &mut Walk,
     prices: &Prices,
-    search: &mut Search,
+    search: &mut Search<'_>,
     at: &[usize],
     reach: usize,
 ) {

@@ -16,6 +16,7 @@ use crate::target::Target;
 
 use super::graph::{BLOCKED, Graph, State, TURN};
 use super::prices::Prices;
+use super::pulse::Pulse;
 use super::queue::Queue;
 use super::search::{Rules, Step, TURNS, Walk, turned};
 
@@ -53,15 +54,16 @@ struct End {
 }
 
 /// Memory for searches, reused.
-pub(super) struct Memory {
+pub(super) struct Memory<'a> {
     queue: Queue,
     reached: Vec<u32>,
     parent: Vec<State>,
+    pub pulse: Pulse<'a>,
 }
 
-impl Memory {
-    pub fn new() -> Self {
-        Self { queue: Queue::new(), reached: Vec::new(), parent: Vec::new() }
+impl<'a> Memory<'a> {
+    pub fn new(pulse: Pulse<'a>) -> Self {
+        Self { queue: Queue::new(), reached: Vec::new(), parent: Vec::new(), pulse }
     }
 }
 
@@ -74,7 +76,7 @@ impl Half {
         corners: [bool; 2],
         axis: Reflection,
         (max_distance, closeness): (f64, f64),
-        memory: &mut Memory,
+        memory: &mut Memory<'_>,
     ) -> (Self, Graph) {
         let points = &target.points[..=target.len() / 2];
         let band = Band::along(points, max_distance);
@@ -183,8 +185,8 @@ impl Half {
     }
 
     /// Distances from all states to the end, without prices.
-    fn find_bounds(&mut self, graph: &Graph, memory: &mut Memory) {
-        let queue = &mut memory.queue;
+    fn find_bounds(&mut self, graph: &Graph, memory: &mut Memory<'_>) {
+        let Memory { queue, pulse, .. } = memory;
         let mut bound = vec![NONE; 6 * self.n_half as usize];
         queue.clear(0);
         for end in &self.ends {
@@ -197,6 +199,9 @@ impl Half {
         while let Some((key, state)) = queue.pop() {
             if bound[state as usize] != key {
                 continue;
+            }
+            if pulse.beat(1) {
+                break;
             }
             let (node, dir) = (state / 6, state % 6);
             let here = key + 2 * graph.cost[node as usize];
@@ -216,8 +221,8 @@ impl Half {
 
     /// The cheapest symmetric closed path, prices on the nodes of the positive side and of the axis
     /// included.
-    pub fn cheapest(&self, graph: &Graph, prices: &Prices, memory: &mut Memory) -> Option<Walk> {
-        let Memory { queue, reached, parent } = memory;
+    pub fn cheapest(&self, graph: &Graph, prices: &Prices, memory: &mut Memory<'_>) -> Option<Walk> {
+        let Memory { queue, reached, parent, pulse } = memory;
         let n_states = 6 * self.n_half;
         reached.clear();
         reached.resize(n_states as usize + self.ends.len(), NONE);
@@ -255,6 +260,9 @@ impl Half {
             let so_far = reached[state as usize];
             if so_far + self.bound[state as usize] != key {
                 continue;
+            }
+            if pulse.beat(1) {
+                return None;
             }
             let (node, dir) = (state / 6, state % 6);
             let from = self.ends.partition_point(|end| end.state < state);

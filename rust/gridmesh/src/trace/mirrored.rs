@@ -12,11 +12,12 @@ use super::graph::{BLOCKED, Graph};
 use super::half::{Half, Memory, symmetric};
 use super::parameters::parameters;
 use super::prices::Prices;
+use super::pulse::Pulse;
 use super::search::{Potential, Search, Step, Walk, turned};
 use super::sides::wrong_sides;
 use super::{
-    Path, Refusal, TraceFailure, TraceOptions, Traced, failure, fewest_turns, over_distances,
-    squared_distances, total, turns,
+    Path, Refusal, TraceFailure, TraceOptions, Traced, failure, fewest, over_distances, squared_distances,
+    total, turns,
 };
 
 /// A part of a mirror-symmetric drawing, in lattice units; the lattice is laid on the axis.
@@ -78,7 +79,7 @@ enum Unit {
 }
 
 /// All that a search needs; contours and walks number all contours, units and prices the parts.
-struct Job {
+struct Job<'a> {
     axis: Reflection,
     units: Vec<Unit>,
     /// The first contour of each unit.
@@ -86,8 +87,8 @@ struct Job {
     contours: Vec<Contour>,
     prices: Vec<Prices>,
     walks: Vec<Walk>,
-    search: Search,
-    memory: Memory,
+    search: Search<'a>,
+    memory: Memory<'a>,
 }
 
 fn attempt(
@@ -97,46 +98,79 @@ fn attempt(
     max_distance: f64,
     progress: Progress<'_>,
 ) -> Result<Traced, Refusal> {
-    let mut job = Job::new(parts, axis, options.closeness, max_distance);
-    for (unit, part) in parts.iter().enumerate() {
-        if !job.solve(unit) {
-            let (Part::Symmetric { target, .. } | Part::Pair(target)) = part;
-            let some = target.points.first().copied().unwrap_or_default();
-            return Err(TraceFailure::NoPath { contour: job.firsts[unit], at: Lattice::nearest(some) }.into());
-        }
-    }
-    let root = total(&job.walks);
-    let mut found = job.dive(progress.part(0.3, 0.6))?;
-    if failure(&found, &job.contours, &job.walks).is_some() {
-        job.keep_apart();
-        let rounds = found.rounds;
-        found = job.dive(progress.part(0.6, 1.0))?;
-        found.rounds += rounds;
-    }
-    if let Some(failure) = failure(&found, &job.contours, &job.walks) {
-        return Err(Refusal::new(failure, &found, &job.walks));
-    }
-    let targets: Vec<Target> = parts.iter().flat_map(|part| part.targets(axis)).collect();
-    let turns = turns(&job.walks);
-    let cost = turns as f64 + options.closeness * squared_distances(&job.contours, &job.walks);
-    let optimal = total(&job.walks) == root;
-    let bound = f64::from(root) / f64::from(super::graph::TURN);
-    Ok(Traced {
-        cost,
-        cost_bound: if optimal { cost } else { bound.min(cost) },
-        turns,
-        // Symmetric paths are paths beside the targets like others.
-        turns_bound: fewest_turns(&targets, max_distance).unwrap_or(0),
-        optimal,
-        max_distance_used: max_distance,
-        rounds: found.rounds,
-        paths: job.paths(),
-    })
+    let mut job = Job::new(parts, axis, options.closeness, max_distance, progress);
+    let result = job.attempt(parts, options, max_distance, progress);
+    if job.is_stopped() { Err(TraceFailure::Cancelled.into()) } else { result }
 }
 
-impl Job {
-    fn new(parts: &[Part], axis: Reflection, closeness: f64, max_distance: f64) -> Self {
-        let (mut search, mut memory) = (Search::new(), Memory::new());
+impl<'a> Job<'a> {
+    fn attempt(
+        &mut self,
+        parts: &[Part],
+        options: &TraceOptions,
+        max_distance: f64,
+        progress: Progress<'_>,
+    ) -> Result<Traced, Refusal> {
+        let (axis, job) = (self.axis, self);
+        for (unit, part) in parts.iter().enumerate() {
+            if !job.solve(unit) {
+                let (Part::Symmetric { target, .. } | Part::Pair(target)) = part;
+                let some = target.points.first().copied().unwrap_or_default();
+                return Err(
+                    TraceFailure::NoPath { contour: job.firsts[unit], at: Lattice::nearest(some) }.into()
+                );
+            }
+        }
+        let states = job.contours.iter().map(|contour| contour.graph.n_states()).sum();
+        job.search.pulse.limit(states);
+        job.memory.pulse.limit(states);
+        let root = total(&job.walks);
+        let mut found = job.dive(progress.part(0.3, 0.6))?;
+        if failure(&found, &job.contours, &job.walks).is_some() {
+            job.keep_apart();
+            let rounds = found.rounds;
+            found = job.dive(progress.part(0.6, 1.0))?;
+            found.rounds += rounds;
+        }
+        if let Some(failure) = failure(&found, &job.contours, &job.walks) {
+            return Err(Refusal::new(failure, &found, &job.walks).or_final(job.is_spent()));
+        }
+        let targets: Vec<Target> = parts.iter().flat_map(|part| part.targets(axis)).collect();
+        let turns = turns(&job.walks);
+        let cost = turns as f64 + options.closeness * squared_distances(&job.contours, &job.walks);
+        let optimal = total(&job.walks) == root;
+        let bound = f64::from(root) / f64::from(super::graph::TURN);
+        Ok(Traced {
+            cost,
+            cost_bound: if optimal { cost } else { bound.min(cost) },
+            turns,
+            // Symmetric paths are paths beside the targets like others.
+            turns_bound: fewest(&targets, max_distance, &mut job.search.pulse).unwrap_or(0),
+            optimal,
+            max_distance_used: max_distance,
+            rounds: found.rounds,
+            paths: job.paths(),
+        })
+    }
+
+    /// True once more work was done than is allowed.
+    fn is_spent(&self) -> bool {
+        self.search.pulse.is_spent() || self.memory.pulse.is_spent()
+    }
+
+    /// True once the caller has asked to stop.
+    fn is_stopped(&self) -> bool {
+        self.search.pulse.is_stopped() || self.memory.pulse.is_stopped()
+    }
+
+    fn new(
+        parts: &[Part],
+        axis: Reflection,
+        closeness: f64,
+        max_distance: f64,
+        progress: Progress<'a>,
+    ) -> Self {
+        let (mut search, mut memory) = (Search::new(Pulse::new(progress)), Memory::new(Pulse::new(progress)));
         let (mut units, mut firsts, mut prices) = (Vec::new(), Vec::new(), Vec::new());
         let mut contours: Vec<Contour> = Vec::new();
         for part in parts {
@@ -199,7 +233,7 @@ impl Job {
                 Vec::new()
             };
             let left = conflicts.len() + wrong.len();
-            if patience.ends(rounds, left) || left == 0 || rounds == dive::ROUNDS {
+            if patience.ends(rounds, left) || left == 0 || rounds == dive::ROUNDS || self.is_spent() {
                 return Ok(Dive { rounds, first: patience.first, conflicts, wrong });
             }
             rounds += 1;

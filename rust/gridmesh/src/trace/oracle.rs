@@ -8,12 +8,14 @@ use glam::DVec2;
 use super::graph::{Graph, TURN};
 use super::half::{Half, Memory};
 use super::prices::Prices;
+use super::pulse::Pulse;
 use super::search::Search;
 use super::straightest::fewest_turns;
 use crate::axial::Axial;
 use crate::band::Band;
 use crate::dir::Dir;
 use crate::lattice::Lattice;
+use crate::progress::Progress;
 use crate::reflection::Reflection;
 use crate::target::Target;
 
@@ -155,7 +157,7 @@ fn shapes() -> Vec<(String, Vec<DVec2>)> {
 
 #[test]
 fn the_search_finds_what_brute_force_finds() {
-    let mut search = Search::new();
+    let mut search = Search::new(Pulse::new(Progress::NONE));
     for (name, corners) in shapes() {
         for (angle, max_distance, closeness) in
             [(0.0, 1.5, 0.3), (0.4, 1.5, 0.3), (0.9, 1.0, 1.0), (0.2, 2.0, 0.05)]
@@ -180,12 +182,12 @@ fn the_search_finds_what_brute_force_finds() {
 
 #[test]
 fn the_fewest_turns_are_those_of_the_cheapest_path_that_pays_for_turns_alone() {
-    let mut search = Search::new();
+    let mut search = Search::new(Pulse::new(Progress::NONE));
     let mut found = 0;
     for (name, corners) in shapes() {
         for (angle, max_distance) in [(0.0, 1.5), (0.4, 1.5), (0.9, 1.0), (0.2, 2.0)] {
             let mut graph = Graph::new(&Band::new(&target(&corners, angle), max_distance), 0.3);
-            let fewest = fewest_turns(&graph, u32::MAX);
+            let fewest = fewest_turns(&graph, u32::MAX, &mut Pulse::new(Progress::NONE));
             graph.cost.fill(0);
             let potential = search.potential(&graph);
             let prices = Prices::none(graph.n_nodes());
@@ -197,8 +199,8 @@ fn the_fewest_turns_are_those_of_the_cheapest_path_that_pays_for_turns_alone() {
             found += 1;
             assert_eq!(fewest * TURN, cost, "{name} at {angle}, distance {max_distance}");
             // A limit changes nothing.
-            assert_eq!(fewest_turns(&graph, fewest + 3), fewest);
-            assert_eq!(fewest_turns(&graph, fewest), fewest);
+            assert_eq!(fewest_turns(&graph, fewest + 3, &mut Pulse::new(Progress::NONE)), fewest);
+            assert_eq!(fewest_turns(&graph, fewest, &mut Pulse::new(Progress::NONE)), fewest);
         }
     }
     assert!(found > 20);
@@ -206,7 +208,7 @@ fn the_fewest_turns_are_those_of_the_cheapest_path_that_pays_for_turns_alone() {
 
 #[test]
 fn windows_give_the_same_as_the_whole() {
-    let mut search = Search::new();
+    let mut search = Search::new(Pulse::new(Progress::NONE));
     for (name, corners) in shapes() {
         let band = Band::new(&target(&corners, 0.3), 1.5);
         let graph = Graph::new(&band, 0.3);
@@ -366,7 +368,7 @@ fn halves() -> Vec<(String, Vec<DVec2>)> {
 
 #[test]
 fn the_symmetric_search_finds_what_brute_force_finds() {
-    let mut memory = Memory::new();
+    let mut memory = Memory::new(Pulse::new(Progress::NONE));
     for (name, half) in halves() {
         for axis in [Reflection::Along, Reflection::Across] {
             // Counter-clockwise: from the lower end along the right; along the axis: from the right end.
@@ -392,7 +394,7 @@ fn the_symmetric_search_finds_what_brute_force_finds() {
                 assert_eq!(turns, 6, "{name} {axis:?}");
                 // No boundary costs less without the symmetry.
                 let closed = Graph::new(&Band::new(&target, max_distance), closeness);
-                let mut search = Search::new();
+                let mut search = Search::new(Pulse::new(Progress::NONE));
                 let potential = search.potential(&closed);
                 let free = search.closed(&closed, &potential, &Prices::none(closed.n_nodes()), u32::MAX);
                 assert!(free.is_some_and(|(_, cost)| cost <= walk.cost), "{name} {axis:?}");

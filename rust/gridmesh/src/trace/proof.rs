@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::progress::Progress;
 
 use super::conflicts::{Conflict, Finder, Vertex};
@@ -27,6 +27,9 @@ const DIVE: usize = 20;
 /// States that a part may take from the queue on average, for each state there is: what follows from
 /// crowded conflicts would take hundreds.
 const EFFORT: u64 = 5;
+
+/// States that a proof that was asked for may take in all: some seconds, however many parts are allowed.
+const MOST: u64 = 30_000_000;
 
 /// What is known after a proof was tried.
 pub(super) struct Proof {
@@ -102,17 +105,18 @@ struct Ban {
 /// boundary leaves out at least one. So a price on both, taken off once from the sum, still gives a
 /// lower bound (Lagrange); and the search space splits into the part without the one and the part
 /// without the other (branch and bound), best bound first, until no part is left, `nodes` parts
-/// were looked at, or the search has taken as many states as that many parts should need.
+/// were looked at, or the search has taken as many states as that many parts should need, or [`MOST`].
 pub(super) fn prove(
     contours: &[Contour],
     roots: &[Walk],
     best: u32,
     nodes: usize,
-    search: &mut Search,
+    search: &mut Search<'_>,
     progress: Progress<'_>,
 ) -> Result<Proof> {
     let states: usize = contours.iter().map(|contour| contour.graph.n_states()).sum();
-    let most_taken = search.taken + EFFORT * (nodes as u64 + 2) * states as u64;
+    let each = EFFORT * states as u64;
+    let most_taken = search.pulse.taken + 2 * each + each.saturating_mul(nodes as u64).min(MOST);
     let mut tree = Tree {
         most_taken,
         contours,
@@ -151,12 +155,12 @@ pub(super) fn prove(
     Ok(Proof { bound, optimal: bound == tree.best, walks: tree.found })
 }
 
-struct Tree<'a> {
+struct Tree<'a, 'b> {
     /// The search may take so many states in all.
     most_taken: u64,
     contours: &'a [Contour],
     roots: &'a [Walk],
-    search: &'a mut Search,
+    search: &'a mut Search<'b>,
     finder: Finder,
     /// Free of prices between uses.
     prices: Vec<Prices>,
@@ -174,9 +178,9 @@ struct Tree<'a> {
     open: BinaryHeap<Reverse<(u32, usize)>>,
 }
 
-impl Tree<'_> {
+impl Tree<'_, '_> {
     fn is_spent(&self) -> bool {
-        self.search.taken > self.most_taken
+        self.search.pulse.taken > self.most_taken
     }
 
     /// Finds good prices for a part, and files it unless its bound rules it out.
@@ -192,6 +196,11 @@ impl Tree<'_> {
         let (mut scale, mut stale) = (1.0, 0);
         for step in 0..=steps {
             multipliers.resize(self.pairs.len(), 0);
+            // Going through pairs and walks is work too.
+            let more: usize = self.pairs.len() + self.roots.iter().map(Walk::len).sum::<usize>();
+            if self.search.pulse.beat(more as u64) {
+                return Err(Error::Cancelled);
+            }
             let Some((bound, walks)) = self.evaluate(bans.as_ref(), &multipliers) else {
                 return Ok(());
             };

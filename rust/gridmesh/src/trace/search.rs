@@ -4,6 +4,7 @@ use crate::axial::Axial;
 
 use super::graph::{BLOCKED, Graph, State, TURN};
 use super::prices::Prices;
+use super::pulse::Pulse;
 use super::queue::Queue;
 
 /// Turns of a patch boundary. Two steps left make a tip with an edge across; three turn back.
@@ -56,14 +57,13 @@ pub(super) struct Potential {
     pub starts: Vec<(u32, State)>,
 }
 
-/// Memory for searches, reused.
-pub(super) struct Search {
+/// Memory for searches, reused. Searches that are stopped find nothing: see [`Pulse::is_stopped`].
+pub(super) struct Search<'a> {
     queue: Queue,
     reached: Vec<u32>,
     parent: Vec<State>,
     touched: Vec<State>,
-    /// States taken from the queue so far, for measuring.
-    pub taken: u64,
+    pub pulse: Pulse<'a>,
 }
 
 #[inline]
@@ -73,9 +73,9 @@ pub(super) fn turned(dir: u32, turn: i32) -> u32 {
     u32::from(AFTER[(dir as i32 + turn + 6) as usize & 15])
 }
 
-impl Search {
-    pub fn new() -> Self {
-        Self { queue: Queue::new(), reached: Vec::new(), parent: Vec::new(), touched: Vec::new(), taken: 0 }
+impl<'a> Search<'a> {
+    pub fn new(pulse: Pulse<'a>) -> Self {
+        Self { queue: Queue::new(), reached: Vec::new(), parent: Vec::new(), touched: Vec::new(), pulse }
     }
 
     fn make_room(&mut self, states: usize) {
@@ -112,7 +112,9 @@ impl Search {
             if bound[state as usize] != key {
                 continue;
             }
-            self.taken += 1;
+            if self.pulse.beat(1) {
+                break;
+            }
             farthest = key;
             if is_start.get(state as usize) == Some(&true) {
                 is_start[state as usize] = false;
@@ -284,7 +286,9 @@ impl Search {
             if so_far + bound(state) != key {
                 continue;
             }
-            self.taken += 1;
+            if self.pulse.beat(1) {
+                return None;
+            }
             if state == goal {
                 return Some(so_far);
             }

@@ -1,6 +1,7 @@
 //! The fewest turns that any closed path near a curve makes.
 
 use super::graph::{Graph, State};
+use super::pulse::Pulse;
 use super::search::{TURNS, turned};
 
 const NONE: u32 = u32::MAX;
@@ -44,7 +45,7 @@ impl Levels {
 /// Like the search for the cheapest path (a lower bound from every state, then the starts one by
 /// one), but turns are few and small numbers: sorting them takes no time. And they are even, since a
 /// closed path ends in the direction it began with.
-pub(super) fn fewest_turns(graph: &Graph, known: u32) -> u32 {
+pub(super) fn fewest_turns(graph: &Graph, known: u32, pulse: &mut Pulse<'_>) -> u32 {
     // A closed path turns by six in all.
     if known <= 6 {
         return known;
@@ -53,7 +54,7 @@ pub(super) fn fewest_turns(graph: &Graph, known: u32) -> u32 {
     let n = graph.n_nodes() as u32;
     let starts = graph.starts();
     let mut levels = Levels::default();
-    let bound = bounds(graph, &starts, limit, &mut levels);
+    let bound = bounds(graph, &starts, limit, &mut levels, pulse);
     let mut starts: Vec<(u32, State)> =
         starts.into_iter().map(|start| (bound[start as usize], start)).filter(|s| s.0 < limit).collect();
     starts.sort_unstable();
@@ -75,6 +76,9 @@ pub(super) fn fewest_turns(graph: &Graph, known: u32) -> u32 {
             let so_far = reached[state as usize];
             if so_far + bound[state as usize] != key {
                 continue;
+            }
+            if pulse.beat(1) {
+                return fewest;
             }
             if state == start + 6 * n {
                 fewest = so_far;
@@ -103,7 +107,13 @@ pub(super) fn fewest_turns(graph: &Graph, known: u32) -> u32 {
 }
 
 /// Turns from each state to the nearest start on the second sheet, as far as they are below a limit.
-fn bounds(graph: &Graph, starts: &[State], limit: u32, levels: &mut Levels) -> Vec<u32> {
+fn bounds(
+    graph: &Graph,
+    starts: &[State],
+    limit: u32,
+    levels: &mut Levels,
+    pulse: &mut Pulse<'_>,
+) -> Vec<u32> {
     let n = graph.n_nodes() as u32;
     let mut bound = vec![NONE; graph.n_states()];
     for &start in starts {
@@ -113,6 +123,9 @@ fn bounds(graph: &Graph, starts: &[State], limit: u32, levels: &mut Levels) -> V
     while let Some((turns, state)) = levels.pop() {
         if bound[state as usize] != turns {
             continue;
+        }
+        if pulse.beat(1) {
+            break;
         }
         let (place, dir) = (state / 6, state % 6);
         let (node, sheet) = if place < n { (place, 0) } else { (place - n, 1) };

@@ -166,3 +166,30 @@ pub fn circle(x: f64, y: f64, r: f64, n: u32) -> Vec<DVec3> {
         })
         .collect()
 }
+
+/// A ball of rings of triangles, closed by a fan at either pole.
+pub fn ball(rings: u32) -> Mesh {
+    let around = 2 * rings;
+    let mut vertices = vec![DVec3::NEG_Z];
+    for r in 1..rings {
+        let (low, height) = (std::f64::consts::PI * f64::from(r) / f64::from(rings)).sin_cos();
+        vertices.extend((0..around).map(|k| {
+            let (y, x) = (TAU * f64::from(k) / f64::from(around)).sin_cos();
+            DVec3::new(low * x, low * y, -height)
+        }));
+    }
+    let top = vertices.len() as u32;
+    vertices.push(DVec3::Z);
+    let at = |r: u32, k: u32| 1 + (r - 1) * around + k % around;
+    let mut triangles = vec![];
+    for k in 0..around {
+        triangles.push([0, at(1, k + 1), at(1, k)]);
+        triangles.push([top, at(rings - 1, k), at(rings - 1, k + 1)]);
+        for r in 1..rings - 1 {
+            let [a, b, c, d] = [at(r, k), at(r, k + 1), at(r + 1, k + 1), at(r + 1, k)];
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    let n = triangles.len() as u32;
+    Mesh(vertices, triangles.concat(), (0..=n).map(|k| 3 * k).collect())
+}

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether an input file is what it says: Blender's importers take what is left of a damaged one without a word. No bpy."""
+
+from __future__ import annotations
+
+import re
+import struct
+from pathlib import Path
+
+from . import files
+
+_BLOCK = 1 << 20
+_FACE = re.compile(rb"[ \t]*f[ \t]")
+
+
+def require_whole(path: Path) -> list[str]:
+    """What is wrong with a file that can be read all the same.
+
+    Raises
+    ------
+    FileError
+        If it cannot.
+    """
+    suffix = path.suffix.lower()
+    if suffix == ".stl":
+        return _of_stl(path)
+    if suffix == ".obj" and _end(path, 1) not in (b"", b"\n", b"\r"):
+        return ["its last line has no end: it may be cut off"]
+    return []
+
+
+def left_out(path: Path, loaded: int) -> list[str]:
+    """What to say of a file of which this many faces were loaded."""
+    if path.suffix.lower() != ".obj":
+        return []
+    with files.opened(path) as file:
+        count = 0
+        for line in iter(lambda: file.readline(_BLOCK), b""):
+            count += _FACE.match(line) is not None
+    if count <= loaded:
+        return []
+    text = f"{count - loaded} of {count} faces were left out by Blender's importer"
+    return [f"{text}: they refer to missing vertices, or are double"]
+
+
+def _of_stl(path: Path) -> list[str]:
+    with files.opened(path) as file:
+        head = file.read(84)
+    size = path.stat().st_size
+    claimed = struct.unpack_from("<I", head, 80)[0] if len(head) == 84 else None
+    if claimed is not None and size == 84 + 50 * claimed:
+        return []
+    if head.lstrip()[:5].lower() != b"solid":
+        if claimed is None:
+            raise files.FileError("load", "it is no STL: it has no header")
+        room = (size - 84) // 50
+        raise files.FileError(
+            "load", f"it is damaged: it says that it has {claimed} triangles, and has room for {room}"
+        )
+    if b"endsolid" not in _end(path, 4096).lower():
+        return ["it has no 'endsolid': it may be cut off"]
+    return []
+
+
+def _end(path: Path, size: int) -> bytes:
+    with files.opened(path) as file:
+        file.seek(max(0, path.stat().st_size - size))
+        return file.read(size)
