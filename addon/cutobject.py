@@ -11,6 +11,7 @@ import bmesh
 import bpy
 import numpy as np
 
+from . import frames
 from .cutmesh import Surface, Surgery, Written
 from .cutsweep import CutError, Sweep, checked
 from .cutting import Model, Part
@@ -77,7 +78,7 @@ class Target:
     @property
     def is_live(self) -> bool:
         """Whether it follows a drawing; a cut ends that."""
-        return engine.is_linked(self.ob)
+        return frames.is_linked(self.ob)
 
     def line(
         self, points: np.ndarray, sweep: Sweep, *, cyclic: bool, close_gaps: float

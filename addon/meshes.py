@@ -15,38 +15,13 @@ from . import frames
 from .api import Body, Failure
 from .creases import rim_creases
 from .outlines import Sketch, transformed
+from .placing import Collections, Transaction
 from .strokes import selected
 
 LINK = "gridmesh_stroke"
 """Custom property of a body without a link that says which stroke it was made from, and how it lies to that."""
 
 UV_MAP = "UVMap"
-
-
-class Transaction:
-    """Data blocks made so far; all are removed again if the work is not finished."""
-
-    def __init__(self) -> None:
-        self._made: list[tuple[Any, bpy.types.ID]] = []
-        self.notes: list[str] = []
-        """What the user should know of choices made on the way."""
-
-    def __enter__(self) -> Transaction:
-        return self
-
-    def __exit__(self, kind: Any, *_: object) -> None:
-        if kind is not None:
-            for collection, block in reversed(self._made):
-                collection.remove(block)
-
-    def new(self, collection: Any, *arguments: Any) -> Any:
-        """Make a data block with `collection.new` and remember it."""
-        return self.remember(collection, collection.new(*arguments))
-
-    def remember(self, collection: Any, block: Any) -> Any:
-        """Remember a data block that was made in another way."""
-        self._made.append((collection, block))
-        return block
 
 
 def made_before(context: bpy.types.Context) -> dict[tuple[str, str, int], bpy.types.Object]:
@@ -162,7 +137,7 @@ def place(
     before = made_before(context) if update else {}
     objects = []
     with Transaction() as transaction:
-        into = _Collections(context, transaction, collection)
+        into = Collections(context, transaction, collection)
         for body in bodies:
             ob = before.get(body.sketch.stroke.key)
             objects.append(
@@ -208,7 +183,7 @@ def _carrier_world(context: bpy.types.Context, sketch: Sketch) -> np.ndarray:
 def _new_object(
     context: bpy.types.Context,
     body: Body,
-    into: _Collections,
+    into: Collections,
     transaction: Transaction,
     crease_angle: float,
 ) -> bpy.types.Object:
@@ -370,68 +345,6 @@ def _shows_fill(style: bpy.types.MaterialGPencilStyle, filled: bool) -> bool:
     if option is None or getattr(option, "is_deprecated", False):
         return filled
     return filled or style.show_fill
-
-
-def home(context: bpy.types.Context, transaction: Transaction) -> bpy.types.Collection:
-    """Return the active collection, or one around it that is shown: new objects are never out of sight."""
-    return _Collections(context, transaction, "ACTIVE").of("")
-
-
-class _Collections:
-    """Where new objects go. A new collection is made with the first object that needs it."""
-
-    def __init__(self, context: bpy.types.Context, transaction: Transaction, choice: str):
-        self.context, self.transaction, self.choice = context, transaction, choice
-        self.usable = set(_usable(context.view_layer.layer_collection))
-        self.made: bpy.types.Collection | None = None
-
-    def of(self, source: str) -> bpy.types.Collection:
-        if self.choice == "ACTIVE":
-            return self._active()
-        beside = self._beside(source)
-        if self.choice == "SOURCE":
-            return beside
-        if self.made is None:
-            self.made = self.transaction.new(bpy.data.collections, f"{source} Bodies")
-            beside.children.link(self.made)
-        return self.made
-
-    def _beside(self, source: str) -> bpy.types.Collection:
-        """First collection of the source that is shown and can be changed, else the active one."""
-        ob = self.context.view_layer.objects.get(source)
-        own = ob.users_collection if ob is not None else ()
-        home = next((one for one in own if one in self.usable), None)
-        if home is not None:
-            return home
-        active = self._active()
-        if own:
-            self.transaction.notes.append(
-                f"the collection '{own[0].name}' of '{source}' is hidden, excluded or linked; "
-                f"what was made of it is in '{active.name}'"
-            )
-        return active
-
-    def _active(self) -> bpy.types.Collection:
-        """Return the active collection, or one around it that is shown; new objects are never out of sight."""
-        active = self.context.collection
-        if active in self.usable:
-            return active
-        root = self.context.scene.collection
-        self.transaction.notes.append(
-            f"the active collection '{active.name}' is hidden, excluded or linked; "
-            f"what was made is in '{root.name}'"
-        )
-        return root
-
-
-def _usable(layer_collection: bpy.types.LayerCollection) -> list[bpy.types.Collection]:
-    """All collections of the view layer that are shown and can be changed."""
-    own = layer_collection.collection
-    changeable = own.is_editable and not own.override_library
-    found = [own] if changeable and layer_collection.is_visible else []
-    for child in layer_collection.children:
-        found += _usable(child)
-    return found
 
 
 def _show(context: bpy.types.Context, objects: list[bpy.types.Object]) -> None:

@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import frames, meshes
+from .. import frames, placing
 from ..frames import is_linked
 from . import linework
 from .reading import LostError, sketch_of
@@ -225,7 +225,7 @@ def _give_outline(ob: bpy.types.Object) -> None:
         sketch = sketch_of(ob, bpy.context.evaluated_depsgraph_get())
     except LostError:
         return
-    with meshes.Transaction() as transaction:
+    with placing.Transaction() as transaction:
         source, count = linework.redrawn(transaction, sketch, ob.name, bpy.context.scene.frame_current)
         _join_collections(source, ob)
     frames.nest(source, ob, np.eye(4))

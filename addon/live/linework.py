@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import meshes
+from .. import placing
 from ..outlines import Sketch
 
 LAYER = "Outline"
@@ -28,7 +28,7 @@ def radii(pressures: np.ndarray, size: float) -> np.ndarray:
 
 
 def drawn(
-    transaction: meshes.Transaction, rings: list[np.ndarray], widths: list[np.ndarray], name: str, at: int
+    transaction: placing.Transaction, rings: list[np.ndarray], widths: list[np.ndarray], name: str, at: int
 ) -> bpy.types.Object:
     """Make an outline object of closed strokes, without linking it to a collection.
 
@@ -47,7 +47,7 @@ def drawn(
 
 
 def redrawn(
-    transaction: meshes.Transaction, sketch: Sketch, name: str, at: int
+    transaction: placing.Transaction, sketch: Sketch, name: str, at: int
 ) -> tuple[bpy.types.Object, int]:
     """Make an outline object of a sketch and its holes; return it and its number of strokes."""
     parts = [sketch, *sketch.holes]
@@ -73,7 +73,7 @@ def nearest(ring: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarr
     return out
 
 
-def _ink(transaction: meshes.Transaction) -> bpy.types.Material:
+def _ink(transaction: placing.Transaction) -> bpy.types.Material:
     found = bpy.data.materials.get(INK)
     if found is not None and found.is_grease_pencil and found.is_editable:
         return found

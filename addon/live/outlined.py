@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import frames, meshes
+from .. import frames, meshes, placing
 from ..outlines import Stroke
 from . import engine
 from .linework import LAYER, RADIUS, drawn, radii, write
@@ -43,8 +43,8 @@ def make(
     OutlineError
         If that has no body; then nothing is changed.
     """
-    with meshes.Transaction() as transaction:
-        homes = collections or [meshes.home(context, transaction)]
+    with placing.Transaction() as transaction:
+        homes = collections or [placing.home(context, transaction)]
         ob = transaction.new(bpy.data.objects, name, transaction.new(bpy.data.meshes, name))
         ob.matrix_basis = Matrix(matrix.tolist())
         source = drawn(transaction, rings, widths, name, context.scene.frame_current)

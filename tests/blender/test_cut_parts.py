@@ -6,8 +6,7 @@ import pytest
 from cuts import caps, check_sound, cut, drawn, is_closed, line, stroke_object, volume
 from drawings import activate, circle, mesh_objects, vertices
 
-from addon import drawnline
-from addon.live import engine
+from addon import drawnline, frames
 
 BEHIND = [(-2.0, 0.0, 0.1), (2.0, 0.0, 0.2)]
 
@@ -145,12 +144,12 @@ def test_a_live_body_is_frozen(capfd):
     activate(source)
     assert bpy.ops.object.gridmesh_from_strokes(follow=True) == {"FINISHED"}
     (ob,) = mesh_objects()
-    assert engine.is_linked(ob)
+    assert frames.is_linked(ob)
     activate(ob)
     points = line((-3, 0.1, 0), (3, 0.2, 0))
     assert bpy.ops.object.gridmesh_cut(stroke=drawn(points), direction="Z", source="DRAWN") == {"FINISHED"}
     assert len(mesh_objects()) == 2
-    assert not any(engine.is_linked(piece) for piece in mesh_objects())
+    assert not any(frames.is_linked(piece) for piece in mesh_objects())
     assert f"cannot follow its drawing: {ob.name}" in capfd.readouterr().out
 
 

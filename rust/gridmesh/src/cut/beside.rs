@@ -55,7 +55,8 @@ pub(super) fn divide(strip: &mut Strip<'_>, length: f64, progress: Progress<'_>)
     });
     let mut edges = wanted.collect::<Vec<_>>();
     // The middle ones first, so that each has few edges to turn on its way to the line.
-    while edges.iter_mut().fold(false, |any, edge| edge.divide(strip) || any) {
+    // All of them a step further, not the first alone.
+    while edges.iter_mut().filter_map(|edge| edge.divide(strip).then_some(())).count() > 0 {
         flip_all(strip, progress)?;
     }
     Ok(())

@@ -72,7 +72,7 @@ impl Capper<'_> {
                 .zip(&fill.vertices)
                 .map(|(&l, &p)| if share < 1.0 { l.lerp(p, share) } else { p });
             let at = at.collect::<Vec<_>>();
-            if room.holds(&at, &fill.triangles) {
+            if room.holds(&at, &fill.triangles, progress.part(1.0, 1.0))? {
                 chosen = Some((share, at));
                 break;
             }
@@ -151,7 +151,7 @@ impl<'a> Room<'a> {
     }
 
     /// True if a cap with these new vertices meets nothing but its rim, and lies inside along it.
-    fn holds(&self, at: &[DVec3], triangles: &[[u32; 3]]) -> bool {
+    fn holds(&self, at: &[DVec3], triangles: &[[u32; 3]], progress: Progress<'_>) -> Result<bool> {
         let n = self.positions.len() as u32;
         let name = |v: u32| if v < self.known { v } else { n + v - self.known };
         let position = |v: u32| match v.checked_sub(n) {
@@ -160,7 +160,7 @@ impl<'a> Room<'a> {
         };
         let new = triangles.iter().map(|t| t.map(name)).collect::<Vec<_>>();
         if !new.iter().all(|t| self.is_inside(*t, &position)) {
-            return false;
+            return Ok(false);
         }
         let around = Box3::around(new.iter().flatten().map(|&v| position(v)));
         let mut old: Vec<[u32; 3]> = near_boxes(&[around], &self.positions, &self.near)
@@ -169,7 +169,7 @@ impl<'a> Room<'a> {
             .map(|t| self.near[t as usize])
             .collect();
         old.extend(self.caps);
-        count_meetings(position, &new, &old, false).0 == 0
+        Ok(count_meetings(position, &new, &old, false, 1, progress)?.0 == 0)
     }
 
     /// False if a triangle at the rim leaves the model there: it lies between the faces of both pieces.

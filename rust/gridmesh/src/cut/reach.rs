@@ -226,12 +226,12 @@ impl Reach {
                 torn = torn.or(Some(a));
             }
         };
-        for f in 0..faces.len() {
+        for (f, &near) in near.iter().enumerate() {
             let corners = faces.face(f);
             for k in 0..corners.len() {
-                join(&mut sides, corners[k], corners[(k + 1) % corners.len()], near[f]);
+                join(&mut sides, corners[k], corners[(k + 1) % corners.len()], near);
             }
-            if near[f] && corners.len() > 3 {
+            if near && corners.len() > 3 {
                 triangles(vertices, corners, |t| {
                     (0..3).for_each(|k| join(&mut sides, t[k], t[(k + 1) % 3], true))
                 });

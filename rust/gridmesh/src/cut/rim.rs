@@ -119,7 +119,7 @@ pub(super) fn flip_all(strip: &mut Strip<'_>, progress: Progress<'_>) -> Result<
     let mut budget = 20 * queue.len();
     while let Some(t) = queue.pop_first().filter(|_| budget > 0) {
         budget -= 1;
-        if budget % BATCH == 0 {
+        if budget.is_multiple_of(BATCH) {
             progress.report(0.0)?;
         }
         let Some(part) = strip.part(t).copied() else { continue };
@@ -316,7 +316,7 @@ fn improve(
             break;
         }
         budget -= 1;
-        if budget % BATCH == 0 {
+        if budget.is_multiple_of(BATCH) {
             progress.report(0.0)?;
         }
         let Some(part) = strip.part(t).copied() else { continue };

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 
 use glam::{DMat3, DVec3};
-use gridmesh::cut::{Cut, CutOptions, Keep, Sweep};
+use gridmesh::cut::{Cut, CutOptions, Keep, Polygons, Sweep};
 use gridmesh::fill::Smooth;
 use gridmesh::metrics::check_mesh;
 use proptest::prelude::*;
@@ -190,20 +190,24 @@ fn wrong(case: &Case, mesh: &Mesh, cut: &Cut) -> Option<String> {
     if report.folded == 0 && report.uncapped == 0 && report.volumes.iter().any(|&v| v < -dust) {
         return Some(format!("volumes {:?}", report.volumes));
     }
-    // What is not near the cut comes back as it was.
-    let own = mesh.faces();
+    // Old vertices have their bits, and an exact cut leaves the faces that it does not meet.
     for piece in &cut.pieces {
-        for (v, (from, weights)) in piece.source_vertices.iter().zip(&piece.source_weights).enumerate() {
-            if weights[0] == 1.0 && v < mesh.0.len() && piece.vertices[v] != mesh.0[from[0] as usize] {
-                let inside_cap = piece.vertices[v].distance(mesh.0[from[0] as usize]) > 0.0;
-                if !inside_cap {
-                    return Some("a vertex moved".into());
-                }
+        let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
+        for f in (0..faces.len()).filter(|&f| piece.source_face[f] >= 0) {
+            let moved = faces.face(f).iter().find(|&&v| {
+                let (from, weights) = (piece.source_vertices[v as usize], piece.source_weights[v as usize]);
+                weights[0] == 1.0 && piece.vertices[v as usize] != mesh.0[from[0] as usize]
+            });
+            if let Some(v) = moved {
+                return Some(format!("vertex {v} of the {:?} moved", piece.side));
             }
         }
     }
-    if untouched(mesh, cut).len() > own.len() {
-        return Some("more faces than there were".into());
+    if case.keep < 2 && !case.gap && case.length.is_none() {
+        let (whole, all) = (untouched(mesh, cut).len(), mesh.faces().len());
+        if whole + report.cut_faces != all {
+            return Some(format!("{whole} faces are whole and {} cut, of {all}", report.cut_faces));
+        }
     }
     None
 }
