@@ -10,7 +10,10 @@ from . import preset_files
 STROKES = "object.gridmesh_from_strokes"
 
 OWN = "Make a smooth body with a clean triangle mesh from each closed stroke"
-UPDATE = "Make the bodies anew from their strokes as they are now; name, material, modifiers and place stay"
+UPDATE = (
+    "Make the bodies of the selected drawings, or the selected bodies, anew with these options; each stays the same "
+    "object. Strokes without a body get one"
+)
 ANNOTATIONS = "Make a smooth body with a clean triangle mesh from each closed annotation"
 
 PRESETS = {

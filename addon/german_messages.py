@@ -52,15 +52,21 @@ _COMMON = {
 }
 
 _STROKES = {
-    "'{}' has no curves; draw a closed shape in it": "'{0}' hat keine Kurven; eine geschlossene Form darin zeichnen",
+    "'{}' has no curves; draw a closed shape in it": (
+        "'{0}' hat keine Kurven; eine geschlossene Form darin zeichnen"
+    ),
     "'{}' has no drawing at the current frame; go to a frame that has one": (
         "'{0}' hat im aktuellen Bild keine Zeichnung; zu einem Bild gehen, das eine hat"
     ),
-    "'{}' has no layers; draw a closed shape in it": "'{0}' hat keine Ebenen; eine geschlossene Form darin zeichnen",
+    "'{}' has no layers; draw a closed shape in it": (
+        "'{0}' hat keine Ebenen; eine geschlossene Form darin zeichnen"
+    ),
     "'{}' has no splines of two or more points; draw a closed shape in it": (
         "'{0}' hat keine Splines aus zwei oder mehr Punkten; eine geschlossene Form darin zeichnen"
     ),
-    "'{}' has no text; draw a closed shape in it": "'{0}' hat keinen Text; eine geschlossene Form darin zeichnen",
+    "'{}' has no text; draw a closed shape in it": (
+        "'{0}' hat keinen Text; eine geschlossene Form darin zeichnen"
+    ),
     "'{}' has shape keys, which fit no new mesh; remove them or turn off Update Existing": (
         "'{0}' hat Formschlüssel, die zu keinem neuen Mesh passen; sie entfernen oder „Vorhandene aktualisieren“ "
         "ausschalten"
@@ -84,7 +90,9 @@ _STROKES = {
     "{} strokes are painted; bodies have the colour of the material instead": (
         "{0} Striche sind bemalt; Körper haben stattdessen die Farbe des Materials"
     ),
-    "all layers of '{}' are hidden; show the one to use": "alle Ebenen von '{0}' sind ausgeblendet; die gemeinte zeigen",
+    "all layers of '{}' are hidden; show the one to use": (
+        "alle Ebenen von '{0}' sind ausgeblendet; die gemeinte zeigen"
+    ),
     "all splines of '{}' are hidden; show the one to use": (
         "alle Splines von '{0}' sind ausgeblendet; den gemeinten zeigen"
     ),
@@ -138,7 +146,9 @@ _STROKES = {
         "keiner der Striche ist ausgewählt oder geschlossen; im Bearbeitungsmodus einen auswählen oder „Verwenden“ "
         "auf „Alle“ setzen"
     ),
-    "point {} of {} is not a finite number; delete it": "Punkt {0} von {1} ist keine endliche Zahl; ihn löschen",
+    "point {} of {} is not a finite number; delete it": (
+        "Punkt {0} von {1} ist keine endliche Zahl; ihn löschen"
+    ),
     "the active collection '{}' is hidden, excluded or linked; what was made is in '{}'": (
         "die aktive Sammlung '{0}' ist ausgeblendet, ausgeschlossen oder verknüpft; das Gemachte ist in '{1}'"
     ),
@@ -169,14 +179,24 @@ _STROKES = {
     ),
     "{}: {} triangles, {}, {} ms": "{0}: {1} Dreiecke, {2}, {3} ms",
     "{}; {} closed": "{0}; {1} geschlossen",
+    "'{}' was changed by hand and is left as it is; delete it, press Rebuild from Outline in the panel Live "
+    "Body, or turn off Update Existing": (
+        "'{0}' wurde von Hand geändert und bleibt, wie es ist; löschen, im Panel „Lebender Körper“ auf „Neu aus "
+        "dem Umriss“ drücken oder „Vorhandene aktualisieren“ ausschalten"
+    ),
+    "1 body was there already and was updated; turn off Update Existing to make another": (
+        "1 Körper war schon da und wurde aktualisiert; „Vorhandene aktualisieren“ ausschalten, um einen weiteren "
+        "zu machen"
+    ),
+    "{} bodies were there already and were updated; turn off Update Existing to make another": (
+        "{0} Körper waren schon da und wurden aktualisiert; „Vorhandene aktualisieren“ ausschalten, um weitere "
+        "zu machen"
+    ),
 }
 
 _ENTRIES = {
     "Make a smooth body with a clean triangle mesh from each closed annotation": (
         "Aus jeder geschlossenen Anmerkung einen glatten Körper mit sauberem Dreiecksnetz machen"
-    ),
-    "Make the bodies anew from their strokes as they are now; name, material, modifiers and place stay": (
-        "Die Körper aus ihren Strichen, wie sie jetzt sind, neu machen; Name, Material, Modifikatoren und Ort bleiben"
     ),
     "Make a flat body with a rounded rim of each closed stroke, like a badge": (
         "Aus jedem geschlossenen Strich einen flachen Körper mit rundem Rand machen, wie eine Plakette"
@@ -211,7 +231,9 @@ _LIVE = {
     "'{}' is empty": "'{0}' ist leer",
     "'{}' is no drawing": "'{0}' ist keine Zeichnung",
     "'{}': it is linked from another file": "'{0}': es ist aus einer anderen Datei verknüpft",
-    "Select a body that is linked to its drawing": "Einen Körper auswählen, der mit seiner Zeichnung verknüpft ist",
+    "Select a body that is linked to its drawing": (
+        "Einen Körper auswählen, der mit seiner Zeichnung verknüpft ist"
+    ),
     "it has shape keys, which fit no new mesh": "er hat Formschlüssel, die zu keinem neuen Mesh passen",
     "it is being edited; leave its mode": "er wird gerade bearbeitet; den Modus verlassen",
     "it is linked from another file": "er ist aus einer anderen Datei verknüpft",
@@ -226,6 +248,12 @@ _LIVE = {
     "the stroke has left its plane": "der Strich hat seine Ebene verlassen",
     "the stroke is too thin for a mesh this coarse; use more triangles or shorter edges": (
         "der Strich ist zu dünn für ein so grobes Netz; mehr Dreiecke oder kürzere Kanten nehmen"
+    ),
+    "its mesh was changed by hand; Rebuild from Outline gives that up, Freeze keeps it": (
+        "das Mesh wurde von Hand geändert; „Neu aus dem Umriss“ gibt das auf, „Einfrieren“ behält es"
+    ),
+    "Live bodies of GridMesh 0.1.0: {}. Outlines that are now inside their bodies: {}": (
+        "Lebende Körper von GridMesh 0.1.0: {0}. Umrisse, die nun in ihren Körpern liegen: {1}"
     ),
 }
 
@@ -251,7 +279,9 @@ _DRAW = {
         "die Ebene wird genau von der Kante gesehen; die Ansicht drehen oder eine andere Ebene wählen"
     ),
     "the stroke encloses nothing": "der Strich umschließt nichts",
-    "the stroke is too short; drag to draw an outline": "der Strich ist zu kurz; ziehen, um einen Umriss zu zeichnen",
+    "the stroke is too short; drag to draw an outline": (
+        "der Strich ist zu kurz; ziehen, um einen Umriss zu zeichnen"
+    ),
     "there is no body under the stroke; begin inside or beside one in the same plane": (
         "unter dem Strich ist kein Körper; in oder neben einem in derselben Ebene beginnen"
     ),
@@ -309,14 +339,18 @@ _CUTS = {
     "the mesh of '{}' is being edited in another object; leave Edit Mode first": (
         "das Mesh von '{0}' wird gerade in einem anderen Objekt bearbeitet; erst den Bearbeitungsmodus verlassen"
     ),
-    "the selected objects have no strokes; draw one": "die ausgewählten Objekte haben keine Striche; einen zeichnen",
+    "the selected objects have no strokes; draw one": (
+        "die ausgewählten Objekte haben keine Striche; einen zeichnen"
+    ),
     "the stroke has no points; call this operator from a 3D view to draw one": (
         "der Strich hat keine Punkte; von einer 3D-Ansicht aus aufrufen, um einen zu zeichnen"
     ),
     "the stroke reaches behind the view; move the view back, or set Direction to an axis": (
         "der Strich reicht hinter die Ansicht; die Ansicht zurückbewegen oder „Richtung“ auf eine Achse setzen"
     ),
-    "the stroke reaches farther than {}; scale it down": "der Strich reicht weiter als {0}; ihn kleiner skalieren",
+    "the stroke reaches farther than {}; scale it down": (
+        "der Strich reicht weiter als {0}; ihn kleiner skalieren"
+    ),
     "there is no material '{}'; choose another one, or none for an empty slot": (
         "es gibt kein Material '{0}'; ein anderes wählen, oder keines für einen leeren Platz"
     ),
@@ -347,7 +381,23 @@ _CUTS = {
     "{} is folded, since the mesh cuts through itself there": (
         "{0} ist gefaltet, da das Mesh sich dort selbst schneidet"
     ),
-    "{} left open, since nothing of the mesh lies inside": "{0} offen gelassen, da nichts vom Mesh darin liegt",
+    "{} left open, since nothing of the mesh lies inside": (
+        "{0} offen gelassen, da nichts vom Mesh darin liegt"
+    ),
+    "'{}' is left as it was: {}": "'{0}' bleibt, wie es war: {1}",
+    "frozen, since a cut body cannot follow its drawing: {}": (
+        "eingefroren, denn ein geschnittener Körper kann seiner Zeichnung nicht folgen: {0}"
+    ),
+    "it has the same mesh as '{}'": "es hat dasselbe Mesh wie '{0}'",
+    "{} bulges less than the model around, or lies flat, to stay inside it": (
+        "{0} ist weniger gewölbt als das Modell ringsum, oder flach, um darin zu bleiben"
+    ),
+    "{} bulge less than the model around, or lie flat, to stay inside it": (
+        "{0} sind weniger gewölbt als das Modell ringsum, oder flach, um darin zu bleiben"
+    ),
+    "The line crosses no selected mesh    D: draw again    Esc: cancel": (
+        "Die Linie kreuzt kein ausgewähltes Mesh    D: neu zeichnen    Esc: abbrechen"
+    ),
 }
 
 _FILLS = {
@@ -424,12 +474,20 @@ _FILLS = {
         "{0} nach einem einfacheren Verfahren gemacht, da das glatte versagte"
     ),
     "{} meet the mesh or itself; check the shape": "{0} schneiden das Mesh oder sich selbst; die Form prüfen",
-    "{} meets the mesh or itself; check the shape": "{0} schneidet das Mesh oder sich selbst; die Form prüfen",
+    "{} meets the mesh or itself; check the shape": (
+        "{0} schneidet das Mesh oder sich selbst; die Form prüfen"
+    ),
     "{} of data not continued: a value at a hole is not finite": (
         "{0} mit Daten nicht fortgesetzt: ein Wert an einem Loch ist nicht endlich"
     ),
     "{} with more than {} edges left open; raise Max Edges": (
         "{0} mit mehr als {1} Kanten offen gelassen; „Höchstens Kanten“ erhöhen"
+    ),
+    "what is selected has no open edges; select an edge or a vertex of a hole": (
+        "das Ausgewählte hat keine offenen Kanten; eine Kante oder einen Punkt eines Lochs auswählen"
+    ),
+    "{} made without hard edges: those at the hole meet in no line or corner": (
+        "{0} ohne harte Kanten: die am Loch treffen sich in keiner Linie oder Ecke"
     ),
 }
 
@@ -494,9 +552,6 @@ _LIBRARY = {
     "point {} of the {} is NaN or infinite; all coordinates must be finite": (
         "Punkt {0} ({1}) ist keine Zahl oder unendlich; alle Koordinaten müssen endlich sein"
     ),
-    "the {} is {} across; allowed: 1e-60 to 1e60, scale the drawing": (
-        "{0}: {1} groß; erlaubt: 1e-60 bis 1e60, die Zeichnung skalieren"
-    ),
     "the {} has {} distinct points; at least 3 are needed, draw a closed shape": (
         "{0}: {1} verschiedene Punkte; mindestens 3 sind nötig, eine geschlossene Form zeichnen"
     ),
@@ -524,9 +579,6 @@ _LIBRARY = {
         "Größe der Zeichnung, 1,5 Kantenlängen); eine andere Achse angeben, oder ohne „Spiegeln“ vernetzen"
     ),
     "{} is {}; allowed: {}": "{0} ist {1}; erlaubt: {2}",
-    "{} triangles are too few to follow this drawing; {} work (or a smaller edge length)": (
-        "{0} Dreiecke sind zu wenige für diese Zeichnung; {1} reichen (oder eine kleinere Kantenlänge)"
-    ),
     "about {} triangles were asked for; at most {} are supported, use a larger edge length": (
         "rund {0} Dreiecke wurden verlangt; höchstens {1} werden unterstützt, eine größere Kantenlänge nehmen"
     ),
@@ -597,6 +649,27 @@ _LIBRARY = {
         "das Mesh lässt sich hier nicht schneiden: {0}, bei ({1}, {2}, {3}); den Strich etwas verschieben, oder Punkte "
         "zusammenfügen, die dort fast aufeinanderliegen"
     ),
+    "a bug in gridmesh, please report it with this input: {}": (
+        "ein Fehler in gridmesh, bitte mit dieser Eingabe melden: {0}"
+    ),
+    "numbers up to {} were tried and do not work either, use more or draw its thin parts wider": (
+        "auch Zahlen bis {0} reichen nicht, mehr nehmen oder die dünnen Teile breiter zeichnen"
+    ),
+    "use more (or a smaller edge length)": "mehr nehmen (oder eine kleinere Kantenlänge)",
+    "{} work (or a smaller edge length)": "{0} reichen (oder eine kleinere Kantenlänge)",
+    "the {} is {} across; allowed: 1e-30 to 1e30 (meshes and loops in space: 1e-60 to 1e60), scale it": (
+        "{0}: {1} groß; erlaubt: 1e-30 bis 1e30 (Meshes und Schleifen im Raum: 1e-60 bis 1e60), skalieren"
+    ),
+    "what the stroke crosses still hangs together around the cut, near ({}, {}, {}); draw it across all that "
+    "must come apart, or let its ends be extended": (
+        "was der Strich kreuzt, hängt um den Schnitt herum noch zusammen, bei ({0}, {1}, {2}); über alles "
+        "zeichnen, was getrennt werden soll, oder die Enden verlängern lassen"
+    ),
+    "without relaxation triangles are inverted, one of them near ({}, {}); leave relax on, or use more triangles": (
+        "ohne Relaxation sind Dreiecke umgestülpt, eines davon bei ({0}, {1}); relax anlassen oder mehr Dreiecke "
+        "nehmen"
+    ),
+    "{} triangles are too few to follow this drawing": "{0} Dreiecke sind zu wenige für diese Zeichnung",
 }
 
 # What errors of the library name: things, reasons, what is allowed.
@@ -634,21 +707,29 @@ _LIBRARY_PARTS = {
     "an edge of a face is missing": "eine Kante einer Fläche fehlt",
     "an inlet is narrower than the grid": "eine Bucht ist schmaler als das Gitter",
     "cut lines touch each other": "Schnittlinien berühren sich",
-    "edge {} of the loop passes through another vertex": "Kante {0} der Schleife geht durch einen anderen Punkt",
+    "edge {} of the loop passes through another vertex": (
+        "Kante {0} der Schleife geht durch einen anderen Punkt"
+    ),
     "every patch repeats an edge of the mesh": "jeder Flicken wiederholt eine Kante des Mesh",
     "it has fewer than 3 corners": "sie hat weniger als 3 Ecken",
     "it names a vertex twice": "sie nennt einen Punkt zweimal",
     "no lattice hexagon fits inside the drawing": "kein Sechseck des Gitters passt in die Zeichnung",
     "no lattice was tried": "kein Gitter wurde versucht",
-    "no patch without an edge that the mesh has already": "kein Flicken ohne eine Kante, die das Mesh schon hat",
+    "no patch without an edge that the mesh has already": (
+        "kein Flicken ohne eine Kante, die das Mesh schon hat"
+    ),
     "offsets must begin with 0 and end with the number of corners": (
         "die Anfänge müssen mit 0 beginnen und mit der Zahl der Ecken enden"
     ),
     "out of memory": "zu wenig Speicher",
-    "stretches of the cut meet where they should not": "Stücke des Schnitts treffen sich, wo sie es nicht sollten",
+    "stretches of the cut meet where they should not": (
+        "Stücke des Schnitts treffen sich, wo sie es nicht sollten"
+    ),
     "the boundary is not symmetric": "der Rand ist nicht symmetrisch",
     "the cut does not divide a face": "der Schnitt teilt eine Fläche nicht",
-    "the drawing is too thin for two rows of triangles": "die Zeichnung ist zu dünn für zwei Reihen von Dreiecken",
+    "the drawing is too thin for two rows of triangles": (
+        "die Zeichnung ist zu dünn für zwei Reihen von Dreiecken"
+    ),
     "the line enters a face and does not leave it": "die Linie tritt in eine Fläche ein und nicht wieder aus",
     "the line never enters a face": "die Linie tritt in keine Fläche ein",
     "the loop is not counter-clockwise": "die Schleife läuft nicht gegen den Uhrzeigersinn",
@@ -665,7 +746,9 @@ _LIBRARY_PARTS = {
     "a part is too narrow for two rows of triangles": "ein Teil ist zu schmal für zwei Reihen von Dreiecken",
     "no lattice path goes round a contour this small": "kein Weg im Gitter führt um eine so kleine Kontur",
     "two walls are too close together to pass each other": "zwei Wände sind zu nah beisammen für zwei Wege",
-    "two parts of the boundary stay one edge apart": "zwei Teile des Rands bleiben nur eine Kante auseinander",
+    "two parts of the boundary stay one edge apart": (
+        "zwei Teile des Rands bleiben nur eine Kante auseinander"
+    ),
     "two points of the cut coincide": "zwei Punkte des Schnitts fallen zusammen",
     "two walls of the drawing are too near to each other": "zwei Wände der Zeichnung sind einander zu nah",
     "unknown {} is in no equation": "Unbekannte {0} steht in keiner Gleichung",
@@ -682,7 +765,6 @@ _LIBRARY_PARTS = {
     ),
     "a finite angle in radians, or none": "ein endlicher Winkel im Bogenmaß, oder keiner",
     "a finite length above 0": "eine endliche Länge über 0",
-    "a finite number above 0": "eine endliche Zahl über 0",
     "a finite number above 0, or None": "eine endliche Zahl über 0, oder None",
     "a finite number, 0 or more": "eine endliche Zahl ab 0",
     'a finite point and a finite direction that is not zero, or "auto"': (
@@ -695,7 +777,6 @@ _LIBRARY_PARTS = {
     "an angle in radians, 0 or more": "ein Winkel im Bogenmaß ab 0",
     "as many vertices as the filled mesh has": "so viele Punkte, wie das gefüllte Mesh hat",
     "at least 6": "mindestens 6",
-    "finite numbers, 0 or more": "endliche Zahlen ab 0",
     "given beside edge_length": "neben edge_length gegeben",
     "given, with boundary grown": "gegeben, mit gewachsenem Rand",
     "grown, with holes": "gewachsen, mit Löchern",
@@ -729,6 +810,23 @@ _LIBRARY_PARTS = {
     "{} rims with {} vertices": "{0} Ränder mit {1} Punkten",
     "{} values": "{0} Werte",
     "{}, beside mirror": "{0}, neben Spiegeln",
+    "0, or a largest number from 1e-9 on": "0, oder eine größte Zahl ab 1e-9",
+    "0, or numbers up to 1e9": "0, oder Zahlen bis 1e9",
+    "a height is not a number": "eine Höhe ist keine Zahl",
+    "a loop has neither a fill nor an error": "eine Schleife hat weder Füllung noch Fehler",
+    "a number from 1e-9 to 1e9": "eine Zahl von 1e-9 bis 1e9",
+    "a thread of a fill died": "ein Thread einer Füllung brach ab",
+    "a vertex is not finite": "ein Punkt ist nicht endlich",
+    "a vertex was not collected": "ein Punkt wurde nicht gesammelt",
+    "an angle from 0 to pi, in radians, or nothing": "ein Winkel von 0 bis pi, in Radiant, oder nichts",
+    "an edge has no slot": "eine Kante hat keinen Platz",
+    "finite points and normals of length 1, distances of 0 or more": (
+        "endliche Punkte und Normalen der Länge 1, Abstände ab 0"
+    ),
+    "no film to fall back on": "kein früherer Stand, auf den man zurückfallen kann",
+    "the sides of the drawing differ and do not": (
+        "die Seiten der Zeichnung sind verschieden und sind es nicht"
+    ),
 }
 
 MESSAGES = (

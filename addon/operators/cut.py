@@ -353,15 +353,15 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             return sum(report[name] * n for report, n in zip(reports, sides, strict=True))
 
         triangles = sum(len(part.caps) for part in parts)
-        text = counted(len(parts), "piece")
+        texts = [counted(len(parts), "piece")]
         if triangles:
-            text += (
-                f", {counted(total('caps'), 'cap')}: {counted(triangles, 'triangle')}, "
-                f"{counted(total('cap_irregular'), 'irregular vertex')}"
-            )
             least = min(report["cap_min_angle"] for report in reports)
-            text += f", smallest angle {degrees(least):.0f}°"
-        self.result = f"{text}, {1000 * seconds:.0f} ms"
+            texts += [
+                f"{counted(total('caps'), 'cap')}: {counted(triangles, 'triangle')}",
+                counted(total("cap_irregular"), "irregular vertex"),
+                f"smallest angle {degrees(least):.0f}°",
+            ]
+        self.result = ", ".join([*texts, f"{1000 * seconds:.0f} ms"])
         self.report({"INFO"}, told(self.result))
         if notes:
             self.report({"INFO"}, told(listed(notes)))
@@ -386,23 +386,31 @@ def warnings_of(report: dict[str, Any], *, capped: bool) -> list[str]:
     warnings = []
     if capped and report["open_lines"]:
         n = report["open_lines"]
+        lines = counted(n, "cut line")
+        to_do = "close the mesh first (Grid Patch Fill) to get one"
         warnings.append(
-            f"{counted(n, 'cut line')} {'ends' if n == 1 else 'end'} at the border of the mesh and "
-            f"{'has' if n == 1 else 'have'} no cap; close the mesh first (Grid Patch Fill) to get one"
+            f"{lines} ends at the border of the mesh and has no cap; {to_do}"
+            if n == 1
+            else f"{lines} end at the border of the mesh and have no cap; {to_do}"
         )
     if capped and report["uncapped"]:
         n = report["uncapped"]
         warnings.append(f"{counted(n, 'cut line')} left open, since nothing of the mesh lies inside")
     if report["reduced_caps"]:
         n = report["reduced_caps"]
+        caps = counted(n, "cap")
         warnings.append(
-            f"{counted(n, 'cap')} {'bulges' if n == 1 else 'bulge'} less than the model around, or "
-            f"{'lies' if n == 1 else 'lie'} flat, to stay inside it"
+            f"{caps} bulges less than the model around, or lies flat, to stay inside it"
+            if n == 1
+            else f"{caps} bulge less than the model around, or lie flat, to stay inside it"
         )
     if report["folded"]:
         n = report["folded"]
+        caps = counted(n, "cap")
         warnings.append(
-            f"{counted(n, 'cap')} {'is' if n == 1 else 'are'} folded, since the mesh cuts through itself there"
+            f"{caps} is folded, since the mesh cuts through itself there"
+            if n == 1
+            else f"{caps} are folded, since the mesh cuts through itself there"
         )
     return warnings
 

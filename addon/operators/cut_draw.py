@@ -30,7 +30,7 @@ _MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
 _DRAW = "Drag: draw the cut    Ctrl: straight line    Back to the start: closed cut    Esc: cancel"
 _CHOOSE = "Click: keep this side    Enter or B: keep both    D: draw again    Esc: cancel"
 _NOTHING = "The line crosses no selected mesh    D: draw again    Esc: cancel"
-_AGAIN = "That was a click. " + _DRAW
+_AGAIN = f"That was a click. {_DRAW}"
 
 _LINE, _AHEAD, _KEPT = (1.0, 0.75, 0.2, 1.0), (1.0, 0.75, 0.2, 0.35), (0.3, 0.75, 1.0, 0.45)
 _BAND = 56.0

@@ -252,12 +252,9 @@ def _there_already(updated: int) -> list[str]:
     """Say that bodies were updated that had been made before."""
     if not updated:
         return []
-    what = (
-        "1 body was there already and was"
-        if updated == 1
-        else f"{updated} bodies were there already and were"
-    )
-    return [f"{what} updated; turn off Update Existing to make another"]
+    if updated == 1:
+        return ["1 body was there already and was updated; turn off Update Existing to make another"]
+    return [f"{updated} bodies were there already and were updated; turn off Update Existing to make another"]
 
 
 def _read_for(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> strokes.Reading:

@@ -20,6 +20,9 @@ NOT_SHOWN = {
     "Base Color",  # a socket of Blender's
     "GridMesh Profile",  # names of data
     "{} Bodies",
+    "{} Outline",
+    "GridMesh Outline",
+    "GridMesh: {}",  # printed, beside what is shown
     "Grease Pencil Edit Mode",  # keymaps of Blender's, translated by it
     "Grease Pencil Paint Mode",
     "Object Mode",
@@ -93,7 +96,7 @@ def library_literals():
         for found in text.finditer(code):
             one = re.sub(r"\\\n\s*", "", found.group(1)).replace('\\"', '"')
             if " " in one:
-                yield re.sub(r"\{[^}]*\}", "{}", one)
+                yield re.sub(r"\{[^}]*\}", "{}", one).removesuffix("; ")
 
 
 def own_words():
@@ -125,9 +128,10 @@ def test_every_text_that_is_shown_is_told():
             if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
                 continue
             shown = [node.args[TOLD[node.func.attr]]] if node.func.attr in TOLD and node.args else []
-            if node.func.attr == "label":  # constants are translated by Blender
+            if node.func.attr == "label" and name != "wrapping.py":  # constants are translated by Blender
                 given = [keyword.value for keyword in node.keywords if keyword.arg == "text"]
                 shown = [value for value in given if not isinstance(value, ast.Constant)]
+                shown += node.args[2:3]  # of what is wrapped into lines
             for value in shown:
                 if isinstance(value, ast.Constant) and value.value is None:
                     continue
