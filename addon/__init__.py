@@ -72,7 +72,7 @@ def _parts() -> tuple[ModuleType, ...]:
     """Modules with more to register than classes; their `unregister` may be called at any time."""
     from . import cli, frames, keys, preset_files, translations, ui
     from .draw import cut_tool
-    from .draw import operator as draw
+    from .draw import tool as draw
     from .live import engine, handlers, watch
     from .live import properties as live
     from .operators import refine

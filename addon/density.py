@@ -23,6 +23,10 @@ _ROW = sqrt(3) / 2
 """Height of a row of triangles, in edge lengths."""
 
 
+_FEWEST = 1000
+"""So many are chosen where nothing is thin."""
+
+
 @dataclass(frozen=True)
 class Density:
     """Of a body with a limb."""
@@ -43,6 +47,23 @@ class Density:
         return "; ".join(
             [f"thinnest part: {self.across:.1f} across", f"{self.wanted} triangles of each side for 4"]
         )
+
+
+def automatic(outline: np.ndarray, holes: list[np.ndarray], most: int = _MANY) -> int:
+    """Return about how many triangles of one side `triangles="auto"` chooses for a drawing in its plane.
+
+    The fewest for what is no drawing yet. Raises NativeError without the module.
+    """
+    gridmesh = native("thickness")
+    try:
+        limbs = gridmesh.thickness(outline, holes)
+    except gridmesh.GridMeshError:
+        return _FEWEST
+    if not len(limbs):
+        return _FEWEST
+    edge = float(limbs[0, 2]) / (_ROW * WANTED)
+    inside = area(outline) - sum(area(hole) for hole in holes)
+    return int(np.clip(inside / (_ROW / 2 * edge**2), _FEWEST, most))
 
 
 def measure(sketch: Sketch, triangles: int) -> Density | None:

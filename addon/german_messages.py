@@ -37,6 +37,8 @@ _COUNTED = {
     "{} strokes": "{0} Striche",
     "{} triangle": "{0} Dreieck",
     "{} triangles": "{0} Dreiecke",
+    "{} outline": "{0} Umriss",
+    "{} outlines": "{0} Umrisse",
 }
 
 _COMMON = {
@@ -262,18 +264,10 @@ _DRAW = {
     "Extended {}": "{0} erweitert",
     "Made a hole in {}": "Loch gemacht in {0}",
     "Trimmed {}": "{0} beschnitten",
-    "{}: {} triangles, {} ms": "{0}: {1} Dreiecke, {2} ms",
     "Draw in a 3D view": "In einer 3D-Ansicht zeichnen",
     "Leave the mode: bodies are drawn in Object Mode": (
         "Den Modus verlassen: Körper werden im Objektmodus gezeichnet"
     ),
-    "Nothing is drawn; use the GridMesh Draw tool in a 3D view": (
-        "Nichts ist gezeichnet; das Werkzeug „GridMesh Zeichnen“ in einer 3D-Ansicht verwenden"
-    ),
-    "Release: make the body    Esc, Right Click: leave it": (
-        "Loslassen: den Körper machen    Esc, Rechtsklick: verwerfen"
-    ),
-    "The stroke cannot be read: {}": "Der Strich ist nicht lesbar: {0}",
     "nothing would be left; delete the body instead": "nichts bliebe übrig; stattdessen den Körper löschen",
     "the plane is seen edge on; turn the view or choose another plane": (
         "die Ebene wird genau von der Kante gesehen; die Ansicht drehen oder eine andere Ebene wählen"
@@ -282,9 +276,42 @@ _DRAW = {
     "the stroke is too short; drag to draw an outline": (
         "der Strich ist zu kurz; ziehen, um einen Umriss zu zeichnen"
     ),
-    "there is no body under the stroke; begin inside or beside one in the same plane": (
-        "unter dem Strich ist kein Körper; in oder neben einem in derselben Ebene beginnen"
+    "Added a part: {}": "Teil hinzugefügt: {0}",
+    "{} a side": "{0} je Seite",
+    "nothing is drawn; use the GridMesh Draw tool in a 3D view": (
+        "nichts ist gezeichnet; das Werkzeug „GridMesh Zeichnen“ in einer 3D-Ansicht verwenden"
     ),
+    "'{}' will be inside it: not visible": "'{0}' liegt dann darin: nicht sichtbar",
+    "inside '{}': not visible; use Plane: Surface": (
+        "in '{0}': nicht sichtbar; „Ebene“ auf „Fläche“ setzen"
+    ),
+    "nothing would be left of it": "nichts bliebe davon übrig",
+    "the stroke leaves the plane; turn the view or choose another plane": (
+        "der Strich verlässt die Ebene; die Ansicht drehen oder eine andere Ebene wählen"
+    ),
+    "the stroke lies inside '{}', which it does not extend": (
+        "der Strich liegt in '{0}' und erweitert es nicht"
+    ),
+    "there is no body that it could be a part of": "da ist kein Körper, von dem er ein Teil sein könnte",
+    "there is no body under the stroke to extend": "unter dem Strich ist kein Körper zum Erweitern",
+    "there is no body under the stroke to take away from": (
+        "unter dem Strich ist kein Körper, von dem er etwas wegnehmen könnte"
+    ),
+    "the matrix of the stroke is no frame: its axes must be unit vectors at right angles": (
+        "die Matrix des Strichs ist kein Koordinatensystem: ihre Achsen müssen Einheitsvektoren in rechten "
+        "Winkeln sein"
+    ),
+    "the stroke cannot be read: {}": "der Strich ist nicht lesbar: {0}",
+    "the stroke is no longer known: it is remembered until Blender is closed; draw it again": (
+        "der Strich ist nicht mehr bekannt: er wird behalten, bis Blender geschlossen wird; ihn neu zeichnen"
+    ),
+    "Select a live body that was drawn with the tool, in Object Mode": (
+        "Im Objektmodus einen lebenden Körper auswählen, der mit dem Werkzeug gezeichnet wurde"
+    ),
+    "Simplified {}: {} points before, {} now": "{0} vereinfacht: vorher {1} Punkte, nun {2}",
+    "it is hidden": "es ist ausgeblendet",
+    "it has numbers that are not finite": "er hat Zahlen, die nicht endlich sind",
+    "{} bytes are no table of three columns": "{0} Bytes sind keine Tabelle mit drei Spalten",
 }
 
 _CUTS = {
