@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the interface says in other languages.
+"""What the interface says in other languages: labels, names and tooltips here, messages in `german_messages`.
 
 A language is a dictionary from the English text. Blender takes what it finds here, and English for the rest; a test
 holds every language to be complete.
@@ -10,6 +10,8 @@ from __future__ import annotations
 import inspect
 
 import bpy
+
+from .german_messages import MESSAGES as GERMAN_MESSAGES
 
 GERMAN = {
     # Operators and the sidebar
@@ -22,10 +24,12 @@ GERMAN = {
     "Make a smooth body with a clean triangle mesh from each closed stroke": (
         "Aus jedem geschlossenen Strich einen glatten Körper mit sauberem Dreiecksnetz machen"
     ),
-    "Esc: Stop": "Esc: Abbrechen",
+    "Enough Triangles": "Genug Dreiecke",
+    "Give the selected live bodies as many triangles as put four across their thinnest limbs": (
+        "Den ausgewählten Körpern so viele Dreiecke geben, dass vier quer über ihre dünnsten Glieder gehen"
+    ),
     "Presets": "Vorgaben",
     "Select a drawing or a curve": "Zeichnung oder Kurve auswählen",
-    "Stopping": "Wird abgebrochen",
     "Strokes to Mesh": "Striche zu Mesh",
     "Update Bodies": "Körper aktualisieren",
     # Presets
@@ -124,6 +128,9 @@ GERMAN = {
     "Max Distance": "Größter Abstand",
     "Mesh the drawing as it is": "Die Zeichnung vernetzen, wie sie ist",
     "Mirror": "Spiegeln",
+    "As many triangles as put four across the thinnest limb: 1000 to 20000 of each side": (
+        "So viele Dreiecke, dass vier quer über das dünnste Glied gehen: 1000 bis 20000 jeder Seite"
+    ),
     "Number of triangles of one side, reached within 10%; a body has two sides": (
         "Zahl der Dreiecke einer Seite, auf 10% genau; ein Körper hat zwei Seiten"
     ),
@@ -132,6 +139,7 @@ GERMAN = {
     "Resolution": "Auflösung",
     "Take the best of several angles": "Den besten von mehreren Winkeln nehmen",
     "Triangles": "Dreiecke",
+    "Triangles of Each Side": "Dreiecke jeder Seite",
     "Whether the mesh of a symmetric drawing is its own mirror image": (
         "Ob das Netz einer symmetrischen Zeichnung sein eigenes Spiegelbild ist"
     ),
@@ -141,6 +149,16 @@ GERMAN = {
         "Ein glatter geschlossener Körper, nach beiden Seiten der Zeichenebene aufgeblasen"
     ),
     "Back": "Rückseite",
+    "Beside the front: each side can be painted by itself": (
+        "Neben der Vorderseite: jede Seite lässt sich für sich bemalen"
+    ),
+    "On Top of Each Other": "Aufeinander",
+    "Side by Side": "Nebeneinander",
+    "UV Layout": "UV-Anordnung",
+    "Where the back of a body lies in the UV map": "Wo die Rückseite eines Körpers in der UV-Karte liegt",
+    "Where the front is: what is painted on one side is on both": (
+        "Auf der Vorderseite: was auf eine Seite gemalt wird, ist auf beiden"
+    ),
     "Body": "Körper",
     "Cross-section of the body": "Querschnitt des Körpers",
     "Depth": "Tiefe",
@@ -463,14 +481,17 @@ GERMAN = {
 CONTEXT = "GridMesh"
 """Of the names of options."""
 
-LANGUAGES: dict[str, dict[str, str]] = {"de_DE": GERMAN}
+LANGUAGES: dict[str, dict[str, str]] = {"de_DE": GERMAN | GERMAN_MESSAGES}
 
 
 def table() -> dict[str, dict[tuple[str, str], str]]:
     """Translations as Blender wants them: operators' names have a context of their own, and so have our options."""
     return {
         locale: {
-            (context, text): said for text, said in texts.items() for context in ("*", "Operator", CONTEXT)
+            (context, text): said
+            for text, said in texts.items()
+            for context in ("*", "Operator", CONTEXT)
+            if "{}" not in text  # templates are found by `telling`
         }
         for locale, texts in LANGUAGES.items()
     }

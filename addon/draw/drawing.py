@@ -98,8 +98,7 @@ def _refused(error: Any) -> DrawError:
 
 
 def _of_stroke(text: str) -> str:
-    text = text.replace("the other outline", "the stroke").replace("the outline", "the stroke")
-    return text.replace("draw each of them as an outline", "draw each of them as a stroke")
+    return text.replace("the other outline", "the stroke").replace("the outline", "the stroke")
 
 
 def _ink(memory: Memory, decision: Decision) -> _Ink:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..density import automatic
 from ..native import native
 from ..outlines import Plane, area
 from .decision import Part
@@ -20,15 +21,21 @@ SPACING = 2.0
 """Points nearer than this, in pixels, are one."""
 
 
+MOST = 4000
+"""Triangles of a preview whose number is left to the stroke."""
+
+
 class Gesture:
     """Points with pressure, and a lattice that stays while the stroke grows.
 
-    triangles : number wanted in the end. The preview has between one and two thirds and four thirds of it: its
-    edges are lengthened in steps as the stroke grows, so that the grid stands still in between.
+    triangles : number wanted in the end; None for what the stroke so far suggests, at most `MOST`. The preview has
+    between two thirds and four thirds of it: its edges are lengthened in steps as the stroke grows, so that the grid
+    stands still in between.
     """
 
-    def __init__(self, triangles: int, edge_length: float | None = None) -> None:
+    def __init__(self, triangles: int | None, edge_length: float | None = None) -> None:
         self.triangles, self.given = triangles, edge_length
+        self._suggested: tuple[float, int] | None = None
         self.edge_length = edge_length
         self._pixels: list[tuple[float, float]] = []
         self._points: list[tuple[float, float]] = []
@@ -105,7 +112,8 @@ class Gesture:
             return None
         gridmesh = native("mesh_sketch")
         if self.given is None:
-            ideal = np.sqrt(max(_extent(outline), 1e-30) / self.triangles * 4 / np.sqrt(3))
+            extent = max(_extent(outline), 1e-30)
+            ideal = np.sqrt(extent / (self.triangles or self._automatic(outline, holes)) * 4 / np.sqrt(3))
             if self.edge_length is None or not 0.75 < ideal / self.edge_length < 1.35:
                 self.edge_length = float(ideal)
         try:
@@ -121,6 +129,13 @@ class Gesture:
         except gridmesh.GridMeshError:
             return None  # too narrow for the grid, or it encloses nothing yet: the line alone is shown
         return patch.vertices, patch.triangles
+
+    def _automatic(self, outline: np.ndarray, holes: list[np.ndarray]) -> int:
+        """Number of triangles for the stroke so far, measured anew when it has grown by a twelfth."""
+        length = float(np.linalg.norm(np.diff(outline, axis=0), axis=1).sum())
+        if self._suggested is None or not 0.92 < length / self._suggested[0] < 1.08:
+            self._suggested = length, automatic(outline, holes, MOST)
+        return self._suggested[1]
 
 
 def _extent(points: np.ndarray) -> float:

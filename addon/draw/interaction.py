@@ -12,6 +12,7 @@ from bpy.app.translations import pgettext_iface
 from .. import frames
 from ..live import engine
 from ..strokes import selected
+from ..telling import told
 from . import planes, shapes
 from .decision import Decision, DecisionError, Shape, Wanted, decide
 from .gesture import Gesture
@@ -67,7 +68,7 @@ class Interaction:
         self._bodies: list[Shape] | None = None
         self._mirror = _mirror(context)
         length = options.edge_length if options.resolution == "EDGE_LENGTH" else None
-        self._gesture = Gesture(options.triangles, length)
+        self._gesture = Gesture(None if options.resolution == "AUTO" else options.triangles, length)
         self._preview = Preview(context)
         drawing_now = True
         self._tell(context, "")
@@ -138,9 +139,9 @@ class Interaction:
         try:
             decisions = self.decided(event)
         except DecisionError as error:
-            decisions, word, hint = [], _words()[""], str(error)
+            decisions, word, hint = [], _words()[""], told(str(error), "interface")
         else:
-            word, hint = _word(decisions[0]), decisions[0].hint
+            word, hint = _word(decisions[0]), told(decisions[0].hint, "interface")
         plane = decisions[0].plane if decisions else self._plane
         mouse = _pixel(context, event)
         self._preview.show(self.trace(), plane, decisions, self._gesture, mirror)
@@ -154,7 +155,7 @@ class Interaction:
             pgettext_iface("X: Mirror"),
             pgettext_iface("Esc, Right Click: Leave"),
         )
-        context.workspace.status_text_set(text + "    ".join(keys))
+        context.workspace.status_text_set(told(text + "    ".join(keys), "interface"))
 
     def is_click(self, context: bpy.types.Context) -> bool:
         """Whether the mouse was not dragged yet."""

@@ -15,16 +15,17 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 
 from ..native import NativeError, native
 from ..operators.messages import counted
+from ..telling import told
 from . import drawing, memory, options, planes, shapes, simplifying
 from .decision import Decision, DecisionError, Wanted, decide
 from .interaction import Interaction, mirror_place
 
 _DONE = {
-    "NEW": "Drew",
-    "EXTEND": "Extended",
-    "TRIM": "Trimmed",
-    "HOLE": "Made a hole in",
-    "PART": "Added a part:",
+    "NEW": "Drew {}",
+    "EXTEND": "Extended {}",
+    "TRIM": "Trimmed {}",
+    "HOLE": "Made a hole in {}",
+    "PART": "Added a part: {}",
 }
 
 timing: list[float] = []
@@ -58,9 +59,11 @@ class _Action(options.StrokeOptions):
         except (drawing.DrawError, DecisionError, memory.ForgottenError, NativeError) as error:
             return self._say("WARNING", str(error), {"CANCELLED"})
         triangles = sum(len(ob.data.polygons) for ob in made)
-        sides = "" if self.shape == "SHEET" else f", {triangles // 2} a side"
-        milliseconds = 1000 * (perf_counter() - started)
-        text = f"{_DONE[self.action]} {counted(len(made), 'body')}: {triangles} triangles{sides}, {milliseconds:.0f} ms"
+        done = _DONE[self.action].format(counted(len(made), "body"))
+        numbers = [f"{done}: {counted(triangles, 'triangle')}"]
+        if self.shape != "SHEET":
+            numbers.append(f"{triangles // 2} a side")
+        text = ", ".join([*numbers, f"{1000 * (perf_counter() - started):.0f} ms"])
         return self._say("INFO", f"{text}\n{hint}" if hint else text, {"FINISHED"})
 
     def _carry_out(self, context: bpy.types.Context) -> tuple[list[bpy.types.Object], str]:
@@ -98,7 +101,7 @@ class _Action(options.StrokeOptions):
         if _called:
             _said.append((level, text))
         else:
-            self.report({level}, text)
+            self.report({level}, told(text))
         return result
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -109,7 +112,7 @@ class _Action(options.StrokeOptions):
         layout.prop(self, "action")
         layout.prop(self, "use_mirror")
         if self.body:
-            layout.label(text=self.body, icon="OUTLINER_OB_MESH")
+            layout.label(text=self.body, icon="OUTLINER_OB_MESH", translate=False)
         self.draw_shape_options(layout)
         layout.prop(self, "pen")
         self.draw_sketch_options(layout)
@@ -206,12 +209,12 @@ class OBJECT_OT_gridmesh_draw(options.StrokeOptions, bpy.types.Operator):  # noq
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Begin a stroke at the mouse."""
         if context.region_data is None:
-            self.report({"WARNING"}, "Draw in a 3D view")
+            self.report({"WARNING"}, told("Draw in a 3D view"))
             return {"CANCELLED"}
         try:
             native("mesh_sketch", "combine")
         except NativeError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, told(str(error)))
             return {"CANCELLED"}
         self._interaction = Interaction(context, event, self)
         self._add(context, event)
@@ -292,18 +295,18 @@ class OBJECT_OT_gridmesh_draw(options.StrokeOptions, bpy.types.Operator):  # noq
         finally:
             _called = False
         for level, text in _said:
-            self.report({level}, text)
+            self.report({level}, told(text))
         return result
 
     def _told(self, level: str, text: str, result: set[str]) -> set[str]:
-        self.report({level}, text[:1].upper() + text[1:])
+        self.report({level}, told(text[:1].upper() + text[1:]))
         return result
 
 
 def _may_draw(cls: Any, context: bpy.types.Context) -> bool:
     if context.mode == "OBJECT":
         return True
-    cls.poll_message_set("Leave the mode: bodies are drawn in Object Mode")
+    cls.poll_message_set(told("Leave the mode: bodies are drawn in Object Mode", "tooltips"))
     return False
 
 

@@ -12,6 +12,7 @@ from ..live import engine, outlined
 from ..native import NativeError
 from ..operators.messages import counted, listed
 from ..strokes import selected
+from ..telling import told
 from . import shapes
 from .drawing import DrawError, refuse
 from .fewer import simplified
@@ -40,7 +41,9 @@ class OBJECT_OT_gridmesh_simplify(bpy.types.Operator):  # noqa: N801
         """Ask for a live body or its outline."""
         if context.mode == "OBJECT" and _chosen(context):
             return True
-        cls.poll_message_set("Select a live body that was drawn with the tool, in Object Mode")
+        cls.poll_message_set(
+            told("Select a live body that was drawn with the tool, in Object Mode", "tooltips")
+        )
         return False
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -58,10 +61,12 @@ class OBJECT_OT_gridmesh_simplify(bpy.types.Operator):  # noqa: N801
                 continue
             before, after, done = before + counts[0], after + counts[1], done + 1
         if problems:
-            self.report({"WARNING"}, listed(problems))
+            self.report({"WARNING"}, told(listed(problems)))
         if not done:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Simplified {counted(done, 'outline')}: {before} points before, {after} now")
+        self.report(
+            {"INFO"}, told(f"Simplified {counted(done, 'outline')}: {before} points before, {after} now")
+        )
         return {"FINISHED"}
 
 

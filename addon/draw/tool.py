@@ -56,7 +56,7 @@ class GridMeshDrawTool(bpy.types.WorkSpaceTool):
         layout.separator()
         body = chosen_body(context)
         if body is not None:
-            layout.label(text=body.name, icon="OUTLINER_OB_MESH")
+            layout.label(text=body.name, icon="OUTLINER_OB_MESH", translate=False)
         else:
             layout.label(text="New Bodies", icon="ADD")
         shown = options if body is None else body.gridmesh_live

@@ -2,6 +2,7 @@
 
 use gridmesh::inflate::{InflateOptions, Profile, Side};
 use gridmesh::options::{BoundaryMethod, Density, Mirror, SelfCrossing, SketchOptions};
+use gridmesh::surface::UvLayout;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt, PyString};
@@ -34,9 +35,16 @@ pub fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyA
             options.edge_length = it.optional(|it| it.float())?;
         }
         "triangles" => {
-            let it = argument("a positive whole number, or None");
-            options.triangles = it.optional(|it| it.count())?;
+            let it = argument("a positive whole number, 'auto', or None");
+            options.triangles = None;
+            options.automatic = it.value.is_instance_of::<PyString>();
+            if options.automatic {
+                it.word(&[("auto", ())])?;
+            } else {
+                options.triangles = it.optional(|it| it.count())?;
+            }
         }
+        "max_triangles" => options.max_triangles = argument("a positive whole number").count()?,
         "boundary" => {
             let words = [("optimal", BoundaryMethod::Optimal), ("grown", BoundaryMethod::Grown)];
             options.boundary = argument("'optimal' or 'grown'").word(&words)?;
@@ -93,6 +101,10 @@ pub fn set_inflate(options: &mut InflateOptions, name: &str, value: &Bound<'_, P
         "curve" => {
             let it = argument("numbers, the first 0 and the others positive, or None");
             options.curve = it.optional(|it| it.numbers())?;
+        }
+        "uv" => {
+            let words = [("apart", UvLayout::Apart), ("shared", UvLayout::Shared)];
+            options.uv = argument("'apart' or 'shared'").word(&words)?;
         }
         "front" => options.front = argument(side).optional(depths)?,
         "back" => options.back = argument(side).optional(depths)?,

@@ -41,5 +41,6 @@ pub mod surface;
 pub mod svg;
 mod symmetry;
 pub mod target;
+pub mod thickness;
 pub mod trace;
 mod union;

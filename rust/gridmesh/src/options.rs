@@ -10,6 +10,12 @@ pub const MAX_TRIANGLES: f64 = 20e6;
 /// Triangles of the flat patch when nothing is asked for.
 pub const DEFAULT_TRIANGLES: usize = 2000;
 
+/// The least number of triangles of the flat patch that is chosen.
+pub const LEAST_CHOSEN: usize = 1000;
+
+/// The largest number of triangles that is chosen, unless told otherwise.
+pub const MOST_CHOSEN: usize = 20_000;
+
 /// Drawn corners that turn by more than this are kept, unless told otherwise: 40 degrees.
 pub const DEFAULT_CORNER_ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
@@ -63,6 +69,12 @@ pub struct SketchOptions {
     /// Triangles of the flat patch, 6 or more; 2000 if neither is given. Reached within 10 %, below 60 within 6
     /// triangles: the report says how many there are.
     pub triangles: Option<usize>,
+    /// Choose the number of triangles: four across the thinnest limb, but at least 1000 and at most
+    /// `max_triangles`; where those cannot follow the drawing, the least number that can. Exclusive with
+    /// `edge_length` and `triangles`.
+    pub automatic: bool,
+    /// The largest number that `automatic` chooses.
+    pub max_triangles: usize,
     /// How the boundary is found.
     pub boundary: BoundaryMethod,
     /// Greatest distance of the lattice path from the curve, in edges: 0.5 to 4.
@@ -102,6 +114,8 @@ impl Default for SketchOptions {
         Self {
             edge_length: None,
             triangles: None,
+            automatic: false,
+            max_triangles: MOST_CHOSEN,
             boundary: BoundaryMethod::Optimal,
             max_distance: 1.5,
             closeness: 0.3,
@@ -134,6 +148,22 @@ impl SketchOptions {
                 value: "given beside edge_length".to_owned(),
                 allowed: "one of edge_length and triangles, or neither",
             });
+        }
+        if self.automatic {
+            let limit = self.max_triangles;
+            if self.edge_length.is_some() || self.triangles.is_some() {
+                return Err(Error::InvalidOption {
+                    name: "triangles",
+                    value: "automatic, and given".to_owned(),
+                    allowed: "one of automatic, a number and an edge length",
+                });
+            }
+            if limit < 6 {
+                return refuse("max_triangles", limit as f64, "at least 6");
+            }
+            if limit as f64 > MAX_TRIANGLES {
+                return Err(Error::TooLarge { triangles: limit as f64, limit: MAX_TRIANGLES });
+            }
         }
         if let Some(h) = self.edge_length
             && !(h.is_finite() && h > 0.0)
@@ -246,6 +276,9 @@ pub struct SketchReport {
     pub corners: usize,
     /// Corners that got no vertex of their own.
     pub released_corners: usize,
+    /// Triangles across the thinnest limb; `None` where no part is longer than it is wide, and unless the
+    /// number of triangles was left to the drawing (`automatic`).
+    pub across: Option<f64>,
     /// Input points dropped because they repeat their predecessor.
     pub repaired: usize,
     /// Greatest distance of a vertex from the mirror image of its partner, in edges: rounding, if the

@@ -19,13 +19,15 @@ use crate::error::{Error, Needed, Result};
 use crate::lattice::Lattice;
 use crate::mirror;
 use crate::options::{
-    BoundaryMethod, DEFAULT_TRIANGLES, Density, MAX_TRIANGLES, SelfCrossing, SketchOptions, SketchReport,
+    BoundaryMethod, DEFAULT_TRIANGLES, Density, LEAST_CHOSEN, MAX_TRIANGLES, SelfCrossing, SketchOptions,
+    SketchReport,
 };
 use crate::outline::{Obstacle, Outline};
 use crate::patch::Patch;
 use crate::place::{Placed, min_angle, min_angle_off_corners, place};
 use crate::progress::{Progress, Rising};
 use crate::symmetry::Symmetry;
+use crate::thickness::{self, Limb};
 use crate::union::{nearest_source, outer_outline};
 
 /// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies
@@ -94,9 +96,16 @@ pub fn mesh_sketch(
     }
     let contours = read_contours(union.as_ref().map_or(outline, |(points, _)| points), holes)?;
     let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
+    let mut thinnest = None;
+    let triangles = if options.automatic {
+        thinnest = thickness::limbs_of(&contours)?.first().copied();
+        chosen_triangles(area, thinnest, options.max_triangles)
+    } else {
+        options.triangles.unwrap_or(DEFAULT_TRIANGLES)
+    };
     let edge_length = match options.edge_length {
         Some(h) => h,
-        None => Lattice::edge_length_for(area, options.triangles.unwrap_or(DEFAULT_TRIANGLES) as f64),
+        None => Lattice::edge_length_for(area, triangles as f64),
     };
     let expected = area / (0.5 * crate::lattice::ROW_HEIGHT * edge_length * edge_length);
     if expected.is_nan() || expected > MAX_TRIANGLES {
@@ -108,18 +117,25 @@ pub fn mesh_sketch(
     mirror::check_angle(symmetry.as_ref(), options.angle)?;
     let centre = centroid(contours[0].points());
     let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
-    let mut job = Job { contours, symmetry, options, area, centre, seconds: Vec::new(), placements: 0 };
+    let mut job =
+        Job { contours, symmetry, options, area, centre, thinnest, seconds: Vec::new(), placements: 0 };
     job.lap("curve", started);
     let asked = match options.edge_length {
         Some(h) => Asked::EdgeLength(h),
-        None => Asked::Triangles(options.triangles.unwrap_or(DEFAULT_TRIANGLES)),
+        None => Asked::Triangles(triangles),
     };
-    let attempt = if job.is_hopeless(expected.round() as usize) {
-        let at = job.contours[0].points()[0];
-        Err(Obstacle::new("the drawing is too thin for two rows of triangles", at))
-    } else {
-        job.attempt(asked, Effort::Full, progress)?
-    };
+    let mut attempt = job.attempt_unless_hopeless(asked, expected, progress)?;
+    if let (true, Err(obstacle)) = (options.automatic, &attempt)
+        && !obstacle.is_inverted
+    {
+        // A number that was chosen gives way to one that works.
+        match job.least_that_works(expected, obstacle.clone(), progress)? {
+            Error::TooCoarse { needed: Needed::Least(least), .. } if least <= options.max_triangles => {
+                attempt = job.attempt(Asked::Triangles(least), Effort::Full, progress)?;
+            }
+            refused => return Err(refused),
+        }
+    }
     let mut sketch = match attempt {
         Ok(sketch) => sketch,
         Err(Obstacle { at, is_inverted: true, .. }) => return Err(Error::Inverted { at: at.to_array() }),
@@ -190,6 +206,7 @@ struct Job<'a> {
     options: &'a SketchOptions,
     area: f64,
     centre: DVec2,
+    thinnest: Option<Limb>,
     seconds: Vec<(&'static str, f64)>,
     placements: usize,
 }
@@ -201,6 +218,19 @@ impl Job<'_> {
             Some(known) => known.1 += spent,
             None => self.seconds.push((stage, spent)),
         }
+    }
+
+    fn attempt_unless_hopeless(
+        &mut self,
+        asked: Asked,
+        expected: f64,
+        progress: Progress<'_>,
+    ) -> Result<Result<Sketch, Obstacle>> {
+        if self.is_hopeless(expected.round() as usize) {
+            let at = self.contours[0].points()[0];
+            return Ok(Err(Obstacle::new("the drawing is too thin for two rows of triangles", at)));
+        }
+        self.attempt(asked, Effort::Full, progress)
     }
 
     /// Tries lattice placements until one gives a valid patch of the size asked for: the angles
@@ -364,6 +394,7 @@ impl Job<'_> {
             min_angle: min_angle(&patch),
             corners: placed.corners,
             released_corners: placed.released_corners,
+            across: self.thinnest.map(|limb| thickness::across(limb.width, patch.lattice.edge_length)),
             repaired: self.contours.iter().map(ClosedCurve::repaired).sum(),
             mirror_error,
             bend: bent.as_ref().map_or(0.0, |bent| bent.share * self.options.bend),
@@ -375,6 +406,13 @@ impl Job<'_> {
         report.seconds = self.seconds.clone();
         Sketch { patch, report }
     }
+}
+
+/// The number of triangles where it is left to the drawing.
+fn chosen_triangles(area: f64, thinnest: Option<Limb>, limit: usize) -> usize {
+    let wanted = |limb: Limb| thickness::triangles_for(area, limb.width, thickness::ACROSS);
+    let wanted = thinnest.map_or(0, |limb| wanted(limb).min(MAX_TRIANGLES).ceil() as usize);
+    wanted.max(LEAST_CHOSEN).min(limit)
 }
 
 /// Lattice coordinates are whole numbers: a lattice may be laid from a point this many edges away.

@@ -31,6 +31,7 @@ __all__ = [
     "mesh_sketch",
     "regrid",
     "stitch",
+    "thickness",
 ]
 
 __version__: str
@@ -42,7 +43,8 @@ _Progress = Callable[[float], object]
 
 class _Options(TypedDict, total=False):
     edge_length: float | None
-    triangles: int | None
+    triangles: int | Literal["auto"] | None
+    max_triangles: int
     boundary: Literal["optimal", "grown"]
     max_distance: float
     closeness: float
@@ -60,6 +62,7 @@ class _Options(TypedDict, total=False):
     curve: npt.ArrayLike | None
     front: _Side
     back: _Side
+    uv: Literal["apart", "shared"]
 
 class GridMeshError(ValueError):
     kind: str
@@ -126,7 +129,8 @@ def mesh_sketch(
     holes: Sequence[_Points] = (),
     *,
     edge_length: float | None = None,
-    triangles: int | None = None,
+    triangles: int | Literal["auto"] | None = None,
+    max_triangles: int = 20000,
     boundary: Literal["optimal", "grown"] = "optimal",
     max_distance: float = 1.5,
     closeness: float = 0.3,
@@ -149,6 +153,7 @@ def combine(
     *,
     how: Literal["union", "difference"] = "union",
 ) -> list[tuple[npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]]: ...
+def thickness(outline: _Points, holes: Sequence[_Points] = ()) -> npt.NDArray[np.float64]: ...
 def stitch(patch: Patch) -> Surface: ...
 def flat(patch: Patch) -> Surface: ...
 def inflate(
@@ -160,6 +165,7 @@ def inflate(
     front: _Side = None,
     back: _Side = None,
     corner_angle: float = 0.6981317007977318,
+    uv: Literal["apart", "shared"] = "apart",
     progress: _Progress | None = None,
 ) -> Surface: ...
 
