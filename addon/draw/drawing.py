@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import api, frames, meshes, strokes
+from .. import api, frames, meshes, strokes, written
 from ..live import engine, outlined
 from ..live.linework import nearest
 from ..live.outlined import OutlineError, radii
@@ -189,7 +189,7 @@ def _changed(
     gridmesh = native("combine")
     sketch, ob = found.sketch, found.ob
     live = ob.gridmesh_live
-    if meshes.by_hand(ob.data):
+    if written.by_hand(ob.data):
         raise DrawError(engine.BY_HAND)
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     how = "union" if found.action == "extend" else "difference"
@@ -267,7 +267,7 @@ def _split(
     widths = [_carried(ring, sketches, found.stroke, pressures) for ring in rings]
     flat = [_flat(ring, plane) for ring in rings]
     middle = (flat[0].min(axis=0) + flat[0].max(axis=0)) / 2
-    place = np.array(ob.matrix_world)
+    place = frames.place(ob)
     place[:3, 3] = frames.moved(middle[None], place)[0]
     body = outlined.make(
         context,

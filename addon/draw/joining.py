@@ -54,7 +54,7 @@ def join(
 
 def sketch_into(ob: bpy.types.Object, other: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Sketch:
     """Return the sketch of another body in the space of `ob`."""
-    matrix = np.linalg.inv(np.array(ob.matrix_world)) @ np.array(other.matrix_world)
+    matrix = np.linalg.inv(frames.place(ob)) @ frames.place(other)
     return transformed(sketch_of(other, depsgraph), matrix, other.gridmesh_live.close_gaps)
 
 

@@ -12,7 +12,7 @@ import pytest
 from drawings import activate, at, bean, check_body, circle, grease_pencil, run, triangles, vertices
 from mathutils import Matrix
 
-from addon import frames, meshes, profilecurve
+from addon import frames, meshes, profilecurve, written
 from addon.draw.gesture import pack
 from addon.live import engine, family
 from addon.live.reading import sketch_of
@@ -148,7 +148,7 @@ class Play:
         """Change a mesh by hand; or give up, or keep, what was changed."""
         body = self.one(self.bodies())
         activate(body)
-        if meshes.by_hand(body.data):
+        if written.by_hand(body.data):
             (
                 bpy.ops.object.gridmesh_rebuild
                 if self.random.random() < 0.7
@@ -219,7 +219,7 @@ class Play:
     # ------------------------------------------------------------------------------------------ what must be so
 
     def by_hand(self):
-        return {ob.name: vertices(ob.data).tobytes() for ob in self.bodies() if meshes.by_hand(ob.data)}
+        return {ob.name: vertices(ob.data).tobytes() for ob in self.bodies() if written.by_hand(ob.data)}
 
     def check(self):
         depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -244,7 +244,7 @@ class Play:
             assert live.problem == writer.gridmesh_live.problem
             return
         if live.problem == engine.BY_HAND:
-            assert meshes.by_hand(body.data)
+            assert written.by_hand(body.data)
             return
         if live.source is None:
             assert "gone" in live.problem
@@ -258,7 +258,7 @@ class Play:
         assert live.digest == engine.fingerprint(live, sketch)
         fresh, _ = solve(sketch, live.sketch_options(), live.body_options(), pen=live.pen)
         assert np.array_equal(fresh.triangles, triangles(body.data))
-        points = meshes.in_space(fresh).vertices
+        points = meshes.in_space(fresh, frames.space(body)).vertices
         assert np.abs(points - vertices(body.data)).max() < 1e-5 * sketch.size
         check_body(body, genus=len(sketch.holes))
 
