@@ -143,31 +143,37 @@ def absorb(ob: bpy.types.Object) -> None:
     written.sign(mesh)
 
 
-def reframe(ob: bpy.types.Object, *, changed: bool) -> None:
+def reframe(ob: bpy.types.Object, *, stepped: bool = False) -> None:
     """Leave a body where it is whose drawing, which carries it, had its transform applied.
 
-    changed : whether the drawing's data was changed just now.
+    stepped : whether this is after a step back or forth, to a time when Blender had done it and nobody had looked yet.
+    Otherwise the drawing must have gone the other way than its points, just now.
     """
     live = ob.gridmesh_live
     source = live.source
     if source is None or frames.nested(source, ob) or frames.carrier(source, live.layer)[0] != source:
         return
-    known, now = _remembered(live), np.array(ob.matrix_parent_inverse, np.float32).ravel()
-    seen = _places.get(source.session_uid)
     # Blender gives the children of an object another parent inverse when its transform is applied.
-    relinked = ob.parent == source and not np.array_equal(now, np.array(live.carried, np.float32))
-    applied = changed and seen is not None and not _close(np.array(source.matrix_world), seen)
-    if known is None or not (relinked or applied) or not ob.is_editable:
+    link = np.array(ob.matrix_parent_inverse, np.float32).ravel()
+    relinked = ob.parent == source and not np.array_equal(link, np.array(live.carried, np.float32))
+    seen, now = _places.get(source.session_uid), np.array(source.matrix_world)
+    moved = seen is not None and not _close(now, seen)
+    known = _remembered(live)
+    if known is None or not ob.is_editable or not (relinked or moved):
         return
     try:
         found = samples(sketch_of(ob, bpy.context.evaluated_depsgraph_get()))
+        if not alike(ob, known, found):
+            frame = frames.frame(ob)
+            matrix = written.affine(frames.moved(found, np.linalg.inv(frame)), known)
+            if stepped and relinked and matrix is not None:
+                frames.remember(ob, matrix)
+            elif moved:
+                frame = frame @ np.linalg.inv(seen) @ now
+                if alike(ob, known, frames.moved(found, frame @ np.linalg.inv(frames.frame(ob)))):
+                    frames.remember(ob, frame)
     except (LostError, np.linalg.LinAlgError):
         return
-    if not alike(ob, known, found):
-        frame = frames.frame(ob)
-        matrix = written.affine(frames.moved(found, np.linalg.inv(frame)), known)
-        if matrix is not None:
-            frames.remember(ob, matrix)
     _remember_link(ob)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import bpy
 
-from .. import frames, strokes
+from .. import frames, strokes, written
 from . import applied, engine, family, migration
 
 _DRAWINGS = tuple(
@@ -67,8 +67,8 @@ def _take_over(
         for ob in shaped:
             applied.absorb(ob)
         for ob in followers:
-            if ob.gridmesh_live.enabled and (ob.gridmesh_live.source in sources or ob in shaped):
-                applied.reframe(ob, changed=ob.gridmesh_live.source in sources)
+            if ob.gridmesh_live.enabled and ob.gridmesh_live.source in sources:
+                applied.reframe(ob)
 
 
 def _concerned(
@@ -116,8 +116,10 @@ def _on_undo(*_: Any) -> None:
         engine.forget()
         return
     bpy.context.evaluated_depsgraph_get()
-    followers = family.known()
-    _take_over(followers, [], followers)
+    with engine.resting():
+        for ob in family.known():
+            applied.absorb(ob)
+            applied.reframe(ob, stepped=True)
     engine.forget()
     if bpy.app.background:
         family.mend()
@@ -135,6 +137,8 @@ def _on_load(*_: Any) -> None:
     family.forget(everything=True)
     applied.forget()
     migration.migrate()
+    if not family.nobody():
+        bpy.context.view_layer.update()  # nothing knows yet where it is
     for ob in family.bodies():
         family.claim(ob)
         applied.look(ob)
@@ -145,7 +149,7 @@ def _on_import(*_: Any) -> None:
     """Bodies may have been appended or linked, where there were none."""
     family.forget(everything=False)
     for ob in family.bodies():
-        applied.look(ob)
+        written.by_hand(ob.data)  # remembers the mesh
 
 
 @bpy.app.handlers.persistent

@@ -209,7 +209,7 @@ def test_drawn_on_after_apply():
 
     high = before.max(axis=0)
     middle = (before.min(axis=0) + high) / 2
-    ring = circle(60, 1.0, (high[0], middle[1]))[:, :2]
+    ring = circle(60, 1.0, (high[0], middle[1]), start=np.pi)[:, :2]
     assert bpy.ops.object.gridmesh_draw(
         "EXEC_DEFAULT", True, stroke=pack(ring, np.ones(len(ring))), matrix=np.eye(4).ravel().tolist()
     ) == {"FINISHED"}
