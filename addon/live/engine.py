@@ -216,9 +216,9 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
     frame = _frame(ob)
     mark, options = fingerprint(live, sketch), repr(_options(live))
     state, points = _states.get(uid), applied.trace(sketch)
-    if state is not None and live.digest and state.seen == live.digest and state.options == options:
-        if applied.alike(ob, state.points, points):  # applied, or moved to and fro
-            live.digest = state.seen = mark
+    settled = state is not None and live.digest and state.seen == live.digest and state.options == options
+    if settled and applied.alike(ob, state.points, points):  # a transform was applied
+        live.digest = state.seen = mark
     if live.digest == mark or (not full and state is not None and state.seen == mark):
         if state is None or state.seen != mark:
             _states[uid] = _State(mark, options, frame, points=points)

@@ -18,7 +18,9 @@ PLACES = {
     "moved": Matrix.Translation((3, -2, 1)),
     "turned": Matrix.Rotation(2.0, 4, "X") @ Matrix.Rotation(0.7, 4, "Z"),
     "scaled": Matrix.Translation((1, 2, 3)) @ Matrix.Rotation(0.5, 4, "Z") @ Matrix.Scale(2.5, 4),
-    "stretched": Matrix.Translation((1, 2, 3)) @ Matrix.Rotation(0.5, 4, "Y") @ Matrix.Diagonal((1, 2, 0.5, 1)),
+    "stretched": Matrix.Translation((1, 2, 3))
+    @ Matrix.Rotation(0.5, 4, "Y")
+    @ Matrix.Diagonal((1, 2, 0.5, 1)),
     "mirrored": Matrix.Translation((1, 2, 3)) @ Matrix.Diagonal((-1, 1, 1, 1)),
     "turned inside out": Matrix.Diagonal((-1, -2, -1, 1)),
 }
@@ -235,7 +237,9 @@ def test_copies_of_an_applied_body(pair):
     settle()
     own = copy.gridmesh_live.source
     assert own not in (None, source)
-    assert np.abs(shape(copy, own)[: len(copy.data.vertices)] - before[: len(copy.data.vertices)]).max() < 1e-4
+    assert (
+        np.abs(shape(copy, own)[: len(copy.data.vertices)] - before[: len(copy.data.vertices)]).max() < 1e-4
+    )
     check_live(copy, shape(copy, own))
     check_live(body, before)
 
@@ -340,7 +344,9 @@ def test_converted_to_mesh(pair):
     check_live(body, before)
 
 
-@pytest.mark.parametrize("shading", ["shade_flat", "shade_smooth", "shade_auto_smooth", "renamed", "decimated"])
+@pytest.mark.parametrize(
+    "shading", ["shade_flat", "shade_smooth", "shade_auto_smooth", "renamed", "decimated"]
+)
 def test_shaded_renamed_and_decimated(pair, shading):
     body, source = pair
     before = shape(body, source)
