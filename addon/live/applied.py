@@ -84,8 +84,13 @@ def remember(ob: bpy.types.Object, sketch: Sketch) -> None:
     _remember_link(ob)
 
 
+def _link(ob: bpy.types.Object) -> np.ndarray:
+    """Matrix (4, 4) from an object to its parent."""
+    return np.array(ob.matrix_parent_inverse) @ np.array(ob.matrix_basis)
+
+
 def _remember_link(ob: bpy.types.Object) -> None:
-    values = np.array(ob.matrix_parent_inverse, np.float32).ravel()
+    values = _link(ob).astype(np.float32).ravel()
     if not np.array_equal(values, np.array(ob.gridmesh_live.carried, np.float32)):
         ob.gridmesh_live.carried = values.tolist()
 
@@ -130,6 +135,9 @@ def absorb(ob: bpy.types.Object) -> None:
     before = [list(one.gridmesh_live.space) for one in group]
     for one in group:
         one.gridmesh_live.space = (matrix @ frames.space(one)).ravel().tolist()
+        link = np.array(one.gridmesh_live.carried, float).reshape(4, 4)
+        if link[3, 3]:
+            one.gridmesh_live.carried = (link @ np.linalg.inv(matrix)).ravel().tolist()
     holder = next((one for one in group if frames.nested(source, one)), None)
     if holder is not None and not _as_before(holder):
         seen, now = _places.get(holder.session_uid), np.array(holder.matrix_world)
@@ -143,35 +151,35 @@ def absorb(ob: bpy.types.Object) -> None:
     written.sign(mesh)
 
 
-def reframe(ob: bpy.types.Object, *, stepped: bool = False) -> None:
+def reframe(ob: bpy.types.Object) -> None:
     """Leave a body where it is whose drawing, which carries it, had its transform applied.
 
-    stepped : whether this is after a step back or forth, to a time when Blender had done it and nobody had looked yet.
-    Otherwise the drawing must have gone the other way than its points, just now.
+    The drawing has gone the other way than its points: seen in the world just now, or from the body, which Blender has
+    left where it was. After a step back or forth only that is known.
     """
     live = ob.gridmesh_live
     source = live.source
     if source is None or frames.nested(source, ob) or frames.carrier(source, live.layer)[0] != source:
         return
-    # Blender gives the children of an object another parent inverse when its transform is applied.
-    link = np.array(ob.matrix_parent_inverse, np.float32).ravel()
-    relinked = ob.parent == source and not np.array_equal(link, np.array(live.carried, np.float32))
+    ways = []
     seen, now = _places.get(source.session_uid), np.array(source.matrix_world)
-    moved = seen is not None and not _close(now, seen)
+    if seen is not None and not _close(now, seen):
+        ways.append((seen, now))
+    seen, now = np.array(live.carried, float).reshape(4, 4), _link(ob)
+    if ob.parent == source and seen[3, 3] and not _close(now, seen):
+        ways.append((np.linalg.inv(seen), np.linalg.inv(now)))
     known = _remembered(live)
-    if known is None or not ob.is_editable or not (relinked or moved):
+    if known is None or not ob.is_editable or not ways:
         return
     try:
         found = samples(sketch_of(ob, bpy.context.evaluated_depsgraph_get()))
         if not alike(ob, known, found):
-            frame = frames.frame(ob)
-            matrix = written.affine(frames.moved(found, np.linalg.inv(frame)), known)
-            if stepped and relinked and matrix is not None:
-                frames.remember(ob, matrix)
-            elif moved:
-                frame = frame @ np.linalg.inv(seen) @ now
-                if alike(ob, known, frames.moved(found, frame @ np.linalg.inv(frames.frame(ob)))):
+            before = frames.frame(ob)
+            for seen, now in ways:
+                frame = before @ np.linalg.inv(seen) @ now
+                if alike(ob, known, frames.moved(found, frame @ np.linalg.inv(before))):
                     frames.remember(ob, frame)
+                    break
     except (LostError, np.linalg.LinAlgError):
         return
     _remember_link(ob)

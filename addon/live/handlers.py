@@ -119,7 +119,7 @@ def _on_undo(*_: Any) -> None:
     with engine.resting():
         for ob in family.known():
             applied.absorb(ob)
-            applied.reframe(ob, stepped=True)
+            applied.reframe(ob)
     engine.forget()
     if bpy.app.background:
         family.mend()

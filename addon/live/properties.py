@@ -83,7 +83,7 @@ class GridMeshLive(SketchOptions, ShapeOptions, bpy.types.PropertyGroup):
     samples: FloatVectorProperty(size=24, options={"HIDDEN"})
     """Some points of the sketch in the body's own space when the body was made last."""
     carried: FloatVectorProperty(size=16, options={"HIDDEN"})
-    """Parent inverse of the body, then: where a drawing that carries it is applied, Blender gives it another."""
+    """Matrix from the body to its parent, then: where that is a drawing that is applied, Blender gives it another."""
     plane: FloatVectorProperty(size=12, options={"HIDDEN"})
     """Plane of the sketch in the body's space when the body was made last: its origin and its axes."""
     uid: IntProperty(options={"HIDDEN"})

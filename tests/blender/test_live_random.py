@@ -9,7 +9,7 @@ import resource
 import bpy
 import numpy as np
 import pytest
-from drawings import activate, at, bean, check_body, circle, grease_pencil, run, triangles, vertices
+from drawings import activate, at, bean, check_body, circle, grease_pencil, run, triangles, vertices, world_vertices
 from mathutils import Matrix
 
 from addon import frames, meshes, profilecurve, written
@@ -164,6 +164,24 @@ class Play:
         engine.settle()
         body.hide_set(False)
 
+    def apply(self):
+        """Apply transforms, or set the origin, of a body, its drawing, or both: nothing may move."""
+        body = self.one(self.bodies())
+        source = body.gridmesh_live.source
+        chosen = self.one([[body], [body, source], [source]])
+        chosen = [ob for ob in chosen if ob is not None and ob.users_scene]
+        if not chosen:
+            return
+        activate(*chosen)
+        hands, place = written.by_hand(body.data), world_vertices(body)
+        if self.random.random() < 0.7:
+            bpy.ops.object.transform_apply(isolate_users=True)
+        elif body.data.users == 1:
+            bpy.ops.object.origin_set(type=self.one(["ORIGIN_GEOMETRY", "ORIGIN_CURSOR"]))
+        self.settle()
+        assert written.by_hand(body.data) == hands
+        assert np.abs(world_vertices(body) - place).max() < 1e-4
+
     def undo(self):
         bpy.ops.ed.undo()
 
@@ -177,7 +195,7 @@ class Play:
     KINDS = (
         *("edit", "edit", "edit", "edit", "edit", "transform", "transform", "transform", "transform"),
         *("undo", "undo", "undo", "undo", "redo", "redo", "redo", "duplicate", "duplicate", "hole", "across"),
-        *("curve", "parent", "delete", "hand", "hand", "hide", "reload"),
+        *("curve", "parent", "delete", "hand", "hand", "hide", "reload", "apply", "apply"),
     )
     HISTORY = ("undo", "redo")
 
