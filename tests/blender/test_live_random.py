@@ -9,7 +9,18 @@ import resource
 import bpy
 import numpy as np
 import pytest
-from drawings import activate, at, bean, check_body, circle, grease_pencil, run, triangles, vertices, world_vertices
+from drawings import (
+    activate,
+    at,
+    bean,
+    check_body,
+    circle,
+    grease_pencil,
+    run,
+    triangles,
+    vertices,
+    world_vertices,
+)
 from mathutils import Matrix
 
 from addon import frames, meshes, profilecurve, written

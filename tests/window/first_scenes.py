@@ -122,7 +122,7 @@ def first_newcomer():
     yield 0.5
     yield from stage.key("X")  # away with the cube
     yield from stage.key("RET")
-    actions += 2
+    actions += 3
     assert "Cube" not in bpy.context.scene.objects, "the cube is still there"
     yield from tool("gridmesh.draw")
     actions += 1
