@@ -4,6 +4,9 @@
 The mesh of a body is a function of its strokes in the body's own space. `frame` takes the drawing's data there: where
 the outline is the child of its body, that is how it lies in it, so that both can be moved by whatever carries them;
 everywhere else it is a constant that the body remembers. Nothing of it depends on where things are in the world.
+
+The body's own space is that of the sketch. `space` takes it to that of the object: the identity, until a scale, a rotation
+or a place is applied, or the origin is set; from then on what was taken out of the object's matrix is there.
 """
 
 from __future__ import annotations
@@ -75,12 +78,26 @@ def stored(ob: bpy.types.Object) -> np.ndarray | None:
     return matrix if matrix[3, 3] else None
 
 
+def space(ob: bpy.types.Object) -> np.ndarray:
+    """Matrix (4, 4) from a body's own space, in which its sketch is, to that of the object; identity without a link."""
+    if not is_linked(ob):
+        return np.eye(4)
+    matrix = np.array(ob.gridmesh_live.space, float).reshape(4, 4)
+    return matrix if matrix[3, 3] else np.eye(4)
+
+
+def place(ob: bpy.types.Object) -> np.ndarray:
+    """Matrix (4, 4) from a body's own space to the world."""
+    return np.array(ob.matrix_world) @ space(ob)
+
+
 def frame(ob: bpy.types.Object) -> np.ndarray:
     """Matrix (4, 4) from the space of a linked body's drawing (see `carrier`) to that of the body."""
     live = ob.gridmesh_live
     source = live.source
     if nested(source, ob) and carrier(source, live.layer)[0] == source:
-        return np.array(source.matrix_parent_inverse) @ np.array(source.matrix_basis)
+        matrix = np.array(source.matrix_parent_inverse) @ np.array(source.matrix_basis)
+        return np.linalg.solve(space(ob), matrix)
     matrix = stored(ob)
     return np.eye(4) if matrix is None else matrix
 
@@ -94,14 +111,14 @@ def remember(ob: bpy.types.Object, matrix: np.ndarray) -> None:
 
 def apart(source: bpy.types.Object, layer: str, ob: bpy.types.Object) -> np.ndarray:
     """Return the frame that leaves both where they are in the world. Both have to be evaluated."""
-    return np.linalg.inv(np.array(ob.matrix_world)) @ carrier_world(source, layer)
+    return np.linalg.inv(place(ob)) @ carrier_world(source, layer)
 
 
 def nest(source: bpy.types.Object, ob: bpy.types.Object, matrix: np.ndarray) -> None:
-    """Make a drawing the child of a body, so that it lies in it by `matrix`."""
+    """Make a drawing the child of a body, so that it lies in the body's own space by `matrix`."""
     source.parent, source.parent_type = ob, "OBJECT"
     source.matrix_basis = Matrix.Identity(4)
-    source.matrix_parent_inverse = Matrix(matrix.tolist())
+    source.matrix_parent_inverse = Matrix((space(ob) @ matrix).tolist())
 
 
 def carry(ob: bpy.types.Object, source: bpy.types.Object, layer: str) -> None:
@@ -136,7 +153,7 @@ def moved(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:
 
 def to_world(ob: bpy.types.Object, points: np.ndarray) -> np.ndarray:
     """Points (n, 3) of a body's space in the world."""
-    return moved(points, np.array(ob.matrix_world))
+    return moved(points, place(ob))
 
 
 def to_local(ob: bpy.types.Object, points: np.ndarray) -> np.ndarray:
@@ -147,7 +164,7 @@ def to_local(ob: bpy.types.Object, points: np.ndarray) -> np.ndarray:
     numpy.linalg.LinAlgError
         If the body is scaled to nothing.
     """
-    return moved(points, np.linalg.inv(np.array(ob.matrix_world)))
+    return moved(points, np.linalg.inv(place(ob)))
 
 
 def plane_local(ob: bpy.types.Object, plane: Plane) -> Plane:

@@ -282,9 +282,7 @@ _DRAW = {
         "nichts ist gezeichnet; das Werkzeug „GridMesh Zeichnen“ in einer 3D-Ansicht verwenden"
     ),
     "'{}' will be inside it: not visible": "'{0}' liegt dann darin: nicht sichtbar",
-    "inside '{}': not visible; use Plane: Surface": (
-        "in '{0}': nicht sichtbar; „Ebene“ auf „Fläche“ setzen"
-    ),
+    "inside '{}': not visible; use Plane: Surface": ("in '{0}': nicht sichtbar; „Ebene“ auf „Fläche“ setzen"),
     "nothing would be left of it": "nichts bliebe davon übrig",
     "the stroke leaves the plane; turn the view or choose another plane": (
         "der Strich verlässt die Ebene; die Ansicht drehen oder eine andere Ebene wählen"

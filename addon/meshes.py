@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import replace
 from typing import Any
 
@@ -17,6 +16,7 @@ from .creases import rim_creases
 from .outlines import Sketch, transformed
 from .placing import Collections, Transaction
 from .strokes import selected
+from .written import by_hand, sign
 
 LINK = "gridmesh_stroke"
 """Custom property of a body without a link that says which stroke it was made from, and how it lies to that."""
@@ -145,7 +145,7 @@ def place(
             )
         for body, ob in zip(bodies, objects, strict=True):
             if body.sketch.stroke.key in before:
-                refresh(ob, in_space(body), crease_angle)
+                refresh(ob, in_space(body, frames.space(ob)), crease_angle)
                 if LINK in ob:
                     ob[LINK] = _link(body, frame(ob, _carrier_world(context, body.sketch)))
     _show(context, objects)
@@ -169,9 +169,20 @@ def localized(context: bpy.types.Context, sketches: list[Sketch], close_gaps: fl
     return found
 
 
-def in_space(body: Body) -> Body:
-    """Return the body with its vertices where its sketch is, and not in the plane of that."""
-    return replace(body, vertices=body.sketch.plane.world(body.vertices))
+def in_space(body: Body, matrix: np.ndarray | None = None) -> Body:
+    """Return the body with its vertices where its sketch is, and not in the plane of that; then moved by `matrix`.
+
+    Where that mirrors, the triangles are turned round, so that they still face outward.
+    """
+    vertices = body.sketch.plane.world(body.vertices)
+    if matrix is None:
+        return replace(body, vertices=vertices)
+    body = replace(body, vertices=frames.moved(vertices, matrix))
+    if np.linalg.det(matrix[:3, :3]) > 0:
+        return body
+    order = [0, 2, 1]
+    uv = np.asarray(body.uv).reshape(len(body.triangles), 3, 2)[:, order].reshape(np.shape(body.uv))
+    return replace(body, triangles=np.asarray(body.triangles)[:, order], uv=uv)
 
 
 def _carrier_world(context: bpy.types.Context, sketch: Sketch) -> np.ndarray:
@@ -225,38 +236,6 @@ def fill(mesh: bpy.types.Mesh, body: Body, crease_angle: float) -> None:
     layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
     mark_creases(mesh, body, crease_angle)
     sign(mesh)
-
-
-def sign(mesh: bpy.types.Mesh) -> None:
-    """Remember that the mesh, as it is, was made by GridMesh."""
-    mesh.gridmesh_made = digest(mesh)
-
-
-def by_hand(mesh: bpy.types.Mesh) -> bool:
-    """Whether the shape of a mesh is not what GridMesh has made of it."""
-    return mesh.gridmesh_made != digest(mesh)
-
-
-def digest(mesh: bpy.types.Mesh) -> str:
-    """Fingerprint of the vertices and faces of a mesh. Other data of it does not count."""
-    points = np.empty(len(mesh.vertices) * 3, np.float32)
-    mesh.vertices.foreach_get("co", points)
-    return fingerprint(points, corners_of(mesh), len(mesh.polygons))
-
-
-def corners_of(mesh: bpy.types.Mesh) -> np.ndarray:
-    """Vertex (int32) of each corner; as an attribute, which is many times as fast as from `loops`."""
-    corners = np.empty(len(mesh.loops), np.int32)
-    attribute = mesh.attributes.get(".corner_vert")
-    if attribute is not None:
-        attribute.data.foreach_get("value", corners)
-    return corners
-
-
-def fingerprint(points: np.ndarray, corners: np.ndarray, faces: int) -> str:
-    """Fingerprint of vertices (float32), corners (int32) and a number of faces; see `digest`."""
-    numbers = points.size, corners.size, faces, zlib.crc32(points.tobytes()), zlib.crc32(corners.tobytes())
-    return " ".join(map(str, numbers))
 
 
 def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import api, frames, meshes, profilecurve, strokes
+from .. import api, frames, meshes, profilecurve, strokes, written
 from ..live import engine, outlined
 from ..live.linework import nearest
 from ..live.outlined import OutlineError, radii
@@ -129,7 +129,7 @@ def _planned(decision: Decision, bodies: dict[str, shapes.Drawn], options: Any, 
 def _combined(decision: Decision, bodies: dict[str, shapes.Drawn]) -> _Plan:
     gridmesh = native("combine")
     ob, shape = bodies[decision.body].ob, bodies[decision.body].shape
-    if meshes.by_hand(ob.data):
+    if written.by_hand(ob.data):
         raise DrawError(f"'{ob.name}': {engine.BY_HAND}")
     parts = [shape.part]
     for stroke in decision.strokes:
@@ -295,7 +295,7 @@ def _split(
     widths = [nearest(ring, *known) for ring in rings]
     local = [frames.to_local(ob, ring) for ring in rings]
     middle = (local[0].min(axis=0) + local[0].max(axis=0)) / 2
-    place = np.array(ob.matrix_world)
+    place = frames.place(ob)
     place[:3, 3] = frames.moved(middle[None], place)[0]
     try:
         body = outlined.make(

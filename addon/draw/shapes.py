@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
+from .. import frames
 from ..live import engine
 from ..live.reading import LostError, sketch_of
 from ..outlines import Plane, Sketch, project
@@ -58,7 +59,7 @@ def read(context: bpy.types.Context) -> dict[str, Drawn]:
 
 def _drawn(ob: bpy.types.Object, sketch: Sketch) -> Drawn | None:
     """Lay a sketch into the world; None if it is squeezed to nothing there."""
-    matrix = np.array(ob.matrix_world)
+    matrix = frames.place(ob)
     own = sketch.plane
     x, y, _z = (matrix[:3, :3] @ axis for axis in own.axes)
     origin = matrix[:3, :3] @ own.origin + matrix[:3, 3]
@@ -73,7 +74,7 @@ def _drawn(ob: bpy.types.Object, sketch: Sketch) -> Drawn | None:
     points = np.empty(len(ob.data.vertices) * 3, np.float32)
     ob.data.vertices.foreach_get("co", points)
     some = points.reshape(-1, 3)[:: max(1, len(ob.data.vertices) // SAMPLES)]
-    surface = plane.local(some @ matrix[:3, :3].T + matrix[:3, 3])
+    surface = plane.local(frames.moved(some, np.array(ob.matrix_world)))
     thickness = float(np.abs(surface[:, 2]).max(initial=0.0))
     shape = Shape(ob.name, plane, sketch.outline @ to_world.T, holes, thickness, surface)
     return Drawn(ob, sketch, shape, np.linalg.inv(to_world), matrix)

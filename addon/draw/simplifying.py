@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from bpy.props import FloatProperty
 
-from .. import frames, meshes
+from .. import frames, written
 from ..live import engine, outlined
 from ..native import NativeError
 from ..operators.messages import counted, listed
@@ -87,7 +87,7 @@ def _simplified(context: bpy.types.Context, drawn: shapes.Drawn, tolerance: floa
     """
     ob, sketch = drawn.ob, drawn.sketch
     live = ob.gridmesh_live
-    if meshes.by_hand(ob.data):
+    if written.by_hand(ob.data):
         raise DrawError(engine.BY_HAND)
     strokes = [one.stroke for one in (sketch, *sketch.holes)]
     kept = [simplified(stroke.points, tolerance * sketch.size) for stroke in strokes]

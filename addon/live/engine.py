@@ -16,11 +16,11 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import frames, meshes, profilecurve
+from .. import frames, meshes, profilecurve, written
 from ..api import Body
 from ..native import NativeError
 from ..outlines import Plane, Sketch, Stroke
-from . import family, linework
+from . import applied, family, linework
 from .family import bodies
 from .reading import LostError, sketch_of
 from .solve import ALGORITHM, Lattice, LeftError, SolveError, digest, solve
@@ -46,6 +46,8 @@ class _State:
     """When it changed last; 0 when it was made in full."""
     failed: str = ""
     """Fingerprint of what has no body."""
+    points: np.ndarray | None = None
+    """What was drawn; see `applied.trace`."""
 
 
 BY_HAND = "its mesh was changed by hand; Rebuild from Outline gives that up, Freeze keeps it"
@@ -151,7 +153,7 @@ def remake(ob: bpy.types.Object) -> bool:
 def rebuild(ob: bpy.types.Object) -> None:
     """Make a body anew whose mesh was changed by hand, and let it follow again; the changes are lost."""
     if ob.mode == "OBJECT" and ob.is_editable and ob.data.is_editable:
-        meshes.sign(ob.data)
+        written.sign(ob.data)
     ob.gridmesh_live.digest = ""
     remake(ob)
     ob.gridmesh_live.enabled = True
@@ -174,7 +176,7 @@ def _hindrance(ob: bpy.types.Object) -> str:
         return "it is being edited; leave its mode"
     if ob.data.shape_keys is not None:
         return "it has shape keys, which fit no new mesh"
-    if meshes.by_hand(ob.data):
+    if written.by_hand(ob.data):
         return BY_HAND
     if ob.gridmesh_live.algorithm != ALGORITHM:
         return "it was made by another version of GridMesh; press Adopt to make it anew with this one"
@@ -200,6 +202,7 @@ def follow(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, full: bool =
 
 def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -> bool:
     live, uid = ob.gridmesh_live, ob.session_uid
+    applied.absorb(ob)
     reason = _hindrance(ob)
     if reason:
         _tell(live, reason)
@@ -212,12 +215,15 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
     _remember_frame(ob)
     frame = _frame(ob)
     mark, options = fingerprint(live, sketch), repr(_options(live))
-    state = _states.get(uid)
+    state, points = _states.get(uid), applied.trace(sketch)
+    settled = state is not None and live.digest and state.seen == live.digest and state.options == options
+    if settled and applied.alike(ob, state.points, points):  # a transform was applied
+        live.digest = state.seen = mark
     if live.digest == mark or (not full and state is not None and state.seen == mark):
         if state is None or state.seen != mark:
-            _states[uid] = _State(mark, options, frame)
+            _states[uid] = _State(mark, options, frame, points=points)
         elif live.digest == mark:
-            state.since = 0.0
+            state.since, state.frame = 0.0, frame
         if (live.stroke, live.count) != (sketch.stroke.index, sketch.stroke.count):
             live.stroke, live.count = sketch.stroke.index, sketch.stroke.count
         _tell(live, "")
@@ -228,7 +234,7 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
     lattice = None
     if not full and state is not None and state.options == options:
         lattice = state.lattice or _stored(live)
-    state = _states[uid] = _State(mark, options, frame, lattice, perf_counter())
+    state = _states[uid] = _State(mark, options, frame, lattice, perf_counter(), points=points)
     try:
         body, state.lattice = _solved(live, sketch, lattice)
     except (SolveError, NativeError) as error:
@@ -238,10 +244,11 @@ def _updated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, full: bool) -
         else:
             _wait()  # the best lattice may do, but to look for it would hold up the drag
         return False
-    write(ob, meshes.in_space(body), live.corner_angle, marks=lattice is None)
+    write(ob, meshes.in_space(body, frames.space(ob)), live.corner_angle, marks=lattice is None)
     slots = [state.lattice.edge_length, state.lattice.angle, *state.lattice.origin]
     live.lattice = [float(value) for value in slots]
     live.plane = [*state.lattice.plane.origin.tolist(), *state.lattice.plane.axes.ravel().tolist()]
+    applied.remember(ob, sketch)
     live.stroke, live.count = sketch.stroke.index, sketch.stroke.count
     live.digest = mark if lattice is None else ""
     state.since = 0.0 if lattice is None else perf_counter()
@@ -307,7 +314,7 @@ def write(ob: bpy.types.Object, body: Body, crease_angle: float, *, marks: bool)
     if len(mesh.vertices) != len(body.vertices) or len(mesh.loops) != triangles.size:
         meshes.refresh(ob, body, crease_angle)
         return
-    corners = meshes.corners_of(mesh)
+    corners = written.corners_of(mesh)
     if not np.array_equal(corners, triangles):
         meshes.refresh(ob, body, crease_angle)
         return
@@ -319,7 +326,8 @@ def write(ob: bpy.types.Object, body: Body, crease_angle: float, *, marks: bool)
     if marks:
         meshes.mark_creases(mesh, body, crease_angle)
     mesh.update()
-    mesh.gridmesh_made = meshes.fingerprint(points, corners, len(mesh.polygons))
+    mesh.gridmesh_made = written.fingerprint(points, corners, len(mesh.polygons))
+    written.keep(mesh.gridmesh_made, points)
 
 
 def _tell(live: Any, problem: str) -> None:

@@ -11,8 +11,8 @@ from typing import Any
 
 import bpy
 
-from .. import frames, strokes
-from . import engine, family, migration
+from .. import frames, strokes, written
+from . import applied, engine, family, migration
 
 _DRAWINGS = tuple(
     getattr(bpy.types, name)
@@ -46,13 +46,29 @@ def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
             arranged = True
     gone = family.miss()
     followers = family.known()
+    _take_over(followers, [ob for ob in sources if ob.data in drawings], [ob for ob, shaped in own if shaped])
     for ob in _concerned(followers, sources, drawings, own):
         engine.follow(ob, depsgraph)
     apart = any(frames.astray(ob) for ob in sources)
     for ob, _ in own:
         family.note_place(ob)
+        applied.note(ob)
+    for ob in sources:
+        applied.note(ob)
     if arranged or new or apart or gone:
         _mend_soon()
+
+
+def _take_over(
+    followers: list[bpy.types.Object], sources: list[bpy.types.Object], shaped: list[bpy.types.Object]
+) -> None:
+    """Keep bodies in place where transforms were applied to them, or to the drawings that carry them."""
+    with engine.resting():
+        for ob in shaped:
+            applied.absorb(ob)
+        for ob in followers:
+            if ob.gridmesh_live.enabled and ob.gridmesh_live.source in sources:
+                applied.reframe(ob)
 
 
 def _concerned(
@@ -95,15 +111,23 @@ def _before_undo(*_: Any) -> None:
 @bpy.app.handlers.persistent
 def _on_undo(*_: Any) -> None:
     """After a step back or forth strokes and bodies may be of different times."""
-    engine.forget()
     family.forget(everything=False)
     if not engine.awake():
+        engine.forget()
         return
+    bpy.context.evaluated_depsgraph_get()
+    with engine.resting():
+        for ob in family.known():
+            applied.absorb(ob)
+            applied.reframe(ob)
+    engine.forget()
     if bpy.app.background:
         family.mend()
     else:
         _mend_soon()
     engine.refresh()
+    for ob in family.bodies():
+        applied.look(ob)
 
 
 @bpy.app.handlers.persistent
@@ -111,15 +135,21 @@ def _on_load(*_: Any) -> None:
     """A file that was opened is left as it is until something is changed; one of 0.1.0 is brought into shape."""
     engine.forget()
     family.forget(everything=True)
+    applied.forget()
     migration.migrate()
+    if not family.nobody():
+        bpy.context.view_layer.update()  # nothing knows yet where it is
     for ob in family.bodies():
         family.claim(ob)
+        applied.look(ob)
 
 
 @bpy.app.handlers.persistent
 def _on_import(*_: Any) -> None:
     """Bodies may have been appended or linked, where there were none."""
     family.forget(everything=False)
+    for ob in family.bodies():
+        written.by_hand(ob.data)  # remembers the mesh
 
 
 @bpy.app.handlers.persistent

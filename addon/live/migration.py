@@ -9,7 +9,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from .. import frames, meshes
+from .. import frames, meshes, written
 from . import engine, family
 from .reading import LostError, sketch_of
 from .solve import ALGORITHM
@@ -42,7 +42,7 @@ def _migrate(ob: bpy.types.Object) -> bool:
     values = np.array(list(link.get("matrix", ())), float) if hasattr(link, "get") else np.zeros(0)
     place = values.reshape(4, 4) if values.size == 16 else np.array(ob.matrix_world)
     if not ob.data.gridmesh_made:
-        meshes.sign(ob.data)
+        written.sign(ob.data)
     live.plane = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]
     if meshes.LINK in ob:
         del ob[meshes.LINK]

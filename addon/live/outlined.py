@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import frames, meshes, placing
+from .. import frames, placing, written
 from ..outlines import Stroke
 from . import engine
 from .linework import LAYER, RADIUS, drawn, radii, write
@@ -52,7 +52,7 @@ def make(
             one.objects.link(ob)
             one.objects.link(source)
         frames.nest(source, ob, np.eye(4))
-        meshes.sign(ob.data)
+        written.sign(ob.data)
         stroke = Stroke(np.zeros((0, 3)), True, source.name, LAYER, 0, len(rings))
         frames.remember(ob, np.eye(4))
         engine.link(ob, stroke, source, options, follow=False)

@@ -78,6 +78,12 @@ class GridMeshLive(SketchOptions, ShapeOptions, bpy.types.PropertyGroup):
     """Edge length, angle and origin in the plane."""
     frame: FloatVectorProperty(size=16, options={"HIDDEN"})
     """Matrix from the space of the drawing to that of the body, by rows; see `frames`. All 0 in files of 0.1.0."""
+    space: FloatVectorProperty(size=16, options={"HIDDEN"})
+    """Matrix from the body's own space, that of its sketch, to that of the object, by rows. All 0: the identity."""
+    samples: FloatVectorProperty(size=24, options={"HIDDEN"})
+    """Some points of the sketch in the body's own space when the body was made last."""
+    carried: FloatVectorProperty(size=16, options={"HIDDEN"})
+    """Matrix from the body to its parent, then: where that is a drawing that is applied, Blender gives it another."""
     plane: FloatVectorProperty(size=12, options={"HIDDEN"})
     """Plane of the sketch in the body's space when the body was made last: its origin and its axes."""
     uid: IntProperty(options={"HIDDEN"})

@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty
 
-from .. import frames, meshes, profilecurve, wrapping
+from .. import frames, profilecurve, wrapping, written
 from ..strokes import selected
 from ..telling import told
 from ..translations import CONTEXT
@@ -162,7 +162,7 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
             column = layout.column()
             column.alert = True
             wrapping.label(column, context, told(live.problem, "interface"), icon="ERROR")
-        if live.problem == engine.BY_HAND and meshes.by_hand(active.data):
+        if live.problem == engine.BY_HAND and written.by_hand(active.data):
             layout.operator(OBJECT_OT_gridmesh_rebuild.bl_idname, icon="FILE_REFRESH")
         if live.algorithm != ALGORITHM:
             layout.operator(OBJECT_OT_gridmesh_adopt.bl_idname)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from drawings import activate, bean, check_body, grease_pencil, run_one, triangles, vertices
 
-from addon import frames, meshes
+from addon import frames, written
 from addon.live import engine
 
 pytestmark = pytest.mark.usefixtures("awake")
@@ -136,7 +136,7 @@ def test_colours_weights_and_materials_are_no_handwork(drawn):
     body.vertex_groups.new(name="Skin").add([1, 2], 1.0, "REPLACE")
     body.data.materials.append(bpy.data.materials.new("Skin"))
     body.data.shade_flat()
-    assert not meshes.by_hand(body.data)
+    assert not written.by_hand(body.data)
     reshape(drawing, 1.3)
     assert body.gridmesh_live.problem == ""
 
@@ -154,7 +154,7 @@ def test_undo_of_handwork_goes_on_following():
     bpy.ops.ed.undo()
     body = bpy.data.objects[name]
     assert body.gridmesh_live.problem == ""
-    assert not meshes.by_hand(body.data)
+    assert not written.by_hand(body.data)
     bpy.ops.ed.redo()
     body = bpy.data.objects[name]
     assert np.array_equal(vertices(body.data), changed)

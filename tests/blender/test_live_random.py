@@ -9,10 +9,21 @@ import resource
 import bpy
 import numpy as np
 import pytest
-from drawings import activate, at, bean, check_body, circle, grease_pencil, run, triangles, vertices
+from drawings import (
+    activate,
+    at,
+    bean,
+    check_body,
+    circle,
+    grease_pencil,
+    run,
+    triangles,
+    vertices,
+    world_vertices,
+)
 from mathutils import Matrix
 
-from addon import frames, meshes, profilecurve
+from addon import frames, meshes, profilecurve, written
 from addon.draw.gesture import pack
 from addon.live import engine, family
 from addon.live.reading import sketch_of
@@ -148,7 +159,7 @@ class Play:
         """Change a mesh by hand; or give up, or keep, what was changed."""
         body = self.one(self.bodies())
         activate(body)
-        if meshes.by_hand(body.data):
+        if written.by_hand(body.data):
             (
                 bpy.ops.object.gridmesh_rebuild
                 if self.random.random() < 0.7
@@ -164,6 +175,24 @@ class Play:
         engine.settle()
         body.hide_set(False)
 
+    def apply(self):
+        """Apply transforms, or set the origin, of a body, its drawing, or both: nothing may move."""
+        body = self.one(self.bodies())
+        source = body.gridmesh_live.source
+        chosen = self.one([[body], [body, source], [source]])
+        chosen = [ob for ob in chosen if ob is not None and ob.users_scene]
+        if not chosen:
+            return
+        activate(*chosen)
+        hands, place = written.by_hand(body.data), world_vertices(body)
+        if self.random.random() < 0.7:
+            bpy.ops.object.transform_apply(isolate_users=True)
+        elif body.data.users == 1:
+            bpy.ops.object.origin_set(type=self.one(["ORIGIN_GEOMETRY", "ORIGIN_CURSOR"]))
+        self.settle()
+        assert written.by_hand(body.data) == hands
+        assert np.abs(world_vertices(body) - place).max() < 1e-4
+
     def undo(self):
         bpy.ops.ed.undo()
 
@@ -177,7 +206,7 @@ class Play:
     KINDS = (
         *("edit", "edit", "edit", "edit", "edit", "transform", "transform", "transform", "transform"),
         *("undo", "undo", "undo", "undo", "redo", "redo", "redo", "duplicate", "duplicate", "hole", "across"),
-        *("curve", "parent", "delete", "hand", "hand", "hide", "reload"),
+        *("curve", "parent", "delete", "hand", "hand", "hide", "reload", "apply", "apply"),
     )
     HISTORY = ("undo", "redo")
 
@@ -219,7 +248,7 @@ class Play:
     # ------------------------------------------------------------------------------------------ what must be so
 
     def by_hand(self):
-        return {ob.name: vertices(ob.data).tobytes() for ob in self.bodies() if meshes.by_hand(ob.data)}
+        return {ob.name: vertices(ob.data).tobytes() for ob in self.bodies() if written.by_hand(ob.data)}
 
     def check(self):
         depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -244,7 +273,7 @@ class Play:
             assert live.problem == writer.gridmesh_live.problem
             return
         if live.problem == engine.BY_HAND:
-            assert meshes.by_hand(body.data)
+            assert written.by_hand(body.data)
             return
         if live.source is None:
             assert "gone" in live.problem
@@ -258,7 +287,7 @@ class Play:
         assert live.digest == engine.fingerprint(live, sketch)
         fresh, _ = solve(sketch, live.sketch_options(), live.body_options(), pen=live.pen)
         assert np.array_equal(fresh.triangles, triangles(body.data))
-        points = meshes.in_space(fresh).vertices
+        points = meshes.in_space(fresh, frames.space(body)).vertices
         assert np.abs(points - vertices(body.data)).max() < 1e-5 * sketch.size
         check_body(body, genus=len(sketch.holes))
 

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 from setting import (
     begin,
+    bodies,
     clover,
     fresh,
     grease_pencil,
@@ -19,6 +20,7 @@ from setting import (
     ring,
     stage,
     stroke,
+    tool,
     turn_view,
     whale,
 )
@@ -108,6 +110,51 @@ def first_body():
     yield from stage.key("Z", ctrl=True, shift=True)
     yield 0.8
     assert len(mesh_objects()) == 1, "redo did not bring it back"
+
+
+def first_newcomer():
+    """The scene that Blender starts with, and the tool: a body with two limbs and a hole in few actions, none undone."""
+    bpy.ops.wm.read_homefile(load_ui=False)
+    yield 1.0
+    actions = 0
+    yield from stage.move(*stage.middle())
+    yield from stage.key("NUMPAD_1")  # from the front
+    yield 0.5
+    yield from stage.key("X")  # away with the cube
+    yield from stage.key("RET")
+    actions += 3
+    assert "Cube" not in bpy.context.scene.objects, "the cube is still there"
+    yield from tool("gridmesh.draw")
+    actions += 1
+    x, y = stage.middle()
+    yield from stroke(ring((x, y), 130, 60, wobble=0.08))
+    limbs = [limb((x - 60, y - 60), 4.1, 190, 28), limb((x + 60, y - 60), 5.3, 190, 28)]
+    for k, path in enumerate(limbs):
+        yield from stroke(path, picture=f"newcomer_{k + 1}_limb")
+    yield from stroke(ring((x, y + 20), 40, 30), shift=True)
+    actions += 4
+    yield from stage.picture("newcomer_3_body")
+    (body,) = bodies()
+    mesh = body.data
+    assert len(mesh.vertices) - len(mesh.edges) + len(mesh.polygons) == 0, "there is no hole"
+    assert body.gridmesh_live.problem == ""
+    turn_view()
+    yield from stage.picture("newcomer_4_turned")
+    print(f"NEWCOMER {actions} actions", flush=True)
+    assert actions <= 10
+
+
+def limb(start, angle, length, half):
+    """Points in the window around a limb with a round end, which begins within a body."""
+    along = np.array([np.cos(angle), np.sin(angle)])
+    aside = np.array([-along[1], along[0]])
+    there = [start + along * d + aside * half for d in np.linspace(0, length, 12)]
+    turn = [
+        start + along * (length + half * np.sin(a)) + aside * half * np.cos(a)
+        for a in np.linspace(0.2, np.pi - 0.2, 8)
+    ]
+    back = [start + along * d - aside * half for d in np.linspace(length, 0, 12)]
+    return [tuple(map(float, point)) for point in (*there, *turn, *back)]
 
 
 def redo_panel():
@@ -276,4 +323,4 @@ def german():
         view.language = language
 
 
-SCENES = (install, first_body, redo_panel, update, menus, sprites, long_work, batch, german)
+SCENES = (install, first_body, first_newcomer, redo_panel, update, menus, sprites, long_work, batch, german)
