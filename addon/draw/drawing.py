@@ -164,7 +164,9 @@ def _make(
     read = strokes.read_grease_pencil(source, context.evaluated_depsgraph_get())
     sketches, failures, _ = api.sketches_of(read.strokes, close_gaps=1.0, holes=True)
     sketches = [sketch for sketch in sketches if sketch.stroke.index in wanted]
-    bodies, refused = api.build(sketches, {**options.sketch_options(), "least": False}, options.body_options())
+    bodies, refused = api.build(
+        sketches, {**options.sketch_options(), "least": False}, options.body_options()
+    )
     failures += refused
     if failures or not bodies:
         raise DrawError(failures[0].reason if failures else "the stroke encloses nothing")
