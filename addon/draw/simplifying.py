@@ -104,8 +104,8 @@ def _simplified(context: bpy.types.Context, drawn: shapes.Drawn, tolerance: floa
     to_layer = np.linalg.inv(frames.frame(ob) @ frames.layer_matrix(layer))
     gone = [stroke.index for stroke in strokes]
     stay = [index for index in range(sketch.stroke.count) if index not in gone]
-    written = [frames.moved(ring, to_layer) for ring in rings]
-    outlined.write(layer.current_frame().drawing, gone, written, widths)
+    rewritten = [frames.moved(ring, to_layer) for ring in rings]
+    outlined.write(layer.current_frame().drawing, gone, rewritten, widths)
     live.stroke, live.count = len(stay), len(stay) + len(rings)
     context.view_layer.update()
     engine.remake(ob)
