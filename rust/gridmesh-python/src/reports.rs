@@ -26,6 +26,8 @@ pub fn sketch(py: Python<'_>, report: &SketchReport) -> PyResult<Py<PyDict>> {
     dict.set_item("across", report.across)?;
     dict.set_item("repaired", report.repaired)?;
     dict.set_item("mirror_error", report.mirror_error)?;
+    dict.set_item("bend", report.bend)?;
+    dict.set_item("scale_range", report.scale_range)?;
     dict.set_item("placements", report.placements)?;
     dict.set_item("seconds", seconds(py, &report.seconds)?)?;
     Ok(dict.unbind())

@@ -4,12 +4,12 @@ mod crease;
 mod field;
 mod height;
 mod inlets;
-mod laplace;
+pub(crate) mod laplace;
 mod polish;
 mod section;
 mod side;
 mod spread;
-mod topology;
+pub(crate) mod topology;
 
 use std::time::Instant;
 

@@ -4,6 +4,7 @@
 pub mod assemble;
 pub mod axial;
 pub mod band;
+pub mod bend;
 pub mod boundary;
 pub mod cells;
 pub mod combine;

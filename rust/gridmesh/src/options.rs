@@ -51,6 +51,16 @@ pub enum Mirror {
     },
 }
 
+/// Where a drawing should have more triangles than elsewhere.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Density {
+    /// In narrow parts.
+    Width,
+    /// At each input point so many times the triangles of elsewhere: the outline's numbers, then those of
+    /// the holes; a contour with no numbers has no wish.
+    PerPoint(Vec<Vec<f64>>),
+}
+
 /// Options of [`mesh_sketch`](crate::sketch::mesh_sketch).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SketchOptions {
@@ -86,6 +96,11 @@ pub struct SketchOptions {
     /// Search nodes spent on proving a boundary optimal whose first solution had conflicts, at most; a proof ends
     /// after 30 million states too, some seconds, whatever this number. Not beside `mirror`.
     pub proof_nodes: usize,
+    /// How far the lattice may bend with the drawing, 0 to 1; 0 is a straight lattice. Without effect
+    /// beside a given `angle` or `origin` and with `boundary` grown.
+    pub bend: f64,
+    /// The wish for more triangles in some parts; only with `bend` above 0.
+    pub density: Option<Density>,
     /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and is
     /// refused ([`Error::Inverted`]) where that inverts triangles.
     pub relax: bool,
@@ -110,6 +125,8 @@ impl Default for SketchOptions {
             mirror: None,
             self_crossing: SelfCrossing::Error,
             proof_nodes: 0,
+            bend: 0.0,
+            density: None,
             relax: true,
             least: true,
         }
@@ -166,6 +183,26 @@ impl SketchOptions {
         }
         if !(0.0..=100.0).contains(&self.closeness) {
             return refuse("closeness", self.closeness, "0 to 100");
+        }
+        if !(0.0..=1.0).contains(&self.bend) {
+            return refuse("bend", self.bend, "0 to 1");
+        }
+        if self.density.is_some() && self.bend == 0.0 {
+            return Err(Error::InvalidOption {
+                name: "density",
+                value: "given, with bend 0".to_owned(),
+                allowed: "none, or bend above 0: triangles of a straight lattice have one size",
+            });
+        }
+        if let Some(Density::PerPoint(given)) = &self.density {
+            if let Some(&wrong) = given.iter().flatten().find(|&&d| !(d.is_finite() && d > 0.0)) {
+                return refuse("density", wrong, "finite numbers above 0");
+            }
+            if self.self_crossing == SelfCrossing::Union {
+                let value = "numbers, beside self_crossing union".to_owned();
+                let allowed = "'width' or none: the outer outline has other points";
+                return Err(Error::InvalidOption { name: "density", value, allowed });
+            }
         }
         if let Some(angle) = self.angle
             && !angle.is_finite()
@@ -247,6 +284,10 @@ pub struct SketchReport {
     /// Greatest distance of a vertex from the mirror image of its partner, in edges: rounding, if the
     /// drawing is exactly symmetric. `None` without `mirror`.
     pub mirror_error: Option<f64>,
+    /// How far the lattice is bent: 0 if it is straight.
+    pub bend: f64,
+    /// Largest over smallest local edge length of the lattice; 1 if it is straight.
+    pub scale_range: f64,
     /// Lattice placements tried before one gave a valid patch.
     pub placements: usize,
     /// Seconds spent in each stage.

@@ -53,6 +53,8 @@ class _Options(TypedDict, total=False):
     mirror: _Axis | Literal["auto"] | None
     self_crossing: Literal["error", "union"]
     proof_nodes: int
+    bend: float
+    density: Literal["width"] | npt.ArrayLike | Sequence[npt.ArrayLike] | None
     relax: bool
     least: bool
     depth: float
@@ -138,6 +140,8 @@ def mesh_sketch(
     mirror: _Axis | Literal["auto"] | None = None,
     self_crossing: Literal["error", "union"] = "error",
     proof_nodes: int = 0,
+    bend: float = 0.0,
+    density: Literal["width"] | npt.ArrayLike | Sequence[npt.ArrayLike] | None = None,
     relax: bool = True,
     least: bool = True,
     progress: _Progress | None = None,
