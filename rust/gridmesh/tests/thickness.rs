@@ -21,7 +21,7 @@ fn bar(length: f64, width: f64) -> Vec<DVec2> {
 /// A round palm with fingers of these widths, between 30 and 150 degrees.
 fn hand(widths: &[f64]) -> Vec<DVec2> {
     let mut points: Vec<DVec2> = (0..60)
-        .map(|k| DVec2::from_angle(PI / 6.0 - 0.05 - PI * 4.0 / 3.0 * (1.0 - k as f64 / 60.0)))
+        .map(|k| DVec2::from_angle(PI * 5.0 / 6.0 + 0.25 + (PI * 4.0 / 3.0 - 0.5) * k as f64 / 59.0))
         .collect();
     for (k, &width) in widths.iter().enumerate() {
         let along = DVec2::from_angle(PI * (1.0 + 4.0 * k as f64 / (widths.len() - 1) as f64) / 6.0);
