@@ -117,8 +117,16 @@ impl Job<'_> {
         let along = symmetry.is_some().then_some(0.0);
         let options =
             SketchOptions { edge_length: None, triangles: None, angle: along, ..self.options.clone() };
-        let job =
-            Job { contours, symmetry, options: &options, area, centre, seconds: Vec::new(), placements: 0 };
+        let job = Job {
+            contours,
+            symmetry,
+            options: &options,
+            area,
+            centre,
+            thinnest: None,
+            seconds: Vec::new(),
+            placements: 0,
+        };
         let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick).first() else {
             return Ok(None);
         };
