@@ -52,7 +52,7 @@ def _classes() -> tuple[type, ...]:
     from .draw import operator as draw
     from .live import properties as live
     from .live import ui as live_ui
-    from .operators import cut, fill, strokes
+    from .operators import cut, fill, refine, strokes
     from .overlay import ui as overlay
 
     return (
@@ -60,6 +60,7 @@ def _classes() -> tuple[type, ...]:
         *fill.classes,
         *cut.classes,
         *overlay.classes,
+        *refine.classes,
         *live.classes,
         *draw.classes,
         *ui.classes,
@@ -71,9 +72,10 @@ def _parts() -> tuple[ModuleType, ...]:
     """Modules with more to register than classes; their `unregister` may be called at any time."""
     from . import cli, frames, keys, preset_files, translations, ui
     from .draw import cut_tool
-    from .draw import operator as draw
+    from .draw import tool as draw
     from .live import engine, handlers, watch
     from .live import properties as live
+    from .operators import refine
     from .overlay import ui as overlay
 
     return (
@@ -86,6 +88,7 @@ def _parts() -> tuple[ModuleType, ...]:
         engine,
         handlers,
         watch,
+        refine,
         draw,
         cut_tool,
         keys,

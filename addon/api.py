@@ -218,10 +218,15 @@ def fill(
         return [str(error)] * len(indices)
 
 
+AUTOMATIC = 4000.0
+"""What a drawing gets about where the number of triangles is left to it."""
+
+
 def expected_triangles(sketches: list[Sketch], sketch_options: dict[str, Any]) -> float:
     """About how many flat triangles these sketches get with these options."""
     if (triangles := sketch_options.get("triangles")) is not None:
-        return float(triangles) * len(sketches)
+        each = AUTOMATIC if triangles == "auto" else float(triangles)
+        return each * len(sketches)
     length = sketch_options["edge_length"]
     if length <= 0:
         return 0.0

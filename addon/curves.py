@@ -38,8 +38,9 @@ def strokes_of(
     if failure:
         return [], [Failure(f"'{ob.name}'", failure)], []
     if not lines:
-        what = "text" if ob.type == "FONT" else "splines of two or more points"
-        return [], [], [f"'{ob.name}' has no {what}; draw a closed shape in it"]
+        if ob.type == "FONT":
+            return [], [], [f"'{ob.name}' has no text; draw a closed shape in it"]
+        return [], [], [f"'{ob.name}' has no splines of two or more points; draw a closed shape in it"]
     with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name later
         points = frames.moved(points, np.array(ob.matrix_world) if frame is None else frame)
     splines = _splines(ob, lines)

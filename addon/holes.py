@@ -114,11 +114,11 @@ def all_of(edges: list[OpenEdge], max_edges: int) -> Found:
 
 
 def _nothing(alone: list[int], *, anything: bool) -> Problem:
+    if len(alone) == 1:
+        return Problem(f"vertex {alone[0]} lies on no hole; select a vertex or an edge of one", tuple(alone))
     if alone:
-        which = (
-            f"vertex {alone[0]} lies on no" if len(alone) == 1 else "none of the selected vertices lies on a"
-        )
-        return Problem(f"{which} hole; select a vertex or an edge of one", tuple(alone))
+        reason = "none of the selected vertices lies on a hole; select a vertex or an edge of one"
+        return Problem(reason, tuple(alone))
     if anything:
         return Problem("what is selected has no open edges; select an edge or a vertex of a hole")
     return Problem("nothing is selected; select the edges around a hole, or a vertex or an edge of it")
@@ -150,15 +150,13 @@ def _resolve(
     if close_chains and len(part) >= 2:
         found.add(Hole(tuple(_chain(part, ends[0])), closing=True))
         return
-    more = "turn on Close Chains" if len(part) >= 2 else "select at least three edges"
-    found.problems.append(
-        Problem(
-            f"the selected edges do not close: they end at vertices {ends[0]} and {ends[1]}; "
-            f"select the missing edges or {more}",
-            tuple(ends),
-            tuple(edge.ends for edge in part),
-        )
+    way_out = (
+        "select the missing edges or turn on Close Chains"
+        if len(part) >= 2
+        else "select the missing edges or select at least three edges"
     )
+    reason = f"the selected edges do not close: they end at vertices {ends[0]} and {ends[1]}; {way_out}"
+    found.problems.append(Problem(reason, tuple(ends), tuple(edge.ends for edge in part)))
 
 
 def _whole(part: list[OpenEdge], graph: _Graph, found: Found, trouble: list[Problem]) -> None:
@@ -191,10 +189,11 @@ def _add_visible(hole: Hole, graph: _Graph, found: Found) -> None:
 
 def _barred(edges: list[Edge]) -> Problem:
     a, b = edges[0]
-    more = f" (and {len(edges) - 1} more)" if len(edges) > 1 else ""
+    which = f"the edge between vertices {a} and {b}"
+    if len(edges) > 1:
+        which = f"{which} (and {len(edges) - 1} more)"
     return Problem(
-        f"the edge between vertices {a} and {b}{more} has faces on both sides; "
-        "select open edges only, or delete the faces that the patch shall replace",
+        f"{which} has faces on both sides; select open edges only, or delete the faces that the patch shall replace",
         edges=tuple(edges),
     )
 

@@ -58,8 +58,9 @@ class Stroke:
     @property
     def label(self) -> str:
         """How messages name the stroke, counted from 1."""
-        layer = f", layer '{self.layer}'" if self.layer else ""
-        return f"'{self.source}'{layer}, stroke {self.index + 1} of {self.count}"
+        if self.layer:
+            return f"'{self.source}', layer '{self.layer}', stroke {self.index + 1} of {self.count}"
+        return f"'{self.source}', stroke {self.index + 1} of {self.count}"
 
     @property
     def key(self) -> tuple[str, str, int]:
@@ -176,11 +177,10 @@ def prepare(stroke: Stroke, close_gaps: float) -> Sketch:
     distinct = len(np.unique(points[:64], axis=0))
     if distinct < 3:
         distinct = len(np.unique(points, axis=0))
+    if distinct == 1:
+        raise StrokeError("it has 1 distinct point, at least 3 are needed; draw a closed shape")
     if distinct < 3:
-        plural = "" if distinct == 1 else "s"
-        raise StrokeError(
-            f"it has {distinct} distinct point{plural}, at least 3 are needed; draw a closed shape"
-        )
+        raise StrokeError(f"it has {distinct} distinct points, at least 3 are needed; draw a closed shape")
     extent = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
     if extent < SMALLEST:
         raise StrokeError(f"it is {extent:.3g} across, at least {SMALLEST:g} is needed; scale it up")

@@ -19,14 +19,22 @@ class SketchOptions:
     resolution: EnumProperty(
         name="Resolution",
         description="How the fineness of the mesh is given",
+        # The numbers are those that files have stored.
         items=[
-            ("TRIANGLES", "Triangles", "Give the number of triangles of each side"),
-            ("EDGE_LENGTH", "Edge Length", "Give the length of the edges"),
+            (
+                "AUTO",
+                "Automatic",
+                "As many triangles as put four across the thinnest limb: 1000 to 20000 of each side",
+                "NONE",
+                2,
+            ),
+            ("TRIANGLES", "Triangles", "Give the number of triangles of each side", "NONE", 0),
+            ("EDGE_LENGTH", "Edge Length", "Give the length of the edges", "NONE", 1),
         ],
-        default="TRIANGLES",
+        default="AUTO",
     )
     triangles: IntProperty(
-        name="Triangles",
+        name="Triangles of Each Side",
         description="Number of triangles of one side, reached within 10%; a body has two sides",
         default=2000,
         soft_min=50,
@@ -107,11 +115,22 @@ class SketchOptions:
         default=False,
     )
 
+    def settle_resolution(self) -> None:
+        """Who gives a number of triangles, and does not say how the fineness is given, means that number."""
+        given = getattr(self, "properties", self)  # an operator's
+        if given.is_property_set("triangles") and not given.is_property_set("resolution"):
+            self.resolution = "TRIANGLES"
+
     def sketch_options(self) -> dict[str, Any]:
         """Keyword arguments of `gridmesh.mesh_sketch`."""
-        by_length = self.resolution == "EDGE_LENGTH"
+        self.settle_resolution()
+        fineness = {
+            "AUTO": {"triangles": "auto"},
+            "TRIANGLES": {"triangles": self.triangles},
+            "EDGE_LENGTH": {"edge_length": self.edge_length},
+        }
         return {
-            ("edge_length" if by_length else "triangles"): self.edge_length if by_length else self.triangles,
+            **fineness[self.resolution],
             "boundary": self.boundary.lower(),
             "max_distance": self.max_distance,
             "angle": self.angle if self.angle_mode == "FIXED" else None,
@@ -124,7 +143,8 @@ class SketchOptions:
         """Draw the resolution, and the grid's options in a closed panel below."""
         column = layout.column()
         column.prop(self, "resolution")
-        column.prop(self, "edge_length" if self.resolution == "EDGE_LENGTH" else "triangles")
+        if self.resolution != "AUTO":
+            column.prop(self, "edge_length" if self.resolution == "EDGE_LENGTH" else "triangles")
         column.prop(self, "mirror")
         header, body = layout.panel(f"{self.bl_idname}_grid", default_closed=True)
         header.label(text="Grid")
@@ -186,12 +206,23 @@ class ShapeOptions:
         soft_min=0.0,
         soft_max=3.0,
     )
+    uv_layout: EnumProperty(
+        name="UV Layout",
+        description="Where the back of a body lies in the UV map",
+        items=[
+            ("APART", "Side by Side", "Beside the front: each side can be painted by itself"),
+            ("SHARED", "On Top of Each Other", "Where the front is: what is painted on one side is on both"),
+        ],
+        default="APART",
+    )
 
     def body_options(self) -> dict[str, Any] | None:
         """Keyword arguments of `gridmesh.inflate`; None for a flat sheet."""
         if self.shape == "SHEET":
             return None
         options: dict[str, Any] = {"profile": self.profile.lower(), "corner_angle": self.corner_angle}
+        if self.uv_layout == "SHARED":
+            options["uv"] = "shared"
         if self.use_sides:
             options |= {"front": self.depth_front, "back": self.depth_back}
         else:
@@ -215,6 +246,7 @@ class ShapeOptions:
             column.prop(self, "depth_back")
         else:
             column.prop(self, "depth")
+        layout.prop(self, "uv_layout")
 
 
 class CurveOption(ShapeOptions):

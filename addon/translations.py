@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the interface says in other languages.
+"""What the interface says in other languages: labels, names and tooltips here, messages in `german_messages`.
 
 A language is a dictionary from the English text. Blender takes what it finds here, and English for the rest; a test
 holds every language to be complete.
@@ -10,6 +10,8 @@ from __future__ import annotations
 import inspect
 
 import bpy
+
+from .german_messages import MESSAGES as GERMAN_MESSAGES
 
 GERMAN = {
     # Operators and the sidebar
@@ -22,10 +24,12 @@ GERMAN = {
     "Make a smooth body with a clean triangle mesh from each closed stroke": (
         "Aus jedem geschlossenen Strich einen glatten Körper mit sauberem Dreiecksnetz machen"
     ),
-    "Esc: Stop": "Esc: Abbrechen",
+    "Enough Triangles": "Genug Dreiecke",
+    "Give the selected live bodies as many triangles as put four across their thinnest limbs": (
+        "Den ausgewählten Körpern so viele Dreiecke geben, dass vier quer über ihre dünnsten Glieder gehen"
+    ),
     "Presets": "Vorgaben",
     "Select a drawing or a curve": "Zeichnung oder Kurve auswählen",
-    "Stopping": "Wird abgebrochen",
     "Strokes to Mesh": "Striche zu Mesh",
     "Update Bodies": "Körper aktualisieren",
     # Presets
@@ -124,6 +128,9 @@ GERMAN = {
     "Max Distance": "Größter Abstand",
     "Mesh the drawing as it is": "Die Zeichnung vernetzen, wie sie ist",
     "Mirror": "Spiegeln",
+    "As many triangles as put four across the thinnest limb: 1000 to 20000 of each side": (
+        "So viele Dreiecke, dass vier quer über das dünnste Glied gehen: 1000 bis 20000 jeder Seite"
+    ),
     "Number of triangles of one side, reached within 10%; a body has two sides": (
         "Zahl der Dreiecke einer Seite, auf 10% genau; ein Körper hat zwei Seiten"
     ),
@@ -132,6 +139,7 @@ GERMAN = {
     "Resolution": "Auflösung",
     "Take the best of several angles": "Den besten von mehreren Winkeln nehmen",
     "Triangles": "Dreiecke",
+    "Triangles of Each Side": "Dreiecke jeder Seite",
     "Whether the mesh of a symmetric drawing is its own mirror image": (
         "Ob das Netz einer symmetrischen Zeichnung sein eigenes Spiegelbild ist"
     ),
@@ -141,6 +149,16 @@ GERMAN = {
         "Ein glatter geschlossener Körper, nach beiden Seiten der Zeichenebene aufgeblasen"
     ),
     "Back": "Rückseite",
+    "Beside the front: each side can be painted by itself": (
+        "Neben der Vorderseite: jede Seite lässt sich für sich bemalen"
+    ),
+    "On Top of Each Other": "Aufeinander",
+    "Side by Side": "Nebeneinander",
+    "UV Layout": "UV-Anordnung",
+    "Where the back of a body lies in the UV map": "Wo die Rückseite eines Körpers in der UV-Karte liegt",
+    "Where the front is: what is painted on one side is on both": (
+        "Auf der Vorderseite: was auf eine Seite gemalt wird, ist auf beiden"
+    ),
     "Body": "Körper",
     "Cross-section of the body": "Querschnitt des Körpers",
     "Depth": "Tiefe",
@@ -209,15 +227,6 @@ GERMAN = {
     "Across the Y axis, through the 3D cursor": "Quer zur Y-Achse, durch den 3D-Cursor",
     "Across the Z axis, through the 3D cursor": "Quer zur Z-Achse, durch den 3D-Cursor",
     "Cursor": "Cursor",
-    "Draw the outline of a body; across a body's outline to extend or trim it, with Shift to make a hole": (
-        "Den Umriss eines Körpers zeichnen; über einen Umriss hinweg, um ihn zu erweitern oder zu beschneiden, mit "
-        "Umschalt für ein Loch"
-    ),
-    "Draw an outline, get a body.\nBegin inside a body and cross its outline to extend it, outside to trim it; "
-    "Shift makes a hole": (
-        "Einen Umriss zeichnen, und es wird ein Körper daraus.\nIn einem Körper beginnen und über seinen Umriss "
-        "hinaus zeichnen, um ihn zu erweitern, von außen, um ihn zu beschneiden; Umschalt macht ein Loch"
-    ),
     "Facing the view, through the 3D cursor": "Der Ansicht zugewandt, durch den 3D-Cursor",
     "GridMesh Draw": "GridMesh zeichnen",
     "GridMesh Cut": "GridMesh schneiden",
@@ -227,21 +236,89 @@ GERMAN = {
     "How much the pressure of the pen drives the depth of the body": (
         "Wie sehr der Druck des Stifts die Tiefe des Körpers bestimmt"
     ),
-    "Make a hole in the body under the stroke, or trim it": (
-        "Ein Loch in den Körper unter dem Strich machen, oder ihn beschneiden"
-    ),
     "Plane": "Ebene",
     "Plane of the 3D cursor's X and Y": "Ebene von X und Y des 3D-Cursors",
-    "Subtract": "Abziehen",
     "Surface": "Fläche",
     "Tangent to the surface where the stroke begins; facing the view beside surfaces": (
         "Tangential zur Fläche, wo der Strich beginnt; neben Flächen der Ansicht zugewandt"
     ),
     "View": "Ansicht",
-    "Where the stroke lies": "Wo der Strich liegt",
     "X Axis": "X-Achse",
     "Y Axis": "Y-Achse",
     "Z Axis": "Z-Achse",
+    # What a stroke does
+    "A body of its own though it meets another one, whose child it becomes": (
+        "Ein eigener Körper, obwohl er einen anderen berührt, dessen Kind er wird"
+    ),
+    "A new body, whatever the stroke meets": ("Ein neuer Körper, was immer der Strich berührt"),
+    "Action": ("Aktion"),
+    "Add Part": ("Teil hinzufügen"),
+    "Add the stroke to a body": ("Den Strich zu einem Körper hinzufügen"),
+    "Add to the body that the stroke meets; others that it reaches in the same plane join in": (
+        "Zu dem Körper hinzufügen, den der Strich berührt; andere, die er in derselben Ebene erreicht, werden mit ihm eins"
+    ),
+    "As the stroke lies: across an outline it extends the body, elsewhere it is a new one": (
+        "Wie der Strich liegt: über einen Umriss hinweg erweitert er den Körper, sonst wird er ein neuer"
+    ),
+    "Draw Body": ("Körper zeichnen"),
+    "Draw an outline, get a body.\nAcross the outline of a body it extends that; Shift takes away. A click selects": (
+        "Einen Umriss zeichnen, und es wird ein Körper daraus.\nÜber den Umriss eines Körpers hinweg erweitert er diesen; Umschalt nimmt weg. Ein Klick wählt aus"
+    ),
+    "Draw the mirror image too, across an upright line through the active live body or the 3D cursor": (
+        "Auch das Spiegelbild zeichnen, an einer senkrechten Linie durch den aktiven lebenden Körper oder den 3D-Cursor"
+    ),
+    "Draw the outline of a body, or across the outline of one to extend it; Shift takes away": (
+        "Den Umriss eines Körpers zeichnen, oder über den eines anderen hinweg, um ihn zu erweitern; Umschalt nimmt weg"
+    ),
+    "Draw, Click: Select": ("Zeichnen, Klick: Auswählen"),
+    "Esc, Right Click: Leave": ("Esc, Rechtsklick: Verwerfen"),
+    "Extend": ("Erweitern"),
+    "Extend Body": ("Körper erweitern"),
+    "Factor": ("Faktor"),
+    "Hole": ("Loch"),
+    "Hole in": ("Loch in"),
+    "How far the outline may move, in parts of its size": (
+        "Wie weit der Umriss sich verschieben darf, in Teilen seiner Größe"
+    ),
+    "How far the stroke stays behind, in pixels": ("Wie weit der Strich zurückbleibt, in Pixeln"),
+    "How slowly the stroke follows": ("Wie langsam der Strich folgt"),
+    "Leave fewer points of the outlines of the selected live bodies, so that they are easier to edit": (
+        "Von den Umrissen der ausgewählten lebenden Körper weniger Punkte übrig lassen, damit sie leichter zu bearbeiten sind"
+    ),
+    "Let the stroke follow the mouse at a distance, which smooths it": (
+        "Den Strich der Maus in einem Abstand folgen lassen, was ihn glättet"
+    ),
+    "Make Hole": ("Loch machen"),
+    "Make a body of the stroke that belongs to another one": (
+        "Aus dem Strich einen Körper machen, der zu einem anderen gehört"
+    ),
+    "Make a hole in a body": ("Ein Loch in einen Körper machen"),
+    "Make a hole in the body that the stroke lies in": (
+        "Ein Loch in den Körper machen, in dem der Strich liegt"
+    ),
+    "Make a new body of the stroke": ("Aus dem Strich einen neuen Körper machen"),
+    "Mirror Stroke": ("Strich spiegeln"),
+    "New Bodies": ("Neue Körper"),
+    "New Body": ("Neuer Körper"),
+    "Nothing": ("Nichts"),
+    "P: Part": ("P: Teil"),
+    "Part": ("Teil"),
+    "Part of": ("Teil von"),
+    "Radius": ("Radius"),
+    "Shift, Ctrl: Take Away": ("Umschalt, Strg: Wegnehmen"),
+    "Simplify Outline": ("Umriss vereinfachen"),
+    "Stabilize Stroke": ("Strich stabilisieren"),
+    "Take Away": ("Wegnehmen"),
+    "Take away from the body that the stroke meets": ("Von dem Körper wegnehmen, den der Strich berührt"),
+    "Take the stroke away from a body": ("Den Strich von einem Körper wegnehmen"),
+    "Tolerance": ("Toleranz"),
+    "Trim": ("Beschneiden"),
+    "Trim Body": ("Körper beschneiden"),
+    "What the stroke does": ("Was der Strich tut"),
+    "Where the stroke lies; facing the view, it takes the plane of the body that it meets": (
+        "Wo der Strich liegt; der Ansicht zugewandt nimmt er die Ebene des Körpers, den er berührt"
+    ),
+    "X: Mirror": ("X: Spiegeln"),
     # The curve of the profile
     "A dome with a brim": "Eine Kuppel mit Krempe",
     "A straight line, which leaves the profile as it is": "Eine Gerade, die das Profil lässt, wie es ist",
@@ -404,14 +481,17 @@ GERMAN = {
 CONTEXT = "GridMesh"
 """Of the names of options."""
 
-LANGUAGES: dict[str, dict[str, str]] = {"de_DE": GERMAN}
+LANGUAGES: dict[str, dict[str, str]] = {"de_DE": GERMAN | GERMAN_MESSAGES}
 
 
 def table() -> dict[str, dict[tuple[str, str], str]]:
     """Translations as Blender wants them: operators' names have a context of their own, and so have our options."""
     return {
         locale: {
-            (context, text): said for text, said in texts.items() for context in ("*", "Operator", CONTEXT)
+            (context, text): said
+            for text, said in texts.items()
+            for context in ("*", "Operator", CONTEXT)
+            if "{}" not in text  # templates are found by `telling`
         }
         for locale, texts in LANGUAGES.items()
     }

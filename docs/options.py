@@ -37,7 +37,8 @@ def page() -> str:
 
     parts = [HEAD]
     for cls in _classes():
-        if issubclass(cls, bpy.types.Operator):
+        # Those that are only called by another have its options.
+        if issubclass(cls, bpy.types.Operator) and "INTERNAL" not in getattr(cls, "bl_options", ()):
             group, name = cls.bl_idname.split(".")
             operator = getattr(getattr(bpy.ops, group), name)
             options = [

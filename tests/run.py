@@ -71,8 +71,7 @@ RUST_PARTS = {
         "-D",
         "warnings",
     ],
-    # Release, so that the wheel is built from the same compiled dependencies.
-    "cargo": ["cargo", "test", "--release", "--locked"],
+    "cargo": ["cargo", "test", "--profile", "checked", "--locked", "--features", "svg"],
     "doc": ["cargo", "doc", "--release", "--locked", "--no-deps"],
 }
 RUFF = ["addon", "docs", "tests", "rust/gridmesh-python"]

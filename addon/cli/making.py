@@ -155,6 +155,7 @@ def cut(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: 
                 edge_length=options.get("edge_length") or None,
                 gap=options.get("gap", 0.0),
                 smooth=smooth,
+                extend_ends=options.get("extend_ends", True),
             )
         except cutsweep.CutError as error:
             missed.append(f"'{ob.name}': {error}")

@@ -104,6 +104,7 @@ OPS: Mapping[str, Mapping[str, Param]] = {
         "edge_length": Param("number", "length of the edges along the cut; 0: as the mesh has them (0)"),
         "smooth": Param("choice", "shape of the caps (flat)", _SMOOTH),
         "gap": Param("number", "width of what is taken away (0)"),
+        "extend_ends": Param("switch", "the ends of the stroke are continued through everything (true)"),
         "close_gaps": Param("number", f"{_GAPS} (0.1)", least=0, most=1),
     },
 }

@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 
 from ..operators.cut import OBJECT_OT_gridmesh_cut
+from .tool import ICONS
 
 
 class GridMeshCutTool(bpy.types.WorkSpaceTool):
@@ -20,7 +21,7 @@ class GridMeshCutTool(bpy.types.WorkSpaceTool):
     bl_description = (
         "Cut the selected meshes.\nDrag across them, then click the side to keep; Enter keeps both"
     )
-    bl_icon = "ops.mesh.knife_tool"
+    bl_icon = str(ICONS / "gridmesh.cut")
     bl_cursor = "KNIFE"
     bl_keymap = (
         (

@@ -1,164 +1,225 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finished strokes into outlines, which stay as grease pencil objects, and bodies that follow them."""
+"""Carry out what was decided: outlines, which stay as grease pencil objects, and bodies that follow them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import bpy
 import numpy as np
 
-from .. import api, frames, meshes, strokes, written
+from .. import api, frames, meshes, profilecurve, strokes, written
 from ..live import engine, outlined
 from ..live.linework import nearest
 from ..live.outlined import OutlineError, radii
-from ..live.reading import LostError, sketch_of
 from ..native import native
-from ..outlines import Plane, Sketch, Stroke, StrokeError, prepare, project
-from .gesture import FEWEST, relation
-from .joining import absorb, adopt, join
+from ..outlines import Plane, Stroke, StrokeError, prepare
+from . import shapes
+from .decision import Decision, Part, united
+from .gesture import FEWEST
+from .joining import absorb, adopt, indices, same_layer
+from .memory import Memory
+from .pencil import layer_of, renumber
 
-SAME_PLANE = (0.999, 0.02)
-"""Cosine between normals, and distance in parts of the body's size, within which a stroke is in a body's plane."""
+NOTHING = "the stroke encloses nothing"
 
 
 class DrawError(ValueError):
     """A stroke was refused; nothing was changed. The message says why."""
 
 
-@dataclass(frozen=True)
-class Drawn:
-    """What a stroke has become."""
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """What becomes of a decision."""
 
-    action: str
-    """"new", "hole", "extend" or "trim"."""
-    bodies: list[bpy.types.Object]
+    decision: Decision
+    parts: list[Part]
+    """In the plane of the decision or, where a body is changed, in that body's."""
 
 
 @dataclass(frozen=True, eq=False)
-class _Target:
-    """A body that a stroke changes."""
+class _Ink:
+    """Where the pen was pressed how hard."""
 
-    ob: bpy.types.Object
-    sketch: Sketch
-    action: str
-    stroke: np.ndarray
-    """(n, 2) in the plane of the body's sketch, which is in the body's own space."""
+    points: np.ndarray
+    """(n, 3) in the world."""
+    pressures: np.ndarray
 
 
-def apply(
+def carry_out(
     context: bpy.types.Context,
-    plane: Plane,
-    points: np.ndarray,
-    pressures: np.ndarray,
+    memory: Memory,
+    decisions: list[Decision],
+    bodies: dict[str, shapes.Drawn],
     options: Any,
     *,
-    subtract: bool = False,
-    under: bpy.types.Object | None = None,
-) -> Drawn:
-    """Make a new body of a stroke, or change the one that it was drawn on.
+    apply_options: bool,
+) -> list[bpy.types.Object]:
+    """Make what was decided; return the bodies that are new or changed, the first decision's first.
 
-    points : (n, 2) in the plane. subtract : make a hole, or trim, instead of extending. under : the body that was
-    seen where the stroke began, which may be in another plane. options : what the operator was asked for.
+    bodies : as they were read for the decisions. options : for new bodies and, with `apply_options`, for those that
+    are changed; otherwise these keep their own.
 
     Raises
     ------
     DrawError
         If it has no body; then nothing is changed.
     """
-    if len(points) < FEWEST:
+    if len(memory.trace) < FEWEST:
         raise DrawError("the stroke is too short; drag to draw an outline")
-    world = plane.world(np.column_stack([points, np.zeros(len(points))]))
     try:
-        found = target(context, plane, world, subtract, under)
-        if found is not None:
-            return _changed(context, found, world, pressures, options)
-        if subtract:
-            raise DrawError("there is no body under the stroke; begin inside or beside one in the same plane")
-        return _new(context, plane, points, pressures, options)
-    except (native("combine").GridMeshError, OutlineError) as error:
-        raise DrawError(str(error)) from error
-
-
-def target(
-    context: bpy.types.Context,
-    plane: Plane,
-    world: np.ndarray,
-    subtract: bool,
-    under: bpy.types.Object | None,
-) -> _Target | None:
-    """Find the body that a stroke changes, and how: the one it begins in, or else has most points in."""
-    depsgraph = context.evaluated_depsgraph_get()
-    best: tuple[tuple[bool, int], _Target] | None = None
-    for ob in engine.bodies():
-        source = ob.gridmesh_live.source
-        if not ob.visible_get() or source is None or source.type != "GREASEPENCIL":
+        plans = [_planned(decision, bodies, options, apply_options) for decision in decisions]
+    except native("combine").GridMeshError as error:
+        raise _refused(error) from error
+    made: list[bpy.types.Object] = []
+    survivors: dict[str, str] = {}
+    for number, plan in enumerate(plans):
+        ink = _ink(memory, plan.decision)
+        if plan.decision.action in {"NEW", "PART"}:
+            for part in plan.parts:
+                made.append(_new(context, plan.decision, part, ink, options, plan.decision.body))
             continue
+        if number:
+            bodies = shapes.read(context)
+            plan = _again(plan, bodies, survivors)
+        made += _changed(context, plan, bodies, ink, options if apply_options else None)
+        survivors.update(dict.fromkeys(plan.decision.joined, plan.decision.body))
+    made = list(dict.fromkeys(made))
+    _select(context, made)
+    return made
+
+
+def _refused(error: Any) -> DrawError:
+    """Say of a stroke what the library says of an outline."""
+    if error.kind == "zero_area":
+        return DrawError(NOTHING)
+    return DrawError(_of_stroke(api.reason_of(error)))
+
+
+def _of_stroke(text: str) -> str:
+    return text.replace("the other outline", "the stroke").replace("the outline", "the stroke")
+
+
+def _ink(memory: Memory, decision: Decision) -> _Ink:
+    """Return where the pen went, and its mirror image: what is nearest counts."""
+    points = memory.trace.on(decision.plane)
+    if points is None:
+        raise DrawError("the stroke leaves the plane; turn the view or choose another plane")
+    both = np.concatenate([points, memory.mirror.image(decision.plane, points)])
+    world = decision.plane.world(np.column_stack([both, np.zeros(len(both))]))
+    return _Ink(world, np.tile(memory.trace.pressures, 2))
+
+
+def _planned(decision: Decision, bodies: dict[str, shapes.Drawn], options: Any, apply_options: bool) -> _Plan:
+    """Find out what outlines come of a decision, and whether they have a body."""
+    if decision.action in {"NEW", "PART"}:
+        parts = decision.parts()
+        if not parts:
+            raise DrawError(NOTHING)
+        refuse(parts, options)
+        return _Plan(decision, parts)
+    plan = _combined(decision, bodies)
+    drawn = bodies[decision.body]
+    flat = [(drawn.back(outline), [drawn.back(hole) for hole in holes]) for outline, holes in plan.parts]
+    refuse(flat, options if apply_options else drawn.ob.gridmesh_live)
+    return plan
+
+
+def _combined(decision: Decision, bodies: dict[str, shapes.Drawn]) -> _Plan:
+    gridmesh = native("combine")
+    ob, shape = bodies[decision.body].ob, bodies[decision.body].shape
+    if written.by_hand(ob.data):
+        raise DrawError(f"'{ob.name}': {engine.BY_HAND}")
+    parts = [shape.part]
+    for stroke in decision.strokes:
+        if decision.action == "EXTEND":
+            parts = united(parts[0], (stroke, []))
+        else:
+            parts = [
+                rest
+                for part in parts
+                for rest in gridmesh.combine(part[0], stroke, part[1], how="difference")
+            ]
+    for name in decision.joined:
+        parts = united(parts[0], bodies[name].shape.on(shape.plane))
+    if not parts:
+        raise DrawError("nothing would be left; delete the body instead")
+    return _Plan(decision, parts)
+
+
+def _again(plan: _Plan, bodies: dict[str, shapes.Drawn], survivors: dict[str, str]) -> _Plan:
+    """Lay a decision onto the bodies that are there after the one before."""
+    old = plan.decision
+    name = survivors.get(old.body, old.body)
+    plane = bodies[name].shape.plane
+    laid = [
+        plane.local(old.plane.world(np.column_stack([stroke, np.zeros(len(stroke))])))[:, :2]
+        for stroke in old.strokes
+    ]
+    joined = tuple(one for one in old.joined if one in bodies and one != name)
+    return _combined(replace(old, plane=plane, strokes=laid, body=name, joined=joined), bodies)
+
+
+def refuse(parts: list[Part], options: Any) -> None:
+    """Refuse what would have no body before anything is changed."""
+    gridmesh = native("mesh_sketch")
+    wanted = {**options.sketch_options(), "self_crossing": "union"}
+    for outline, holes in parts:
         try:
-            sketch = sketch_of(ob, depsgraph)
-            here = frames.plane_local(ob, plane)
-            stroke = sketch.plane.local(frames.to_local(ob, world))[:, :2]
-        except (LostError, np.linalg.LinAlgError):
-            continue  # without an outline, or scaled to nothing, there is nothing to draw on
-        own = sketch.plane
-        cosine, apart = SAME_PLANE
-        same = abs(own.axes[2] @ here.axes[2]) > cosine
-        same = same and abs(own.local(here.origin[None])[0, 2]) < apart * sketch.size
-        if not same and not (subtract and ob == under):
-            continue
-        holes = [project(hole, own)[:, :2] for hole in sketch.holes]
-        how = relation(sketch.outline, holes, stroke)
-        inside = _inside(sketch.outline, holes, stroke)
-        action = _action(how, begins_inside=bool(inside[0]), subtract=subtract)
-        if action is None:
-            continue
-        rank = bool(inside[0]), int(inside.sum())
-        if best is None or rank > best[0]:
-            best = rank, _Target(ob, sketch, action, stroke)
-    return None if best is None else best[1]
-
-
-def _action(how: str, *, begins_inside: bool, subtract: bool) -> str | None:
-    """What a stroke does to a drawing: one that begins inside extends it, one from outside trims it."""
-    if how == "inside":
-        return "hole" if subtract else None
-    if how == "across":
-        return "trim" if subtract or not begins_inside else "extend"
-    return None
-
-
-def _inside(outline: np.ndarray, holes: list[np.ndarray], points: np.ndarray) -> np.ndarray:
-    """Whether points (n, 2) lie inside a drawing, by the parity of crossings."""
-    odd = np.zeros(len(points), bool)
-    for ring in (outline, *holes):
-        a, b = ring, np.roll(ring, -1, axis=0)
-        spans = (a[None, :, 1] > points[:, 1, None]) != (b[None, :, 1] > points[:, 1, None])
-        rise = np.where(spans, b[None, :, 1] - a[None, :, 1], 1.0)
-        x = a[None, :, 0] + (points[:, 1, None] - a[None, :, 1]) * (b - a)[None, :, 0] / rise
-        odd ^= (np.count_nonzero(spans & (x > points[:, 0, None]), axis=1) % 2).astype(bool)
-    return odd
+            gridmesh.mesh_sketch(outline, holes, least=False, **wanted)
+        except gridmesh.GridMeshError as error:
+            raise _refused(error) from error
 
 
 def _new(
-    context: bpy.types.Context, plane: Plane, points: np.ndarray, pressures: np.ndarray, options: Any
-) -> Drawn:
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    context: bpy.types.Context, decision: Decision, part: Part, ink: _Ink, options: Any, parent: str
+) -> bpy.types.Object:
+    """Make a body of a part, with its outline."""
+    outline, holes = part
+    rings = [_world(decision.plane, ring) for ring in (outline, *holes)]
     options.use_union = True  # a hand's stroke crosses itself where it closes
-    world = plane.world(np.column_stack([points, np.zeros(len(points))]))
-    widths = radii(pressures, size)
+    mirror = options.mirror
+    if decision.symmetric and len(decision.strokes) > 1:
+        options.mirror = "AUTO"
     try:
-        sketch = prepare(Stroke(world, False, "", "", 0, 1, widths=widths), close_gaps=1.0)
-    except StrokeError as error:
-        raise DrawError(str(error)) from error
-    carried = nearest(sketch.outline, sketch.plane.local(world)[:, :2], widths)
-    body = outlined.make(context, [sketch.outline], [carried], sketch.plane.matrix, options)
-    _select(context, [body])
-    return Drawn("new", [body])
+        plane = prepare(Stroke(rings[0], True, "", "", 0, 1), close_gaps=1.0).plane
+        size = float(np.linalg.norm(np.ptp(outline, axis=0)))
+        widths = [radii(nearest(ring, ink.points, ink.pressures), size) for ring in rings]
+        body = outlined.make(
+            context, [plane.local(ring)[:, :2] for ring in rings], widths, plane.matrix, options
+        )
+    except (OutlineError, StrokeError) as error:
+        raise DrawError(_of_stroke(str(error))) from error
+    finally:
+        options.mirror = mirror
+    owner = bpy.data.objects.get(parent) if parent else None
+    if owner is not None:
+        _hang(context, body, owner)
+    return body
+
+
+def _hang(
+    context: bpy.types.Context,
+    body: bpy.types.Object,
+    parent: bpy.types.Object,
+    kind: str = "OBJECT",
+    bone: str = "",
+) -> None:
+    """Make a body the child of another object; it stays where it is."""
+    place = body.matrix_world.copy()
+    body.parent, body.parent_type, body.parent_bone = parent, kind, bone
+    context.view_layer.update()
+    body.matrix_world = place
+    context.view_layer.update()
+
+
+def _world(plane: Plane, points: np.ndarray) -> np.ndarray:
+    return plane.world(np.column_stack([points, np.zeros(len(points))]))
 
 
 def _make(
-    context: bpy.types.Context, source: bpy.types.Object, wanted: list[int], options: Any, gridmesh: Any
+    context: bpy.types.Context, source: bpy.types.Object, wanted: list[int], options: Any
 ) -> list[bpy.types.Object]:
     """Bodies of strokes of an outline object, linked to it."""
     read = strokes.read_grease_pencil(source, context.evaluated_depsgraph_get())
@@ -169,7 +230,7 @@ def _make(
     )
     failures += refused
     if failures or not bodies:
-        raise DrawError(failures[0].reason if failures else "the stroke encloses nothing")
+        raise DrawError(_of_stroke(failures[0].reason) if failures else NOTHING)
     made: list[bpy.types.Object] = []
     meshes.place(
         context, bodies, update=False, collection="SOURCE", crease_angle=options.corner_angle, made=made
@@ -185,107 +246,86 @@ def _make(
 
 
 def _changed(
-    context: bpy.types.Context, found: _Target, world: np.ndarray, pressures: np.ndarray, options: Any
-) -> Drawn:
-    """Unite the outline of a body with a stroke, or cut that from it."""
-    gridmesh = native("combine")
-    sketch, ob = found.sketch, found.ob
-    live = ob.gridmesh_live
-    if written.by_hand(ob.data):
-        raise DrawError(engine.BY_HAND)
-    holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
-    how = "union" if found.action == "extend" else "difference"
-    parts = gridmesh.combine(sketch.outline, found.stroke, holes, how=how)
-    if not parts:
-        raise DrawError("nothing would be left; delete the body instead")
-    source = live.source
-    own = frames.owned(ob)
-    others = [
-        other for other in engine.bodies() if other != ob and (frames.owned(other) or _beside(other, ob))
-    ]
-    taken: list[tuple[bpy.types.Object, Sketch]] = []
-    if found.action == "extend":
-        parts, taken = join(gridmesh, parts[0], ob, sketch.plane, others)
-    _try(gridmesh, parts, live)
-    layer = next(layer for layer in source.data.layers if layer.name == live.layer)
-    drawing = layer.current_frame().drawing
-    sketches = [sketch, *(one for _, one in taken)]
-    more = parts[1:] if own is not None else []  # each outline has a body of its own
-    parts = parts[:1] if own is not None else parts
-    bodies = [ob, *(_split(context, ob, sketch.plane, part, sketches, found, pressures) for part in more)]
-    rings = [ring for outline, inner in parts for ring in (outline, *inner)]
+    context: bpy.types.Context, plan: _Plan, bodies: dict[str, shapes.Drawn], ink: _Ink, options: Any
+) -> list[bpy.types.Object]:
+    """Give a body the outlines of a plan; what it has joined goes, what fell apart becomes bodies of their own.
+
+    options : taken over by the body; None to leave it its own.
+    """
+    drawn, taken = bodies[plan.decision.body], [bodies[name] for name in plan.decision.joined]
+    ob, live, plane = drawn.ob, drawn.ob.gridmesh_live, drawn.shape.plane
+    source, name = live.source, live.layer
+    if options is not None:
+        give(ob, options)
+    known = _inked([drawn, *taken], ink)
+    parts, made = plan.parts, [ob]
+    if frames.owned(ob) is not None:  # each outline has a body of its own
+        made += [_split(context, drawn, part, known) for part in parts[1:]]
+        parts = parts[:1]
+    rings = [_world(plane, ring) for outline, inner in parts for ring in (outline, *inner)]
     starts = np.cumsum([0, *(1 + len(inner) for _, inner in parts)])[:-1]
-    widths = [_carried(ring, sketches, found.stroke, pressures) for ring in rings]
-    to_layer = np.linalg.inv(frames.frame(ob) @ frames.layer_matrix(layer))
-    flat = [frames.moved(_flat(ring, sketch.plane), to_layer) for ring in rings]
-    here = [sketch, *(one for other, one in taken if _beside(other, ob))]
-    gone = [drawn.stroke.index for one in here for drawn in (one, *one.holes)]
-    kept = [index for index in range(sketch.stroke.count) if index not in gone]
+    widths = [nearest(ring, *known) for ring in rings]
+    layer = layer_of(source, name)
+    to_layer = np.linalg.inv(drawn.matrix @ frames.frame(ob) @ frames.layer_matrix(layer))
+    gone = [at for one in (drawn, *taken) if same_layer(one, drawn) for at in indices(one)]
     follow = live.enabled
-    children = absorb([other for other, _ in taken])
-    others = [other for other in engine.bodies() if other != ob and _beside(other, ob)]
-    outlined.write(drawing, gone, flat, widths)
-    count = len(kept) + len(rings)
-    for other in others:
-        if other.gridmesh_live.stroke in kept:
-            other.gridmesh_live.stroke = kept.index(other.gridmesh_live.stroke)
-        other.gridmesh_live.count = count
-    live.stroke, live.count = len(kept), count
+    orphans = absorb(taken, drawn)
+    kept = renumber(source, name, gone, len(rings))
+    flat = [frames.moved(ring, to_layer) for ring in rings]
+    outlined.write(layer_of(source, name).current_frame().drawing, gone, flat, widths)
+    live.stroke, live.count = kept, kept + len(rings)
     context.view_layer.update()
     engine.remake(ob)
-    adopt(ob, children)
+    adopt(ob, orphans)
     if len(parts) > 1:
-        wanted = [len(kept) + int(start) for start in starts[1:]]
-        bodies += _make(context, source, wanted, _Like(live), gridmesh)
-    for body in bodies[1:]:
+        made += _make(context, source, [kept + int(start) for start in starts[1:]], _Like(live))
+    for body in made[1:]:
         body.gridmesh_live.enabled = follow
         for material in ob.data.materials:
             body.data.materials.append(material)
-    _select(context, bodies)
-    return Drawn(found.action, bodies)
-
-
-def _beside(other: bpy.types.Object, ob: bpy.types.Object) -> bool:
-    """Whether two bodies are of one layer of one drawing."""
-    one, two = ob.gridmesh_live, other.gridmesh_live
-    return one.source == two.source and one.layer == two.layer
-
-
-def _flat(ring: np.ndarray, plane: Plane) -> np.ndarray:
-    return plane.world(np.column_stack([ring, np.zeros(len(ring))]))
+    return made
 
 
 def _split(
-    context: bpy.types.Context,
-    ob: bpy.types.Object,
-    plane: Plane,
-    part: tuple[np.ndarray, list[np.ndarray]],
-    sketches: list[Sketch],
-    found: _Target,
-    pressures: np.ndarray,
+    context: bpy.types.Context, drawn: shapes.Drawn, part: Part, known: tuple[np.ndarray, np.ndarray]
 ) -> bpy.types.Object:
     """Make a body of its own of a part that a body fell into."""
-    rings = [part[0], *part[1]]
-    widths = [_carried(ring, sketches, found.stroke, pressures) for ring in rings]
-    flat = [_flat(ring, plane) for ring in rings]
-    middle = (flat[0].min(axis=0) + flat[0].max(axis=0)) / 2
+    ob = drawn.ob
+    rings = [_world(drawn.shape.plane, ring) for ring in (part[0], *part[1])]
+    widths = [nearest(ring, *known) for ring in rings]
+    local = [frames.to_local(ob, ring) for ring in rings]
+    middle = (local[0].min(axis=0) + local[0].max(axis=0)) / 2
     place = frames.place(ob)
     place[:3, 3] = frames.moved(middle[None], place)[0]
-    body = outlined.make(
-        context,
-        [ring - middle for ring in flat],
-        widths,
-        place,
-        _Like(ob.gridmesh_live),
-        name=ob.name,
-        collections=list(ob.users_collection),
-    )
+    try:
+        body = outlined.make(
+            context,
+            [ring - middle for ring in local],
+            widths,
+            place,
+            _Like(ob.gridmesh_live),
+            name=ob.name,
+            collections=list(ob.users_collection),
+        )
+    except OutlineError as error:
+        raise DrawError(_of_stroke(str(error))) from error
     if ob.parent is not None:
-        world = body.matrix_world.copy()
-        body.parent, body.parent_type, body.parent_bone = ob.parent, ob.parent_type, ob.parent_bone
-        context.view_layer.update()
-        body.matrix_world = world
+        _hang(context, body, ob.parent, ob.parent_type, ob.parent_bone)
     return body
+
+
+def _inked(drawn: list[shapes.Drawn], ink: _Ink) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n, 3) of the world where the line has a known radius, and the radii: old strokes and the new one."""
+    points, values = [], []
+    for one in drawn:
+        for sketch in (one.sketch, *one.sketch.holes):
+            line = sketch.stroke
+            points.append(one.world(line.points))
+            widths = radii(np.ones(len(line.points)), one.sketch.size)
+            values.append(line.widths if line.widths is not None else widths)
+    points.append(ink.points)
+    values.append(radii(ink.pressures, drawn[0].sketch.size))
+    return np.concatenate(points), np.concatenate(values)
 
 
 class _Like:
@@ -299,30 +339,16 @@ class _Like:
         return getattr(self._live, name)
 
 
-def _try(gridmesh: Any, parts: list[Any], live: Any) -> None:
-    """Refuse what would have no body before anything is changed."""
-    for outline, holes in parts:
-        try:
-            gridmesh.mesh_sketch(outline, holes, least=False, **live.sketch_options())
-        except gridmesh.GridMeshError as error:
-            raise DrawError(api.reason_of(error)) from error
-
-
-def _carried(
-    ring: np.ndarray, sketches: list[Sketch], stroke: np.ndarray, pressures: np.ndarray
-) -> np.ndarray:
-    """Radius (n,) at each point of a new outline: of the drawn point that is nearest, old or new."""
-    sketch = sketches[0]
-    old = [drawn for one in sketches for drawn in (one, *one.holes)]
-    points = [sketch.plane.local(one.stroke.points)[:, :2] for one in old]
-    fallback = outlined.RADIUS * sketch.size
-    values = [
-        one.stroke.widths if one.stroke.widths is not None else np.full(len(one.stroke.points), fallback)
-        for one in old
-    ]
-    points.append(stroke)
-    values.append(radii(pressures, sketch.size))
-    return nearest(ring, np.concatenate(points), np.concatenate(values))
+def give(ob: bpy.types.Object, options: Any) -> None:
+    """Let a body take over options. Without a curve it keeps the one it has."""
+    live = ob.gridmesh_live
+    live.copy_options(options)
+    live.quiet = True
+    live.pen = options.pen
+    live.quiet = False
+    points = options.curve_points()
+    if points is not None:
+        profilecurve.put(ob, points)
 
 
 def _select(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> None:

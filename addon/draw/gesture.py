@@ -1,45 +1,80 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A stroke while it is being drawn, in its plane, and the grid inside it.
+"""A stroke while it is being drawn, and the grid inside it.
 
 numpy only, no bpy.
 """
 
 from __future__ import annotations
 
-import base64
-from typing import Any
-
 import numpy as np
 
+from ..density import automatic
 from ..native import native
-from ..outlines import area
+from ..outlines import Plane, area
+from .decision import Part
+from .trace import Trace, pack, unpack  # noqa: F401 (scripts take them from here)
 
 FEWEST = 8
-"""A stroke of fewer points is a click."""
+"""A stroke of fewer points is no outline."""
 
 SPACING = 2.0
 """Points nearer than this, in pixels, are one."""
 
 
+MOST = 4000
+"""Triangles of a preview whose number is left to the stroke."""
+
+
 class Gesture:
     """Points with pressure, and a lattice that stays while the stroke grows.
 
-    triangles : number wanted in the end. The preview has between one and two thirds and four thirds of it: its
-    edges are lengthened in steps as the stroke grows, so that the grid stands still in between.
+    triangles : number wanted in the end; None for what the stroke so far suggests, at most `MOST`. The preview has
+    between two thirds and four thirds of it: its edges are lengthened in steps as the stroke grows, so that the grid
+    stands still in between.
     """
 
-    def __init__(self, triangles: int, edge_length: float | None = None) -> None:
+    def __init__(self, triangles: int | None, edge_length: float | None = None) -> None:
         self.triangles, self.given = triangles, edge_length
+        self._suggested: tuple[float, int] | None = None
         self.edge_length = edge_length
         self._pixels: list[tuple[float, float]] = []
         self._points: list[tuple[float, float]] = []
+        self._rays: list[tuple[np.ndarray, np.ndarray]] = []
         self._pressures: list[float] = []
 
     def __len__(self) -> int:
         return len(self._points)
 
-    def add(self, pixel: tuple[float, float], point: np.ndarray, pressure: float) -> bool:
-        """Append a point of the plane that was seen at a pixel; return whether it is a new one."""
+    @property
+    def across(self) -> float:
+        """Extent in pixels."""
+        return float(np.ptp(self._pixels, axis=0).max()) if self._pixels else 0.0
+
+    def steadied(
+        self, pixel: tuple[float, float], radius: float, factor: float
+    ) -> tuple[float, float] | None:
+        """Where a stabilized stroke goes when the mouse is at a pixel; None while that is within the radius.
+
+        radius : pixels that the stroke stays behind. factor : from 0 to 1, how slowly it follows.
+        """
+        if not self._pixels:
+            return pixel
+        x, y = self._pixels[-1]
+        if (pixel[0] - x) ** 2 + (pixel[1] - y) ** 2 < radius**2:
+            return None
+        return x + (1 - factor) * (pixel[0] - x), y + (1 - factor) * (pixel[1] - y)
+
+    def add(
+        self,
+        pixel: tuple[float, float],
+        point: np.ndarray,
+        pressure: float,
+        ray: tuple[np.ndarray, np.ndarray] | None = None,
+    ) -> bool:
+        """Append a point of the plane that was seen at a pixel; return whether it is a new one.
+
+        ray : origin and direction of the sight line through the pixel.
+        """
         if self._pixels:
             x, y = self._pixels[-1]
             if (pixel[0] - x) ** 2 + (pixel[1] - y) ** 2 < SPACING**2:
@@ -47,6 +82,8 @@ class Gesture:
         self._pixels.append((float(pixel[0]), float(pixel[1])))
         self._points.append((float(point[0]), float(point[1])))
         self._pressures.append(pressure)
+        if ray is not None:
+            self._rays.append(ray)
         return True
 
     @property
@@ -59,22 +96,33 @@ class Gesture:
         """(n,) from 0 to 1."""
         return np.array(self._pressures, float)
 
-    def preview(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Vertices (v, 2) and triangles (t, 3) of the grid inside the stroke closed by a line; None if there is none."""
-        points = self.points
-        if len(points) < FEWEST:
+    def trace(self, plane: Plane, *, free: bool, perspective: bool) -> Trace:
+        """Return the stroke so far, as it was seen."""
+        origins, directions = (np.array(side, float).reshape(-1, 3) for side in zip(*self._rays, strict=True))
+        directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+        return Trace(plane, origins, directions, self.pressures, True, free, perspective)
+
+    def preview(self, part: Part | None = None) -> tuple[np.ndarray, np.ndarray] | None:
+        """Vertices (v, 2) and triangles (t, 3) of the grid inside the stroke closed by a line; None if there is none.
+
+        part : what is filled instead, for instance the stroke and its image.
+        """
+        outline, holes = part if part is not None else (self.points, [])
+        if len(outline) < FEWEST:
             return None
         gridmesh = native("mesh_sketch")
         if self.given is None:
-            ideal = np.sqrt(max(_extent(points), 1e-30) / self.triangles * 4 / np.sqrt(3))
+            extent = max(_extent(outline), 1e-30)
+            ideal = np.sqrt(extent / (self.triangles or self._automatic(outline, holes)) * 4 / np.sqrt(3))
             if self.edge_length is None or not 0.75 < ideal / self.edge_length < 1.35:
                 self.edge_length = float(ideal)
         try:
             patch = gridmesh.mesh_sketch(
-                points,
+                outline,
+                holes,
                 edge_length=self.edge_length,
                 angle=0.0,
-                origin=points[0],
+                origin=outline[0],
                 self_crossing="union",
                 least=False,
             )
@@ -82,52 +130,15 @@ class Gesture:
             return None  # too narrow for the grid, or it encloses nothing yet: the line alone is shown
         return patch.vertices, patch.triangles
 
+    def _automatic(self, outline: np.ndarray, holes: list[np.ndarray]) -> int:
+        """Number of triangles for the stroke so far, measured anew when it has grown by a twelfth."""
+        length = float(np.linalg.norm(np.diff(outline, axis=0), axis=1).sum())
+        if self._suggested is None or not 0.92 < length / self._suggested[0] < 1.08:
+            self._suggested = length, automatic(outline, holes, MOST)
+        return self._suggested[1]
+
 
 def _extent(points: np.ndarray) -> float:
     """Area that the stroke encloses, and at least a part of its box while it is a hook."""
     box = np.ptp(points, axis=0)
     return max(area(points), 0.2 * float(box[0] * box[1]))
-
-
-def pack(points: np.ndarray, pressures: np.ndarray) -> str:
-    """Stroke as text, for the operator's memory."""
-    table = np.column_stack([points, pressures]).astype("<f8")
-    return base64.b64encode(table.tobytes()).decode()
-
-
-def unpack(text: str) -> tuple[np.ndarray, np.ndarray]:
-    """Inverse of `pack`: points (n, 2) and pressures (n,).
-
-    Raises
-    ------
-    ValueError
-        If the text is no stroke.
-    """
-    table = np.frombuffer(base64.b64decode(text, validate=True), "<f8")
-    if len(table) % 3:
-        raise ValueError(f"{len(table)} numbers are no table of three columns")
-    table = table.reshape(-1, 3)
-    return table[:, :2].copy(), table[:, 2].copy()
-
-
-def relation(outline: np.ndarray, holes: list[np.ndarray], stroke: np.ndarray) -> str:
-    """How a stroke (n, 2) lies to a drawing: "apart", "inside", "around" or "across".
-
-    Holes count as outside. Raises what `gridmesh.combine` raises for strokes that enclose nothing.
-    """
-    gridmesh = native("combine")
-    own = area(outline) - sum(area(hole) for hole in holes)
-    rest = sum(_area(part) for part in gridmesh.combine(outline, stroke, holes, how="difference"))
-    both = sum(_area(part) for part in gridmesh.combine(outline, stroke, holes, how="union"))
-    drawn, taken = both - rest, own - rest
-    least = 1e-6 * max(own, drawn)
-    if taken <= least:
-        return "apart"
-    if rest <= least:
-        return "around"
-    return "inside" if drawn - taken <= least else "across"
-
-
-def _area(part: Any) -> float:
-    outline, holes = part
-    return area(outline) - sum(area(hole) for hole in holes)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`object.gridmesh_draw`, from press to release of the mouse button, and the tool in the toolbar that calls it.
+"""Operators that carry out a stroke: one for each thing that it can do, so that the undo history says what was done.
 
-Each stroke is a call of its own, so Blender's undo takes back one stroke at a time. What was drawn is kept in the
-operator's memory: the redo panel, and scripts, run the same stroke again without a window.
+`object.gridmesh_draw` decides which of them it is, in a window from press to release of the mouse button. It has no
+undo step of its own; the operator that it calls has one, and the redo panel.
 """
 
 from __future__ import annotations
@@ -11,81 +11,214 @@ from time import perf_counter
 from typing import Any
 
 import bpy
-import numpy as np
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..native import NativeError, native
 from ..operators.messages import counted
-from ..outlines import Plane
-from ..properties import CurveOption, SketchOptions
-from . import drawing, planes
-from .gesture import Gesture, pack, unpack
-from .preview import Preview
+from ..telling import told
+from . import drawing, memory, options, planes, shapes, simplifying
+from .decision import Decision, DecisionError, Wanted, decide
+from .interaction import Interaction, mirror_place
 
-_DONE = {"new": "Drew", "hole": "Made a hole in", "extend": "Extended", "trim": "Trimmed"}
+_DONE = {
+    "NEW": "Drew {}",
+    "EXTEND": "Extended {}",
+    "TRIM": "Trimmed {}",
+    "HOLE": "Made a hole in {}",
+    "PART": "Added a part: {}",
+}
 
 timing: list[float] = []
 """Seconds that the last mouse moves took, newest last."""
 
+_said: list[tuple[str, str]] = []
+"""What an operator had to say that was called by another, which says it in its place."""
+_called = False
 
-class OBJECT_OT_gridmesh_draw(SketchOptions, CurveOption, bpy.types.Operator):  # noqa: N801
-    """Draw the outline of a body; across a body's outline to extend or trim it, with Shift to make a hole"""  # noqa: D400
 
-    bl_idname = "object.gridmesh_draw"
-    bl_label = "GridMesh Draw"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+class _Action(options.StrokeOptions):
+    """Do something with a remembered stroke; done again from the redo panel, do what that says."""
 
-    plane: EnumProperty(
-        name="Plane", description="Where the stroke lies", items=planes.CHOICES, default="VIEW"
-    )
-    pen: FloatProperty(
-        name="Pen Width",
-        description="How much the pressure of the pen drives the depth of the body",
-        subtype="FACTOR",
-        default=0.0,
-        min=0.0,
-        max=1.0,
-    )
-    subtract: BoolProperty(
-        name="Subtract",
-        description="Make a hole in the body under the stroke, or trim it",
-        default=False,
-        options={"SKIP_SAVE"},
-    )
-    stroke: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
-    matrix: FloatVectorProperty(size=16, options={"HIDDEN", "SKIP_SAVE"})
-    under: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}  # noqa: RUF012
+
+    body: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    """Body that is changed."""
+    done: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    """What was done before, and to which body; empty the first time."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Ask for object mode."""
-        if context.mode == "OBJECT":
+        return _may_draw(cls, context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Decide, and carry it out."""
+        started = perf_counter()
+        try:
+            made, hint = self._carry_out(context)
+        except (drawing.DrawError, DecisionError, memory.ForgottenError, NativeError) as error:
+            return self._say("WARNING", str(error), {"CANCELLED"})
+        triangles = sum(len(ob.data.polygons) for ob in made)
+        done = _DONE[self.action].format(counted(len(made), "body"))
+        numbers = [f"{done}: {counted(triangles, 'triangle')}"]
+        if self.shape != "SHEET":
+            numbers.append(f"{triangles // 2} a side")
+        text = ", ".join([*numbers, f"{1000 * (perf_counter() - started):.0f} ms"])
+        return self._say("INFO", f"{text}\n{hint}" if hint else text, {"FINISHED"})
+
+    def _carry_out(self, context: bpy.types.Context) -> tuple[list[bpy.types.Object], str]:
+        if not self.stroke:
+            raise drawing.DrawError("nothing is drawn; use the GridMesh Draw tool in a 3D view")
+        remembered = _remembered(self, context)
+        bodies = shapes.read(context)
+        # What was decided while it was drawn is decided again; what is asked for in the panel is done as asked.
+        wanted = remembered.wanted if self.action == remembered.action else Wanted(self.action)
+        mirror = remembered.mirror if self.use_mirror else None
+        decisions = decide(remembered.trace, [drawn.shape for drawn in bodies.values()], wanted, mirror)
+        first = decisions[0]
+        again = self._options_of(first, bodies, remembered)
+        self.resolve_curve(context)
+        made = drawing.carry_out(context, remembered, decisions, bodies, self, apply_options=again)
+        remembered.action = remembered.action or first.action
+        self.action, self.body = first.action, first.body if first.action != "PART" else made[0].name
+        self.done = f"{first.action} {first.body}"
+        return made, first.hint
+
+    def _options_of(
+        self, first: Decision, bodies: dict[str, shapes.Drawn], remembered: memory.Memory
+    ) -> bool:
+        """Show the options of what is changed now, unless that is what was changed before; return whether it is."""
+        if self.done == f"{first.action} {first.body}":
             return True
-        cls.poll_message_set("Leave the mode: bodies are drawn in Object Mode")
+        if first.action not in {"NEW", "PART"}:
+            options.put(self, options.of_body(bodies[first.body].ob.gridmesh_live))
+        elif self.done:
+            options.put(self, remembered.options)
         return False
+
+    def _say(self, level: str, text: str, result: set[str]) -> set[str]:
+        text = text[:1].upper() + text[1:]
+        if _called:
+            _said.append((level, text))
+        else:
+            self.report({level}, told(text))
+        return result
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw the redo panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(self, "action")
+        layout.prop(self, "use_mirror")
+        if self.body:
+            layout.label(text=self.body, icon="OUTLINER_OB_MESH", translate=False)
+        self.draw_shape_options(layout)
+        layout.prop(self, "pen")
+        self.draw_sketch_options(layout)
+
+
+class OBJECT_OT_gridmesh_draw_body(_Action, bpy.types.Operator):  # noqa: N801
+    """Make a new body of the stroke"""  # noqa: D400 (the tooltip)
+
+    bl_idname = "object.gridmesh_draw_body"
+    bl_label = "Draw Body"
+
+
+class OBJECT_OT_gridmesh_extend_body(_Action, bpy.types.Operator):  # noqa: N801
+    """Add the stroke to a body"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_extend_body"
+    bl_label = "Extend Body"
+
+
+class OBJECT_OT_gridmesh_trim_body(_Action, bpy.types.Operator):  # noqa: N801
+    """Take the stroke away from a body"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_trim_body"
+    bl_label = "Trim Body"
+
+
+class OBJECT_OT_gridmesh_make_hole(_Action, bpy.types.Operator):  # noqa: N801
+    """Make a hole in a body"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_make_hole"
+    bl_label = "Make Hole"
+
+
+class OBJECT_OT_gridmesh_add_part(_Action, bpy.types.Operator):  # noqa: N801
+    """Make a body of the stroke that belongs to another one"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_add_part"
+    bl_label = "Add Part"
+
+
+OPERATORS = {
+    "NEW": OBJECT_OT_gridmesh_draw_body,
+    "EXTEND": OBJECT_OT_gridmesh_extend_body,
+    "TRIM": OBJECT_OT_gridmesh_trim_body,
+    "HOLE": OBJECT_OT_gridmesh_make_hole,
+    "PART": OBJECT_OT_gridmesh_add_part,
+}
+
+
+class OBJECT_OT_gridmesh_draw(options.StrokeOptions, bpy.types.Operator):  # noqa: N801
+    """Draw the outline of a body, or across the outline of one to extend it; Shift takes away"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_draw"
+    bl_label = "GridMesh Draw"
+    # Without undo and redo: what it calls has both.
+    bl_options = set()  # noqa: RUF012
+
+    plane: EnumProperty(
+        name="Plane",
+        description="Where the stroke lies; facing the view, it takes the plane of the body that it meets",
+        items=planes.CHOICES,
+        default="VIEW",
+    )
+    use_stabilizer: BoolProperty(
+        name="Stabilize Stroke",
+        description="Let the stroke follow the mouse at a distance, which smooths it",
+        default=False,
+    )
+    stabilizer_radius: IntProperty(
+        name="Radius",
+        description="How far the stroke stays behind, in pixels",
+        subtype="PIXEL",
+        default=35,
+        min=0,
+        soft_min=10,
+        soft_max=100,
+    )
+    stabilizer_factor: FloatProperty(
+        name="Factor",
+        description="How slowly the stroke follows",
+        subtype="FACTOR",
+        default=0.75,
+        min=0.0,
+        max=0.99,
+    )
+    subtract: BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+    """For scripts: take away, as with Shift."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Ask for object mode."""
+        return _may_draw(cls, context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Begin a stroke at the mouse."""
         if context.region_data is None:
-            self.report({"WARNING"}, "Draw in a 3D view")
+            self.report({"WARNING"}, told("Draw in a 3D view"))
             return {"CANCELLED"}
         try:
             native("mesh_sketch", "combine")
-            pixel = (event.mouse_region_x, event.mouse_region_y)
-            self._plane = planes.chosen(context, self.plane, pixel)
-        except (NativeError, planes.PlaneError) as error:
-            self.report({"ERROR"}, str(error))
+        except NativeError as error:
+            self.report({"ERROR"}, told(str(error)))
             return {"CANCELLED"}
-        self.subtract = event.shift
-        found = planes.body_under(context, pixel)
-        self.under = found.name if found is not None else ""
-        length = self.edge_length if self.resolution == "EDGE_LENGTH" else None
-        self._gesture = Gesture(self.triangles, length)
-        self._preview = Preview(context, self._plane, subtract=self.subtract)
-        self._button = event.type
+        self._interaction = Interaction(context, event, self)
         self._add(context, event)
         context.window_manager.modal_handler_add(self)
-        context.workspace.status_text_set("Release: make the body    Esc, Right Click: leave it")
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -93,116 +226,99 @@ class OBJECT_OT_gridmesh_draw(SketchOptions, CurveOption, bpy.types.Operator):  
         started = perf_counter()
         if event.type in {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}:
             if self._add(context, event) and event.type == "MOUSEMOVE":
-                self._preview.show(self._gesture.points, self._gesture.preview())
+                self._interaction.show(context, event)
                 timing.append(perf_counter() - started)
                 del timing[:-500]
             return {"RUNNING_MODAL"}
         if event.type in {"ESC", "RIGHTMOUSE"} or (event.type == "Z" and event.ctrl):
-            self._end(context)
+            self._interaction.end(context)
             return {"CANCELLED"}
-        if event.type == self._button and event.value == "RELEASE":
+        if event.type == self._interaction.button and event.value == "RELEASE":
             self._add(context, event)
-            self._end(context)
-            self.stroke = pack(self._gesture.points, self._gesture.pressures)
-            self.matrix = self._plane.matrix.ravel().tolist()
-            return self.execute(context)
+            self._interaction.end(context)
+            if self._interaction.is_click(context):
+                return self._interaction.click(context, event)
+            return self._finished(context, event)
+        if self._interaction.key(event):
+            self._interaction.show(context, event)
         return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the tool: a file is opened, or a window closed."""
-        self._end(context)
+        self._interaction.end(context)
 
     def _add(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-        pixel = (event.mouse_x - context.region.x, event.mouse_y - context.region.y)
-        point = planes.on_plane(context, self._plane, pixel)
-        # A mouse has no pressure: it draws at full width.
-        pressure = event.pressure if event.is_tablet else 1.0
-        return point is not None and self._gesture.add(pixel, point, pressure)
+        return self._interaction.add(context, event)
 
-    def _end(self, context: bpy.types.Context) -> None:
-        self._preview.remove()
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
+    def _finished(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        interaction = self._interaction
+        try:
+            decisions = interaction.decided(event)
+        except DecisionError as error:
+            return self._told("WARNING", str(error), {"CANCELLED"})
+        self.use_mirror = interaction.mirrored
+        return self._call(interaction.memory(event, options.of_operator(self)), decisions[0].action)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Make of the remembered stroke what it was drawn for."""
-        started = perf_counter()
+        """Draw a stroke that a script gives, as text of `gesture.pack` in the plane of a matrix."""
         if not self.stroke:
-            self.report({"WARNING"}, "Nothing is drawn; use the GridMesh Draw tool in a 3D view")
-            return {"CANCELLED"}
-        try:
-            points, pressures = unpack(self.stroke)
-        except ValueError as error:
-            self.report({"ERROR"}, f"The stroke cannot be read: {error}")
-            return {"CANCELLED"}
-        self.resolve_curve(context)
-        matrix = np.array(self.matrix, float).reshape(4, 4)
-        plane = Plane(matrix[:3, 3], matrix[:3, :3].T)
-        under = bpy.data.objects.get(self.under) if self.under else None
-        try:
-            drawn = drawing.apply(
-                context, plane, points, pressures, self, subtract=self.subtract, under=under
+            return self._told(
+                "WARNING", "nothing is drawn; use the GridMesh Draw tool in a 3D view", {"CANCELLED"}
             )
-        except (drawing.DrawError, NativeError) as error:
-            text = str(error)
-            self.report({"WARNING"}, text[:1].upper() + text[1:])
-            return {"CANCELLED"}
-        triangles = sum(len(ob.data.polygons) for ob in drawn.bodies)
-        what = counted(len(drawn.bodies), "body")
-        milliseconds = 1000 * (perf_counter() - started)
-        self.report({"INFO"}, f"{_DONE[drawn.action]} {what}: {triangles} triangles, {milliseconds:.0f} ms")
-        return {"FINISHED"}
+        try:
+            remembered = _remembered(self, context)
+            remembered.options = options.of_operator(self)
+            bodies = shapes.read(context)
+            mirror = remembered.mirror if self.use_mirror else None
+            found = [drawn.shape for drawn in bodies.values()]
+            decisions = decide(remembered.trace, found, remembered.wanted, mirror)
+        except (DecisionError, memory.ForgottenError, NativeError) as error:
+            return self._told("WARNING", str(error), {"CANCELLED"})
+        return self._call(remembered, decisions[0].action)
 
-    def draw(self, _context: bpy.types.Context) -> None:
-        """Draw the redo panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        layout.prop(self, "subtract")
-        self.draw_shape_options(layout)
-        layout.prop(self, "pen")
-        self.draw_sketch_options(layout)
+    def _call(self, remembered: memory.Memory, action: str) -> set[str]:
+        """Call the operator that does it, which makes the undo step."""
+        global _called
+        remembered.action = action
+        name = OPERATORS[action].bl_idname.removeprefix("object.")
+        _said.clear()
+        _called = True
+        try:
+            result = getattr(bpy.ops.object, name)(
+                "EXEC_DEFAULT",
+                True,
+                stroke=memory.keep(remembered),
+                action=action,
+                use_mirror=self.use_mirror,
+                **remembered.options,
+            )
+        finally:
+            _called = False
+        for level, text in _said:
+            self.report({level}, told(text))
+        return result
 
-
-class GridMeshDrawTool(bpy.types.WorkSpaceTool):
-    """Entry of the toolbar."""
-
-    bl_space_type = "VIEW_3D"
-    bl_context_mode = "OBJECT"
-    bl_idname = "gridmesh.draw"
-    bl_label = "GridMesh Draw"
-    bl_description = (
-        "Draw an outline, get a body.\nBegin inside a body and cross its outline to extend it, outside to trim it; "
-        "Shift makes a hole"
-    )
-    bl_icon = "ops.gpencil.draw.poly"
-    bl_cursor = "PAINT_CROSS"
-    bl_keymap = (
-        (OBJECT_OT_gridmesh_draw.bl_idname, {"type": "LEFTMOUSE", "value": "PRESS"}, None),
-        (OBJECT_OT_gridmesh_draw.bl_idname, {"type": "LEFTMOUSE", "value": "PRESS", "shift": True}, None),
-    )
-
-    @staticmethod
-    def draw_settings(_context: bpy.types.Context, layout: Any, tool: Any) -> None:
-        """Draw the options in the header."""
-        options = tool.operator_properties(OBJECT_OT_gridmesh_draw.bl_idname)
-        layout.prop(options, "plane")
-        layout.prop(options, "triangles")
-        layout.prop(options, "profile")
-        layout.prop(options, "curve")
-        layout.prop(options, "depth")
-        layout.prop(options, "pen")
+    def _told(self, level: str, text: str, result: set[str]) -> set[str]:
+        self.report({level}, told(text[:1].upper() + text[1:]))
+        return result
 
 
-def register() -> None:
-    """Add the tool to the toolbar."""
-    bpy.utils.register_tool(GridMeshDrawTool, after={"builtin.measure"}, separator=True)
+def _may_draw(cls: Any, context: bpy.types.Context) -> bool:
+    if context.mode == "OBJECT":
+        return True
+    cls.poll_message_set(told("Leave the mode: bodies are drawn in Object Mode", "tooltips"))
+    return False
 
 
-def unregister() -> None:
-    """Take it away."""
-    if hasattr(GridMeshDrawTool, "_bl_tool"):
-        bpy.utils.unregister_tool(GridMeshDrawTool)
+def _remembered(operator: Any, context: bpy.types.Context) -> memory.Memory:
+    """Return the stroke that an operator has the name of, or the points."""
+    known = memory.recall(operator.stroke)
+    if known is not None:
+        return known
+    wanted = Wanted(operator.action, subtract=getattr(operator, "subtract", False))
+    free = getattr(operator, "plane", "VIEW") == "VIEW"
+    place = mirror_place(context)
+    return memory.given(operator.stroke, list(operator.matrix), wanted, free=free, place=place)
 
 
-classes = (OBJECT_OT_gridmesh_draw,)
+classes = (OBJECT_OT_gridmesh_draw, *OPERATORS.values(), *simplifying.classes)

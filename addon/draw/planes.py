@@ -82,11 +82,3 @@ def on_plane(context: bpy.types.Context, plane: Plane, pixel: tuple[float, float
     if along < 0 and context.region_data.is_perspective:
         return None
     return plane.local(origin + along * direction)[:2]
-
-
-def body_under(context: bpy.types.Context, pixel: tuple[float, float]) -> bpy.types.Object | None:
-    """Return the object that is seen at a pixel."""
-    origin, direction = ray(context, pixel)
-    depsgraph = context.evaluated_depsgraph_get()
-    hit, *_, ob, _ = context.scene.ray_cast(depsgraph, Vector(origin), Vector(direction))
-    return ob.original if hit and ob is not None else None

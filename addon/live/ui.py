@@ -10,6 +10,7 @@ from bpy.props import EnumProperty
 
 from .. import frames, profilecurve, wrapping, written
 from ..strokes import selected
+from ..telling import told
 from ..translations import CONTEXT
 from . import engine, migration, watch
 from .solve import ALGORITHM
@@ -27,7 +28,7 @@ class _OnBodies:
         """Ask for a body."""
         if _chosen(context):
             return True
-        cls.poll_message_set("Select a body that is linked to its drawing")
+        cls.poll_message_set(told("Select a body that is linked to its drawing", "tooltips"))
         return False
 
 
@@ -63,7 +64,7 @@ class OBJECT_OT_gridmesh_adopt(_OnBodies, bpy.types.Operator):  # noqa: N801
             if live.problem:
                 problems.append(f"'{ob.name}': {live.problem}")
         if problems:
-            self.report({"WARNING"}, "\n".join(problems[:3]))
+            self.report({"WARNING"}, told("\n".join(problems[:3])))
         return {"FINISHED"}
 
 
@@ -82,7 +83,7 @@ class OBJECT_OT_gridmesh_rebuild(_OnBodies, bpy.types.Operator):  # noqa: N801
             if ob.gridmesh_live.problem:
                 problems.append(f"'{ob.name}': {ob.gridmesh_live.problem}")
         if problems:
-            self.report({"WARNING"}, "\n".join(problems[:3]))
+            self.report({"WARNING"}, told("\n".join(problems[:3])))
         return {"FINISHED"}
 
 
@@ -126,7 +127,7 @@ class OBJECT_OT_gridmesh_curve(_OnBodies, bpy.types.Operator):  # noqa: N801
             if ob.gridmesh_live.problem:
                 problems.append(f"'{ob.name}': {ob.gridmesh_live.problem}")
         if problems:
-            self.report({"WARNING"}, "\n".join(problems[:3]))
+            self.report({"WARNING"}, told("\n".join(problems[:3])))
         return {"FINISHED"}
 
 
@@ -156,11 +157,11 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
         active = context.view_layer.objects.active
         live = active.gridmesh_live
         if migration.message:
-            wrapping.label(layout, context, migration.message, icon="INFO")
+            wrapping.label(layout, context, told(migration.message, "interface"), icon="INFO")
         if live.problem and live.enabled:
             column = layout.column()
             column.alert = True
-            wrapping.label(column, context, live.problem, icon="ERROR")
+            wrapping.label(column, context, told(live.problem, "interface"), icon="ERROR")
         if live.problem == engine.BY_HAND and written.by_hand(active.data):
             layout.operator(OBJECT_OT_gridmesh_rebuild.bl_idname, icon="FILE_REFRESH")
         if live.algorithm != ALGORITHM:

@@ -22,6 +22,7 @@ from bpy.props import (
 from .. import api, cutline, cutsweep, cutting
 from ..cutobject import Caps, Target
 from ..progress import Pointer
+from ..telling import told
 from .cut_draw import DrawnCut
 from .messages import counted, listed
 
@@ -165,7 +166,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         ob = context.view_layer.objects.active
         if ob is not None and ob.type == "MESH" and context.mode in {"OBJECT", "EDIT_MESH"}:
             return True
-        cls.poll_message_set("Make a mesh the active object, in Object or Edit Mode")
+        cls.poll_message_set(told("Make a mesh the active object, in Object or Edit Mode", "tooltips"))
         return False
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -198,10 +199,10 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
                     together=self.pieces == "TOGETHER",
                 )
         except (api.NativeError, cutsweep.CutError) as error:
-            self.report({"ERROR"}, listed([str(error)]))
+            self.report({"ERROR"}, told(listed([str(error)])))
             return {"CANCELLED"}
         except api.CancelledError:
-            self.report({"WARNING"}, "Cancelled; nothing was cut")
+            self.report({"WARNING"}, told("Cancelled; nothing was cut"))
             return {"CANCELLED"}
         if context.mode == "OBJECT":
             for source in cutline.stroke_objects(context):
@@ -267,7 +268,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             numbers = layout.column(align=True)
             parts = self.result.split(", ")
             for at in range(0, len(parts), 2):  # on one line they would be cut off
-                numbers.label(text=", ".join(parts[at : at + 2]))
+                numbers.label(text=told(", ".join(parts[at : at + 2]), "interface"))
         layout.prop(self, "keep")
         if self.keep == "BOTH":
             layout.prop(self, "pieces")
@@ -352,25 +353,25 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             return sum(report[name] * n for report, n in zip(reports, sides, strict=True))
 
         triangles = sum(len(part.caps) for part in parts)
-        text = counted(len(parts), "piece")
+        texts = [counted(len(parts), "piece")]
         if triangles:
-            text += (
-                f", {counted(total('caps'), 'cap')}: {counted(triangles, 'triangle')}, "
-                f"{counted(total('cap_irregular'), 'irregular vertex')}"
-            )
             least = min(report["cap_min_angle"] for report in reports)
-            text += f", smallest angle {degrees(least):.0f}°"
-        self.result = f"{text}, {1000 * seconds:.0f} ms"
-        self.report({"INFO"}, self.result)
+            texts += [
+                f"{counted(total('caps'), 'cap')}: {counted(triangles, 'triangle')}",
+                counted(total("cap_irregular"), "irregular vertex"),
+                f"smallest angle {degrees(least):.0f}°",
+            ]
+        self.result = ", ".join([*texts, f"{1000 * seconds:.0f} ms"])
+        self.report({"INFO"}, told(self.result))
         if notes:
-            self.report({"INFO"}, listed(notes))
+            self.report({"INFO"}, told(listed(notes)))
         summed = {
             name: sum(report[name] for report in reports)
             for name in ("open_lines", "uncapped", "folded", "reduced_caps")
         }
         warnings = missed + warnings_of(summed, capped=self.use_cap)
         if warnings:
-            self.report({"WARNING"}, listed(warnings))
+            self.report({"WARNING"}, told(listed(warnings)))
 
 
 def cut_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -385,23 +386,31 @@ def warnings_of(report: dict[str, Any], *, capped: bool) -> list[str]:
     warnings = []
     if capped and report["open_lines"]:
         n = report["open_lines"]
+        lines = counted(n, "cut line")
+        to_do = "close the mesh first (Grid Patch Fill) to get one"
         warnings.append(
-            f"{counted(n, 'cut line')} {'ends' if n == 1 else 'end'} at the border of the mesh and "
-            f"{'has' if n == 1 else 'have'} no cap; close the mesh first (Grid Patch Fill) to get one"
+            f"{lines} ends at the border of the mesh and has no cap; {to_do}"
+            if n == 1
+            else f"{lines} end at the border of the mesh and have no cap; {to_do}"
         )
     if capped and report["uncapped"]:
         n = report["uncapped"]
         warnings.append(f"{counted(n, 'cut line')} left open, since nothing of the mesh lies inside")
     if report["reduced_caps"]:
         n = report["reduced_caps"]
+        caps = counted(n, "cap")
         warnings.append(
-            f"{counted(n, 'cap')} {'bulges' if n == 1 else 'bulge'} less than the model around, or "
-            f"{'lies' if n == 1 else 'lie'} flat, to stay inside it"
+            f"{caps} bulges less than the model around, or lies flat, to stay inside it"
+            if n == 1
+            else f"{caps} bulge less than the model around, or lie flat, to stay inside it"
         )
     if report["folded"]:
         n = report["folded"]
+        caps = counted(n, "cap")
         warnings.append(
-            f"{counted(n, 'cap')} {'is' if n == 1 else 'are'} folded, since the mesh cuts through itself there"
+            f"{caps} is folded, since the mesh cuts through itself there"
+            if n == 1
+            else f"{caps} are folded, since the mesh cuts through itself there"
         )
     return warnings
 

@@ -13,6 +13,7 @@ from mathutils import Vector
 from .. import api, cutline, cutsweep, cutting, drawnline
 from ..cutline import View
 from ..cutobject import Target
+from ..telling import told
 
 _NAVIGATION = {
     "MIDDLEMOUSE",
@@ -29,7 +30,7 @@ _MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
 _DRAW = "Drag: draw the cut    Ctrl: straight line    Back to the start: closed cut    Esc: cancel"
 _CHOOSE = "Click: keep this side    Enter or B: keep both    D: draw again    Esc: cancel"
 _NOTHING = "The line crosses no selected mesh    D: draw again    Esc: cancel"
-_AGAIN = "That was a click. " + _DRAW
+_AGAIN = f"That was a click. {_DRAW}"
 
 _LINE, _AHEAD, _KEPT = (1.0, 0.75, 0.2, 1.0), (1.0, 0.75, 0.2, 0.35), (0.3, 0.75, 1.0, 0.45)
 _BAND = 56.0
@@ -111,14 +112,14 @@ class DrawnCut:
     def begin_drawing(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for a line; the tool of the toolbar begins it at once, with the press that called it."""
         if context.area is None or context.area.type != "VIEW_3D":
-            self.report({"ERROR"}, "A cut is drawn in a 3D view; start it from there")
+            self.report({"ERROR"}, told("A cut is drawn in a 3D view; start it from there"))
             return {"CANCELLED"}
         self._area, self._window = context.area, context.window
         self._preview = Preview()
         self._preview.extended = self.extend_ends
         self._drawing = False
         context.window.cursor_modal_set("KNIFE")
-        context.workspace.status_text_set(_DRAW)
+        context.workspace.status_text_set(told(_DRAW, "interface"))
         context.window_manager.modal_handler_add(self)
         pressed = event.type == "LEFTMOUSE" and event.value == "PRESS"
         if pressed and context.region is not None and context.region.type == "WINDOW":
@@ -190,11 +191,11 @@ class DrawnCut:
         points = np.array(preview.points, float)
         if drawnline.length(points) < drawnline.SHORTEST:
             preview.points = []
-            context.workspace.status_text_set(_AGAIN)
+            context.workspace.status_text_set(told(_AGAIN, "interface"))
             return
         preview.line = drawnline.smoothed(points)
         crosses = self._find_ends(context)
-        context.workspace.status_text_set(_CHOOSE if crosses else _NOTHING)
+        context.workspace.status_text_set(told(_CHOOSE if crosses else _NOTHING, "interface"))
 
     def _find_ends(self, context: bpy.types.Context) -> bool:
         """Find how far the ends of the line are continued, over all meshes; false if it crosses none."""
@@ -237,7 +238,7 @@ class DrawnCut:
                 return self._cut(context, "BOTH")
             if event.type == "D":
                 preview.line, preview.left, preview.ends, preview.points = None, None, None, []
-                context.workspace.status_text_set(_DRAW)
+                context.workspace.status_text_set(told(_DRAW, "interface"))
                 self._area.tag_redraw()
         return {"RUNNING_MODAL"}
 

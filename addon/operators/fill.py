@@ -14,6 +14,7 @@ from .. import api
 from ..editmesh import Added, EditMesh, MeshError, Patch, Snapshot
 from ..holes import Found, Problem
 from ..progress import Pointer
+from ..telling import told
 from .messages import counted, listed
 
 
@@ -81,7 +82,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         """Ask for a mesh in Edit Mode."""
         if context.mode == "EDIT_MESH":
             return True
-        cls.poll_message_set("Edit a mesh and select the edges of a hole")
+        cls.poll_message_set(told("Edit a mesh and select the edges of a hole", "tooltips"))
         return False
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -90,7 +91,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         try:
             api.native("fill_holes")
         except api.NativeError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, told(str(error)))
             return {"CANCELLED"}
         jobs = [Job(EditMesh(ob)) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
         several = len(jobs) > 1
@@ -104,7 +105,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
                     part = pointer.part(index / len(jobs), (index + 1) / len(jobs))
                     job.fill(self.smooth.lower(), part, keep_hard=self.keep_hard)
         except api.CancelledError:
-            self.report({"WARNING"}, "Cancelled; nothing was filled")
+            self.report({"WARNING"}, told("Cancelled; nothing was filled"))
             return {"CANCELLED"}
         problems = [job.name(problem, several) for job in jobs for problem in job.found.problems]
         if not any(job.patches for job in jobs):
@@ -119,11 +120,11 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
             job.edited.point_out(job.found.problems)
         left = _left_open(jobs, self.max_edges)
         if problems:
-            self.report({"ERROR"}, listed(problems + left))
+            self.report({"ERROR"}, told(listed(problems + left)))
         elif left:
-            self.report({"WARNING"}, listed(left))
+            self.report({"WARNING"}, told(listed(left)))
         else:
-            self.report({"WARNING"}, "There are no holes")
+            self.report({"WARNING"}, told("There are no holes"))
         return {"CANCELLED"}
 
     def _tell(self, jobs: list[Job], problems: list[str], seconds: float) -> None:
@@ -138,7 +139,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
             f"Filled {counted(len(reports), 'hole')}: {made}, {counted(irregular, 'irregular vertex')}, "
             f"{1000 * seconds:.0f} ms"
         )
-        self.report({"INFO"}, self.result)
+        self.report({"INFO"}, told(self.result))
         left = _left_open(jobs, self.max_edges)
         torn = sum(job.added.torn for job in jobs)
         if torn:
@@ -149,11 +150,13 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         if broken:
             left.append(f"{counted(broken, 'layer')} of data not continued: a value at a hole is not finite")
         if left:
-            self.report({"INFO"}, listed(left))
+            self.report({"INFO"}, told(listed(left)))
         for warning in warnings_of(reports):
-            self.report({"WARNING"}, warning)
+            self.report({"WARNING"}, told(warning))
         if problems:
-            self.report({"WARNING"}, f"{counted(len(problems), 'selection')} left out:\n{listed(problems)}")
+            self.report(
+                {"WARNING"}, told(f"{counted(len(problems), 'selection')} left out:\n{listed(problems)}")
+            )
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
@@ -163,7 +166,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         if self.result:
             numbers = layout.column(align=True)
             for part in self.result.split(", ", 1):  # on one line they would be cut off
-                numbers.label(text=part)
+                numbers.label(text=told(part, "interface"))
         layout.prop(self, "holes")
         if self.holes == "ALL":
             layout.prop(self, "max_edges")
@@ -294,13 +297,19 @@ def warnings_of(reports: list[dict]) -> list[str]:
     warnings = []
     crossed = sum(report.get("self_intersections", 0) > 0 for report in reports)
     if crossed:
-        verb = "meets" if crossed == 1 else "meet"
-        warnings.append(f"{counted(crossed, 'patch')} {verb} the mesh or itself; check the shape")
+        patches = counted(crossed, "patch")
+        warnings.append(
+            f"{patches} meets the mesh or itself; check the shape"
+            if crossed == 1
+            else f"{patches} meet the mesh or itself; check the shape"
+        )
     conflicts = sum(report.get("winding_conflicts", 0) for report in reports)
     if conflicts:
+        faces = counted(conflicts, "face")
         warnings.append(
-            f"{counted(conflicts, 'face')} around the holes {'is' if conflicts == 1 else 'are'} turned the other "
-            "way than most; recalculate the normals"
+            f"{faces} around the holes is turned the other way than most; recalculate the normals"
+            if conflicts == 1
+            else f"{faces} around the holes are turned the other way than most; recalculate the normals"
         )
     smoothed = sum(report.get("creases", 0) > report.get("creases_kept", 0) for report in reports)
     if smoothed:

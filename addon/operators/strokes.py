@@ -4,15 +4,17 @@
 from __future__ import annotations
 
 from time import perf_counter
+from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
-from .. import api, frames, meshes, outlines, profilecurve, strokes
+from .. import api, entries, frames, meshes, outlines, profilecurve, strokes
+from ..density import measure
 from ..live import engine
 from ..progress import Pointer
 from ..properties import CurveOption, SketchOptions
-from ..translations import CONTEXT
+from ..telling import told
 from .messages import counted, listed
 from .waiting import Waiting
 
@@ -84,15 +86,9 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
     result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
-    def description(cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Say what the button does that is pointed at."""
-        if properties.is_property_set("update_existing") and properties.update_existing:
-            return bpy.app.translations.pgettext_tip(
-                "Make the bodies of the selected drawings, or the selected bodies, anew with these options; each stays "
-                "the same object. Strokes without a body get one",
-                CONTEXT,
-            )
-        return ""  # the class says it
+    def description(cls, _context: bpy.types.Context, properties: Any) -> str:
+        """Say what the entry does that is pointed at."""
+        return told(entries.described(properties), "tooltips")
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -101,7 +97,9 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
             return True
         if strokes.annotation(context.scene) is not None:
             return True
-        cls.poll_message_set("Select a grease pencil, curve or text object with closed strokes")
+        cls.poll_message_set(
+            told("Select a grease pencil, curve or text object with closed strokes", "tooltips")
+        )
         return False
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
@@ -152,7 +150,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
             with Pointer(context) as pointer:
                 bodies, refused = self.take_done() or api.build(sketches, *options, pointer)
         except api.CancelledError:
-            self.report({"WARNING"}, "Cancelled; nothing was made")
+            self.report({"WARNING"}, told("Cancelled; nothing was made"))
             return {"CANCELLED"}
         failures += refused
         if not bodies:
@@ -169,11 +167,11 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         )
         self._link(context, bodies, made)
         self.result = self._summary(bodies, perf_counter() - started)
-        self.report({"INFO"}, self.result)
+        self.report({"INFO"}, told(self.result))
         if notes:
-            self.report({"INFO"}, listed(notes))
+            self.report({"INFO"}, told(listed(notes)))
         for warning in _warnings(bodies, failures):
-            self.report({"WARNING"}, warning)
+            self.report({"WARNING"}, told(warning))
         return {"FINISHED"}
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -184,7 +182,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         if self.result:
             numbers = layout.column(align=True)
             for part in self.result.split(", ", 1):  # on one line they would be cut off
-                numbers.label(text=part)
+                numbers.label(text=told(part, "interface"))
         self.draw_shape_options(layout)
         self.draw_sketch_options(layout)
         header, body = layout.panel(f"{self.bl_idname}_strokes", default_closed=True)
@@ -235,7 +233,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
 
     def _refuse(self, *reasons: str) -> set[str]:
         """Report why nothing was made, and leave the scene alone."""
-        self.report({"ERROR"}, listed(reasons))
+        self.report({"ERROR"}, told(listed(reasons)))
         return {"CANCELLED"}
 
     def _summary(self, bodies: list[api.Body], seconds: float) -> str:
@@ -254,12 +252,9 @@ def _there_already(updated: int) -> list[str]:
     """Say that bodies were updated that had been made before."""
     if not updated:
         return []
-    what = (
-        "1 body was there already and was"
-        if updated == 1
-        else f"{updated} bodies were there already and were"
-    )
-    return [f"{what} updated; turn off Update Existing to make another"]
+    if updated == 1:
+        return ["1 body was there already and was updated; turn off Update Existing to make another"]
+    return [f"{updated} bodies were there already and were updated; turn off Update Existing to make another"]
 
 
 def _read_for(context: bpy.types.Context, bodies: list[bpy.types.Object]) -> strokes.Reading:
@@ -311,24 +306,42 @@ def _warnings(bodies: list[api.Body], failures: list[api.Failure]) -> list[str]:
     bent = [body.sketch for body in bodies if body.sketch.off_plane > outlines.NOTABLE * body.sketch.size]
     if bent:
         worst = max(bent, key=lambda sketch: sketch.off_plane / sketch.size)
-        more = f" (and {len(bent) - 1} more)" if len(bent) > 1 else ""
+        label = worst.stroke.label
+        if len(bent) > 1:
+            label = f"{label} (and {len(bent) - 1} more)"
         warnings.append(
-            f"{worst.stroke.label}{more}: not flat, up to {worst.off_plane:.3g} from its plane; "
-            "it was projected onto the plane"
+            f"{label}: not flat, up to {worst.off_plane:.3g} from its plane; it was projected onto the plane"
         )
     crossed = sum(body.report.get("self_intersections", 0) > 0 for body in bodies)
     if crossed:
-        cut = "cuts through itself" if crossed == 1 else "cut through themselves"
-        warnings.append(f"{counted(crossed, 'body')} {cut}; use a smaller depth or more triangles")
+        some = counted(crossed, "body")
+        warnings.append(
+            f"{some} cuts through itself; use a smaller depth or more triangles"
+            if crossed == 1
+            else f"{some} cut through themselves; use a smaller depth or more triangles"
+        )
     painted = sum(body.sketch.stroke.painted for body in bodies)
     if painted:
-        whose = "a stroke is" if painted == 1 else f"{painted} strokes are"
         warnings.append(
-            f"{whose[0].upper()}{whose[1:]} painted; bodies have the colour of the material instead"
+            "A stroke is painted; bodies have the colour of the material instead"
+            if painted == 1
+            else f"{painted} strokes are painted; bodies have the colour of the material instead"
         )
+    warnings += _thin(bodies)
     if failures:
         warnings.append(f"{counted(len(failures), 'stroke')} left out:\n{listed(map(str, failures))}")
     return warnings
+
+
+def _thin(bodies: list[api.Body]) -> list[str]:
+    """Name the body with the fewest triangles across a limb, if those are too few."""
+    found = []
+    for body in bodies:
+        sides = 1 if not body.report["watertight"] else 2
+        density = measure(body.sketch, len(body.triangles) // sides)
+        if density is not None and density.is_low:
+            found.append((density.across, body.sketch.stroke.label, density.text))
+    return [f"{label}: {text}" for _, label, text in sorted(found)[:1]]
 
 
 classes = (OBJECT_OT_gridmesh_from_strokes,)

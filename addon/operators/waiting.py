@@ -14,6 +14,7 @@ from typing import Any
 import bpy
 
 from .. import api
+from ..telling import told
 
 NAVIGATION = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION"}
 """Events that Blender still gets: the view can be turned meanwhile, and nothing else be done."""
@@ -84,8 +85,9 @@ class Waiting:
             if not work.is_alive():
                 self._leave(context)
                 return self.execute(context)
-            text = bpy.app.translations.pgettext_iface("Stopping" if work.stopped else "Esc: Stop")
-            context.workspace.status_text_set(f"{self.bl_label}: {100 * work.fraction:.0f}%   {text}")
+            far = f"{self.bl_label}: {100 * work.fraction:.0f}%"
+            text = f"{far}   Stopping" if work.stopped else f"{far}   Esc: Stop"
+            context.workspace.status_text_set(told(text, "interface"))
         return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:

@@ -47,11 +47,18 @@ class Quality:
     @property
     def text(self) -> str:
         """The numbers in a line, for people."""
-        least = "" if self.least is None else f" (least {self.least})"
-        angle = "" if self.worst_face < 0 else f", sharpest angle {np.degrees(self.worst_angle):.1f}°"
-        bad = f", {self.non_manifold} non-manifold places" if self.non_manifold else ""
-        plural = "vertex" if len(self.irregular) == 1 else "vertices"
-        return f"{self.faces} faces, {len(self.irregular)} irregular {plural}{least}{angle}{bad}"
+        irregular = len(self.irregular)
+        parts = [
+            f"{self.faces} faces",
+            "1 irregular vertex" if irregular == 1 else f"{irregular} irregular vertices",
+        ]
+        if self.least is not None:
+            parts[-1] = f"{parts[-1]} (least {self.least})"
+        if self.worst_face >= 0:
+            parts.append(f"sharpest angle {np.degrees(self.worst_angle):.1f}°")
+        if self.non_manifold:
+            parts.append(f"{self.non_manifold} non-manifold places")
+        return ", ".join(parts)
 
 
 def measure(vertices: np.ndarray, corners: np.ndarray, offsets: np.ndarray) -> Quality:

@@ -9,6 +9,9 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 
+from ..live import engine
+from ..operators import refine
+from ..telling import told
 from . import viewport
 
 SWITCH = "gridmesh_quality"
@@ -32,7 +35,7 @@ class MESH_OT_gridmesh_quality(bpy.types.Operator):  # noqa: N801
         """Ask for a mesh."""
         if viewport.shown(context):
             return True
-        cls.poll_message_set("Select a mesh object")
+        cls.poll_message_set(told("Select a mesh object", "tooltips"))
         return False
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -40,7 +43,10 @@ class MESH_OT_gridmesh_quality(bpy.types.Operator):  # noqa: N801
         depsgraph = context.evaluated_depsgraph_get()
         all_of_them = [(ob, viewport.of_object(ob, depsgraph)) for ob in viewport.shown(context)]
         for ob, found in all_of_them:
-            self.report({"INFO"}, f"'{ob.name}': {found.text}")
+            self.report({"INFO"}, told(f"'{ob.name}': {found.text}"))
+            across = refine.of_body(ob, depsgraph) if engine.is_linked(ob) else None
+            if across is not None and across.is_low:
+                self.report({"WARNING"}, told(f"'{ob.name}': {across.text}"))
         found = [quality for _, quality in all_of_them]
         self.irregular = sum(len(quality.irregular) for quality in found)
         known = all(quality.least is not None for quality in found)

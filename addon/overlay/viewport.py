@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ..strokes import selected
+from ..telling import told
 from .quality import Quality, measure
 
 MARGIN, LINE, ABOVE = 14, 18, 36
@@ -21,6 +22,9 @@ _COLOURS = (
     ((0.2, 0.68, 1.0, 1.0), "7 edges", "Too many edges"),
     ((0.35, 0.2, 0.95, 1.0), "8 edges or more", "Far too many edges"),
 )
+
+notes: list[Any] = []
+"""Functions from an object and the context to rows that are written below its numbers."""
 
 _handles: list[Any] = []
 _known: dict[int, tuple[Quality, np.ndarray, np.ndarray]] = {}
@@ -115,8 +119,9 @@ def _draw_dots() -> None:
 
 def lines(found: Quality) -> list[str]:
     """What is written in the corner."""
-    least = "" if found.least is None else f"  (least {found.least})"
-    rows = [f"{found.faces} faces", f"Irregular {len(found.irregular)}{least}"]
+    rows = [f"{found.faces} faces", f"Irregular {len(found.irregular)}"]
+    if found.least is not None:
+        rows[1] = f"{rows[1]}  (least {found.least})"
     if found.worst_face >= 0:
         rows.append(f"Sharpest angle {np.degrees(found.worst_angle):.1f}°")
     if found.non_manifold:
@@ -146,8 +151,9 @@ def _draw_text() -> None:
     seen = [entry for entry, here in zip(_COLOURS, _present(found), strict=True) if here]
     kinds = [number if exact else words for _, number, words in seen]
     tints = [colour for colour, *_ in seen]
-    rows = [(row, (1.0, 1.0, 1.0, 1.0)) for row in lines(found)]
-    rows += [(f"● {kind}", tint) for kind, tint in zip(kinds, tints, strict=True)]
+    written = [*lines(found), *(row for note in notes for row in note(active, context))]
+    rows = [(told(row, "interface"), (1.0, 1.0, 1.0, 1.0)) for row in written]
+    rows += [(f"● {told(kind, 'interface')}", tint) for kind, tint in zip(kinds, tints, strict=True)]
     for text, tint in reversed(rows):
         blf.color(font, *tint)
         blf.position(font, x, y, 0)

@@ -152,6 +152,27 @@ def test_cut_closes_both_sides(tmp_path):
     assert volumes[1] < volumes[2]
 
 
+def test_ends_of_a_cut_are_continued_unless_told_otherwise(tmp_path):
+    for x in (-3, 0, 3):
+        bpy.ops.mesh.primitive_cube_add(size=2, location=(x, 0, 0))
+    bpy.context.view_layer.objects.active = bpy.context.object
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.ops.object.join()
+    save(tmp_path / "three.blend")
+    short = {"stroke": [[-0.5, 0.1], [0.5, 0.1]], "keep": "left"}
+    items = [
+        {"id": key, "op": "cut", "in": "three.blend", "params": {**short, **more}, "out": f"{key}.blend"}
+        for key, more in (("all", {}), ("one", {"extend_ends": False}))
+    ]
+    ran = batch(write_jobs(tmp_path, items))
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    volumes = {}
+    for key in ("all", "one"):
+        (found,) = load(tmp_path / f"{key}.blend").values()
+        volumes[key] = volume(found)
+    assert volumes == pytest.approx({"all": 3 * 3.6, "one": 16 + 3.6}, rel=1e-5)
+
+
 def test_strokes_to_cut_along_come_from_files_and_objects(tmp_path):
     ball(opened=False)
     bpy.ops.curve.primitive_bezier_circle_add(radius=0.5, location=(0, 0, 3))

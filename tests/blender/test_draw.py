@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from drawings import bean, check_body, circle, fingerprint, world_vertices
 
-from addon.draw.gesture import Gesture, pack, relation, unpack
+from addon.draw.gesture import Gesture, pack, unpack
 from addon.live import engine
 
 pytestmark = pytest.mark.usefixtures("awake")
@@ -52,9 +52,9 @@ def test_from_inside_it_extends():
     assert np.ptp(world_vertices(only_body())[:, 0]) == pytest.approx(before + 0.8, abs=0.05)
 
 
-def test_from_outside_it_trims():
+def test_with_shift_it_trims():
     draw(circle(100, 2))
-    assert draw(circle(60, 0.8, (2, 0))) == {"FINISHED"}
+    assert draw(circle(60, 0.8, (2, 0)), subtract=True) == {"FINISHED"}
     check_body(only_body())
     assert world_vertices(only_body())[:, 0].max() < 1.95
 
@@ -62,7 +62,7 @@ def test_from_outside_it_trims():
 def test_trimmed_apart_it_becomes_two():
     draw(circle(100, 2))
     bar = [(x, -3) for x in np.linspace(-0.3, 0.3, 10)] + [(x, 3) for x in np.linspace(0.3, -0.3, 10)]
-    assert draw(bar) == {"FINISHED"}
+    assert draw(bar, subtract=True) == {"FINISHED"}
     bodies = engine.bodies()
     assert len(bodies) == 2
     for body in bodies:
@@ -77,7 +77,7 @@ def parted():
     """A disk of radius 2, parted by a bar; the left and the right body."""
     draw(circle(100, 2))
     bar = [(x, -3) for x in np.linspace(-0.3, 0.3, 10)] + [(x, 3) for x in np.linspace(0.3, -0.3, 10)]
-    draw(bar)
+    draw(bar, subtract=True)
     engine.settle()
     return sorted(engine.bodies(), key=lambda ob: world_vertices(ob)[:, 0].mean())
 
@@ -194,15 +194,6 @@ def test_the_outline_drawn_is_followed():
     bpy.context.view_layer.update()
     engine.settle()
     assert np.ptp(world_vertices(body)[:, 0]) == pytest.approx(6, abs=0.1)
-
-
-def test_relations():
-    outline, hole = circle(80, 2)[:, :2], circle(40, 0.5)[:, :2]
-    assert relation(outline, [], circle(40, 0.5, (5, 0))[:, :2]) == "apart"
-    assert relation(outline, [], circle(40, 0.5, (1, 0))[:, :2]) == "inside"
-    assert relation(outline, [], circle(40, 5)[:, :2]) == "around"
-    assert relation(outline, [], circle(40, 1, (2, 0))[:, :2]) == "across"
-    assert relation(outline, [hole], circle(40, 0.3)[:, :2]) == "apart"
 
 
 def test_the_preview_stands_still_while_the_stroke_grows():

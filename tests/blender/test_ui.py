@@ -148,6 +148,7 @@ def test_redo_panel_of_strokes(changed):
 
 def live_panel():
     layout = Layout()
+    layout.operator_context = "INVOKE_DEFAULT"  # what others append to the panel is drawn with it
     live_ui.VIEW3D_PT_gridmesh_live.draw(types.SimpleNamespace(layout=layout), bpy.context)
     return layout.drawn
 

@@ -106,6 +106,7 @@ def calls():
             "faces": sides,
             "stroke": [[-1, 0.4, 0.5], [2, 0.6, 0.5]],
             "direction": (0, 0, 1),
+            "edge_length": 0.3,
             "smooth": "flat",
         },
         "combine": {

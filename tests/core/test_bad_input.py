@@ -105,7 +105,7 @@ def test_values_that_are_not_allowed_are_refused(option, value):
         ("edge_length", [1]),
         ("edge_length", True),
         ("triangles", 100.0),
-        ("triangles", "100"),
+        ("triangles", [100]),
         ("triangles", True),
         ("boundary", None),
         ("boundary", 1),

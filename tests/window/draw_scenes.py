@@ -4,7 +4,19 @@ import bpy
 import mathutils
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from setting import begin, bodies, extent, fresh, modules, outlines, ring, stage, stroke, turn_view
+from setting import (
+    begin,
+    bodies,
+    extent,
+    fresh,
+    modules,
+    numbers_of,
+    outlines,
+    ring,
+    stage,
+    stroke,
+    turn_view,
+)
 
 
 def left_behind():
@@ -78,7 +90,7 @@ def draw_hole():
 
 
 def draw_across():
-    """From inside across the outline extends, from outside trims; with Shift it trims wherever it begins."""
+    """Across the outline it extends, wherever it begins; with Shift it trims."""
     yield from begin()
     x, y = stage.middle()
     yield from stroke(ring((x, y), 150, 60))
@@ -88,7 +100,7 @@ def draw_across():
     assert extent(bodies()[0]) > before * 1.15, "not extended"
     yield from stage.picture("draw_extend_2")
     longer = extent(bodies()[0])
-    yield from stroke(ring((x - 190, y), 100, 40, start=np.pi), picture="draw_trim_1")
+    yield from stroke(ring((x - 190, y), 100, 40, start=np.pi), picture="draw_trim_1", shift=True)
     assert len(bodies()) == 1
     assert extent(bodies()[0]) < longer * 0.95, "not trimmed"
     yield from stage.picture("draw_trim_2")
@@ -102,14 +114,14 @@ def draw_across():
 
 
 def draw_apart():
-    """A stroke right across leaves two bodies of one outline object."""
+    """With Shift a stroke right across leaves two bodies, each with its outline."""
     yield from begin()
     x, y = stage.middle()
     yield from stroke(ring((x, y), 150, 48))
     bar = [(x - 15, y - 200 + 20 * k) for k in range(21)] + [(x + 15, y + 200 - 20 * k) for k in range(21)]
-    yield from stroke(bar)
+    yield from stroke(bar, shift=True)
     assert [euler(ob) for ob in bodies()] == [2, 2]
-    assert len(outlines()) == 1
+    assert len(outlines()) == 2
     yield from stage.picture("draw_apart")
 
 
@@ -154,6 +166,248 @@ def draw_planes():
         yield from stage.picture("draw_surface_2")
     finally:
         options.plane, options.triangles = "VIEW", 2000
+
+
+def words():
+    """What the word at the mouse says from now on, with its hint; the last is what was shown when the stroke ended."""
+    preview = modules("draw.preview").Preview
+    said = []
+    say = getattr(preview.say, "original", preview.say)
+
+    def listened(self, word, hint, mouse):
+        said.append((word, hint))
+        say(self, word, hint, mouse)
+
+    listened.original = say
+    preview.say = listened
+    return said
+
+
+def draw_head():
+    """A head drawn over a body from its top extends it, and is said to; with Shift, pressed on the way, it trims."""
+    yield from begin()
+    x, y = stage.middle()
+    yield from stroke(ring((x, y - 60), 150, 60))
+    (body,) = bodies()
+    before = extent(body, 1)
+    said = words()
+    head = ring((x, y + 140), 90, 45, start=0.5 * np.pi)
+    yield from stroke(head, picture="draw_head_1", at=0.85)
+    assert [ob.name for ob in bodies()] == [body.name], "another body"
+    assert extent(body, 1) > 1.2 * before, "not extended"
+    assert said[0][0].startswith("New Body"), said[0]
+    assert said[-1][0] == f"Extend '{body.name}'", said[-1]
+    yield from stage.picture("draw_head_2")
+    higher = extent(body, 1)
+    yield from stage.key("Z", ctrl=True)
+    yield 0.5
+    (body,) = bodies()
+    assert abs(extent(body, 1) - before) < 1e-6, "undo took more or less than the head"
+    yield from stage.key("Z", ctrl=True, shift=True)
+    yield 0.5
+    assert abs(extent(bodies()[0], 1) - higher) < 1e-6, "redo"
+    yield from stage.key("Z", ctrl=True)
+    yield 0.5
+    said.clear()
+    yield from stage.move(*head[0])
+    yield from stage.press("LEFTMOUSE", "PRESS")
+    yield from stage.glide(head[1:36])
+    assert said[-1][0].startswith("Extend"), said[-1]
+    yield from stage.press("LEFT_SHIFT", "PRESS", shift=True)
+    assert said[-1][0].startswith("Trim"), said[-1]
+    yield from stage.picture("draw_head_trim")
+    yield from stage.press("LEFT_SHIFT", "RELEASE")
+    assert said[-1][0].startswith("Extend"), said[-1]
+    yield from stage.press("LEFT_SHIFT", "PRESS", shift=True)
+    yield from stage.glide(head[36:], shift=True)
+    yield from stage.press("LEFTMOUSE", "RELEASE", shift=True)
+    yield 1.0
+    assert extent(bodies()[0], 1) < before * 0.99, "not trimmed"
+
+
+def draw_redo():
+    """The redo panel acts on the body that was extended, and takes another action, to and fro."""
+    yield from begin()
+    x, y = stage.middle()
+    yield from stroke(ring((x, y), 130, 48))
+    (body,) = bodies()
+    body.gridmesh_live.depth = 0.8
+    yield 0.5
+    yield from stroke(ring((x + 130, y), 80, 36, start=np.pi))
+    (body,) = bodies()
+    wide, thick = extent(body), extent(body, 2)
+    assert bpy.context.window_manager.operators[-1].name == "Extend Body"
+    assert abs(bpy.context.window_manager.operators[-1].depth - 0.8) < 1e-6, (
+        "the panel has not the body's depth"
+    )
+    hud = yield from stage.open_redo_panel()
+    yield from stage.picture("draw_redo_1")
+    done = yield from numbers_of(hud, "depth", "0.3")
+    assert done, "no field for the depth"
+    (body,) = bodies()
+    assert abs(extent(body) - wide) < 0.02, "no longer extended"
+    assert extent(body, 2) < 0.5 * thick, "the depth does not act"
+    assert abs(body.gridmesh_live.depth - 0.3) < 1e-6
+    yield from stage.picture("draw_redo_2")
+    for action, count in (("TRIM", 1), ("NEW", 2), ("EXTEND", 1)):
+        bpy.context.window_manager.operators[-1].action = action
+        with stage.override():
+            bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)  # with the undo step that the panel makes
+        yield 0.6
+        last = bpy.context.window_manager.operators[-1]
+        assert last.action == action, (last.action, action)
+        assert len(bodies()) == count, action
+    (body,) = bodies()
+    assert abs(extent(body) - wide) < 0.02
+    yield from stage.picture("draw_redo_3")
+    yield from stage.move(*stage.middle())
+    yield from stage.key("Z", ctrl=True)
+    yield 0.5
+    (body,) = bodies()
+    assert extent(body) < 0.9 * wide, "more than one step for a stroke"
+
+
+def draw_click():
+    """A click selects what is under the mouse, with Shift too, and beside all nothing; nothing is drawn."""
+    yield from begin()
+    x, y = stage.middle()
+    yield from stroke(ring((x - 150, y), 90, 36))
+    yield from stroke(ring((x + 150, y), 90, 36))
+    bpy.ops.mesh.primitive_cube_add(size=0.5, location=(0, 0, -1.5))
+    yield 0.5
+    left, right = (ob.name for ob in sorted(bodies(), key=lambda ob: ob.matrix_world.translation.x))
+    count = len(bpy.data.objects)
+
+    def chosen():
+        return {ob.name for ob in bpy.context.view_layer.objects if ob.select_get()}
+
+    yield from stage.click(x - 150, y)
+    assert chosen() == {left}, chosen()
+    assert bpy.context.view_layer.objects.active.name == left
+    yield from stage.click(x + 150, y, shift=True)
+    assert chosen() == {left, right}, chosen()
+    assert bpy.context.view_layer.objects.active.name == right
+    yield from stage.picture("draw_click")
+    yield from stage.click(x, y + 250)
+    assert chosen() == set(), chosen()
+    assert len(bpy.data.objects) == count
+    yield from stage.key("Z", ctrl=True)
+    yield 0.5
+    assert chosen() == {left, right}, chosen()
+
+
+def draw_turned():
+    """From a view that is turned by a few degrees a body is extended where it is, in its own plane."""
+    yield from begin()
+    x, y = stage.middle()
+    yield from stroke(ring((x - 60, y), 120, 48))
+    (body,) = bodies()
+    wide, thick = extent(body), extent(body, 2)
+    turn_view(np.pi / 2 - np.radians(4), 0.0, np.radians(5))
+    yield 0.4
+    said = words()
+    yield from stroke(ring((x + 70, y), 80, 40, start=np.pi), picture="draw_turned_1")
+    assert said[-1][0].startswith("Extend"), said[-1]
+    (body,) = bodies()
+    assert extent(body) > 1.2 * wide, "not extended"
+    turn_view(0.0, 0.0, 0.0)
+    yield from stage.picture("draw_turned_2")
+    assert extent(body, 2) < 1.4 * thick, "it is bent out of its plane"
+    assert body.gridmesh_live.problem == ""
+
+
+def draw_bridge():
+    """Two bodies of outlines of their own, bridged, become one; nothing is left of the other."""
+    yield from begin()
+    x, y = stage.middle()
+    yield from stroke(ring((x - 170, y), 100, 40))
+    yield from stroke(ring((x + 170, y), 100, 40))
+    assert len(bodies()) == len(outlines()) == 2
+    said = words()
+    bar = [(x - 150 + 10 * k, y + 35) for k in range(31)] + [(x + 150 - 10 * k, y - 35) for k in range(31)]
+    yield from stroke(bar, picture="draw_bridge_1", at=0.9)
+    assert "+" in said[-1][0], said[-1]
+    (body,) = bodies()
+    assert euler(body) == 2
+    assert len(outlines()) == 1, "an outline is left over"
+    yield from stage.picture("draw_bridge_2")
+    yield from stage.key("Z", ctrl=True)
+    yield 0.5
+    assert len(bodies()) == len(outlines()) == 2, "undo"
+
+
+def draw_eye():
+    """An eye inside a face is told not to be seen; P makes it a part, the plane of the surface puts it on the face."""
+    yield from begin()
+    x, y = stage.middle()
+    yield from stroke(ring((x, y), 180, 60))
+    face = bodies()[0].name
+    said = words()
+    eye = ring((x - 60, y + 50), 35, 24)
+    yield from stroke(eye, picture="draw_eye_1", at=0.9)
+    assert "not visible" in said[-1][1], said[-1]
+    assert len(bodies()) == 2
+    yield from stage.key("Z", ctrl=True)
+    yield 0.5
+    said.clear()
+    yield from stroke(eye, keys=("P",), picture="draw_eye_part", at=0.9)
+    assert said[-1][0] == f"Part of '{face}'", said[-1]
+    part = next(ob for ob in bodies() if ob.name != face)
+    assert part.parent.name == face
+    yield from stage.key("Z", ctrl=True)
+    yield 0.5
+    with stage.override():
+        options = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT").operator_properties(
+            "object.gridmesh_draw"
+        )
+    options.plane = "SURFACE"
+    try:
+        said.clear()
+        yield from stroke(eye)
+        assert said[-1] == ("New Body", ""), said[-1]
+    finally:
+        options.plane = "VIEW"
+    assert len(bodies()) == 2
+    yield from stage.picture("draw_eye_2")
+
+
+def draw_mirrored():
+    """X while drawing: across the mirror a symmetric body, beside it two limbs of a body; both sides are seen."""
+    yield from begin()
+    x, y = stage.middle()
+    half = [
+        (x + 140 * np.sin(t) * (1 + 0.3 * np.cos(t)), y - 170 * np.cos(t))
+        for t in np.linspace(-0.1, np.pi + 0.1, 40)
+    ]
+    yield from stroke(half, keys=("X",), picture="draw_mirrored_1", at=0.8)
+    (body,) = bodies()
+    assert body.gridmesh_live.mirror == "AUTO"
+    data = outlines()[0].data.layers[0].current_frame().drawing.attributes["position"].data
+    points = np.array([point.vector for point in data])
+    apart = np.abs(points[:, None] - (points * [-1, 1, 1])[None]).sum(axis=2).min(axis=1).max()
+    assert apart < 1e-4, f"not symmetric: {apart}"
+    wide = extent(body)
+    said = words()
+    yield from stroke(
+        ring((x + 150, y + 20), 60, 30, start=np.pi), keys=("X",), picture="draw_mirrored_2", at=0.9
+    )
+    assert said[-1][0].startswith("Extend"), said[-1]
+    (body,) = bodies()
+    across = np.array([vertex.co[0] for vertex in body.data.vertices])
+    assert extent(body) > wide * 1.2
+    assert abs(across.min() + across.max()) < 0.02 * extent(body), "one side only"
+    yield from stage.picture("draw_mirrored_3")
+
+
+def draw_idle():
+    """The tool waits: its icon and Cut's, its hints in the status bar, the options of new bodies in the header."""
+    yield from begin()
+    with stage.override():
+        stage.view.spaces.active.show_region_toolbar = True
+    x, y = stage.middle()
+    yield from stage.picture("draw_idle_1")
+    yield from stroke(ring((x, y), 120, 40))
+    yield from stage.picture("draw_idle_2")
 
 
 class Tablet:
@@ -216,4 +470,17 @@ def pen():
     yield from stage.picture("pen")
 
 
-SCENES = (draw_body, draw_left, draw_hole, draw_across, draw_apart, draw_planes, draw_pressed, pen)
+SCENES = (
+    *(
+        draw_body,
+        draw_left,
+        draw_hole,
+        draw_across,
+        draw_apart,
+        draw_head,
+        draw_redo,
+        draw_click,
+        draw_turned,
+    ),
+    *(draw_bridge, draw_eye, draw_mirrored, draw_idle, draw_planes, draw_pressed, pen),
+)

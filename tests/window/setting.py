@@ -96,14 +96,22 @@ def numbers_of(hud, name, value):
         yield from stage.move(hud.x + int(hud.width * 0.72), y)
         yield 0.1
         yield from stage.key("C", ctrl=True)
-        if manager.clipboard == f"{getattr(manager.operators[-1], name)}":
+        if _same(manager.clipboard, getattr(manager.operators[-1], name)):
             yield from stage.click(*stage.mouse)
             yield from stage.key("A", ctrl=True)
             yield from stage.write(value)
             yield from stage.key("RET")
             yield 1.5
-            return f"{getattr(manager.operators[-1], name)}" == value
+            return _same(value, getattr(manager.operators[-1], name))
     return False
+
+
+def _same(text, value):
+    """Whether a text is a number, to six digits after the point."""
+    try:
+        return abs(float(text) - value) < 1e-6
+    except ValueError:
+        return False
 
 
 def modules(name):
@@ -149,12 +157,18 @@ def begin():
     yield from tool("gridmesh.draw")
 
 
-def stroke(path, *, picture=None, at=0.7, end="LEFTMOUSE", **held):
-    """Draw with the left button, as a hand does: several points for each that the window is drawn for."""
+def stroke(path, *, picture=None, at=0.7, end="LEFTMOUSE", keys=(), **held):
+    """Draw with the left button, as a hand does: several points for each that the window is drawn for.
+
+    keys : pressed in the middle of the stroke. held : keys that are held all along.
+    """
     yield from stage.move(*path[0])
     yield from stage.press("LEFTMOUSE", "PRESS", **held)
     for k in range(1, len(path), 3):
-        yield from stage.glide(path[k : k + 3])
+        yield from stage.glide(path[k : k + 3], **held)
+        if k <= len(path) // 2 < k + 3:
+            for key in keys:
+                yield from stage.key(key)
         if picture and k <= int(at * len(path)) < k + 3:
             yield from stage.picture(picture)
     if end == "LEFTMOUSE":

@@ -49,27 +49,27 @@ class Stage:
 
     # ------------------------------------------------------------------------------------------- mouse and keys
 
-    def move(self, x, y):
+    def move(self, x, y, **held):
         self.mouse = (int(x), int(y))
-        self.window.event_simulate("MOUSEMOVE", "NOTHING", x=self.mouse[0], y=self.mouse[1])
+        self.window.event_simulate("MOUSEMOVE", "NOTHING", x=self.mouse[0], y=self.mouse[1], **held)
         yield STEP
 
-    def glide(self, path):
+    def glide(self, path, **held):
         """Move along points that come faster than the window is drawn: Blender calls all but the last in between."""
         for x, y in path[:-1]:
-            self.window.event_simulate("INBETWEEN_MOUSEMOVE", "NOTHING", x=int(x), y=int(y))
-        yield from self.move(*path[-1])
+            self.window.event_simulate("INBETWEEN_MOUSEMOVE", "NOTHING", x=int(x), y=int(y), **held)
+        yield from self.move(*path[-1], **held)
 
     def press(self, button="LEFTMOUSE", value="PRESS", **held):
         self.window.event_simulate(button, value, x=self.mouse[0], y=self.mouse[1], **held)
         yield STEP
 
-    def click(self, x, y, button="LEFTMOUSE"):
+    def click(self, x, y, button="LEFTMOUSE", **held):
         self.clicks += 1
         yield from self.move(x, y)
         yield STEP
-        yield from self.press(button, "PRESS")
-        yield from self.press(button, "RELEASE")
+        yield from self.press(button, "PRESS", **held)
+        yield from self.press(button, "RELEASE", **held)
         yield 3 * STEP
 
     def drag(self, path):

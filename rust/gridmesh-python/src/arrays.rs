@@ -44,6 +44,11 @@ pub fn sources(py: Python<'_>, sources: &[(u32, f64)]) -> PyResult<Py<PyArray2<f
     table(py, sources.iter().map(|&(segment, parameter)| [f64::from(segment), parameter]).collect())
 }
 
+/// (n, 4) float64.
+pub fn rows(py: Python<'_>, rows: Vec<[f64; 4]>) -> PyResult<Py<PyArray2<f64>>> {
+    table(py, rows)
+}
+
 /// (n, 3) int32.
 pub fn triangles(py: Python<'_>, triangles: &[[u32; 3]]) -> PyResult<Py<PyArray2<i32>>> {
     table(py, triangles.iter().map(|t| t.map(index)).collect())

@@ -97,6 +97,8 @@ pub fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 ///     Depth of each side, one number or one per point of the outline: 0, or up to 1e9; None: `depth`.
 /// corner_angle : float
 ///     Drawn corners that turn by more than this (radians) stay sharp.
+/// uv : {"apart", "shared"}
+///     Where the back lies in the texture: beside the front, as seen from behind, or where the front is.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
 ///
@@ -129,7 +131,7 @@ pub fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 #[pyfunction]
 #[pyo3(
     signature = (patch, *, progress = None, **options),
-    text_signature = "(patch, *, depth=1.0, profile='round', curve=None, front=None, back=None, corner_angle=0.6981317007977318, progress=None)"
+    text_signature = "(patch, *, depth=1.0, profile='round', curve=None, front=None, back=None, corner_angle=0.6981317007977318, uv='apart', progress=None)"
 )]
 pub fn inflate(
     py: Python<'_>,

@@ -2,7 +2,7 @@
 //!
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `process` finds threads after a fork, `arrays`
 //! and `reports` hand results back, `patch`, `surface`, `fill` and `cut` are the classes, `sketch`, `body` and `map` make them
-//! of drawings, `batch` is the parallel map, `combine` unites drawings.
+//! of drawings, `batch` is the parallel map, `combine` unites drawings, `thickness` measures them.
 #![forbid(unsafe_code)]
 
 mod arrays;
@@ -22,6 +22,7 @@ mod regrid;
 mod reports;
 mod sketch;
 mod surface;
+mod thickness;
 mod watch;
 
 use pyo3::prelude::*;
@@ -46,6 +47,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(body::inflate, module)?)?;
     module.add_function(wrap_pyfunction!(map::map_sketches, module)?)?;
     module.add_function(wrap_pyfunction!(combine::combine, module)?)?;
+    module.add_function(wrap_pyfunction!(thickness::thickness, module)?)?;
     module.add_class::<fill::Fill>()?;
     module.add_function(wrap_pyfunction!(fill::fill_hole, module)?)?;
     module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;

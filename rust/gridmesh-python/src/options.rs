@@ -1,7 +1,8 @@
 //! Options by name: one table for `mesh_sketch`, `inflate` and `map_sketches`.
 
 use gridmesh::inflate::{InflateOptions, Profile, Side};
-use gridmesh::options::{BoundaryMethod, Mirror, SelfCrossing, SketchOptions};
+use gridmesh::options::{BoundaryMethod, Density, Mirror, SelfCrossing, SketchOptions};
+use gridmesh::surface::UvLayout;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt, PyString};
@@ -34,9 +35,16 @@ pub fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyA
             options.edge_length = it.optional(|it| it.float())?;
         }
         "triangles" => {
-            let it = argument("a positive whole number, or None");
-            options.triangles = it.optional(|it| it.count())?;
+            let it = argument("a positive whole number, 'auto', or None");
+            options.triangles = None;
+            options.automatic = it.value.is_instance_of::<PyString>();
+            if options.automatic {
+                it.word(&[("auto", ())])?;
+            } else {
+                options.triangles = it.optional(|it| it.count())?;
+            }
         }
+        "max_triangles" => options.max_triangles = argument("a positive whole number").count()?,
         "boundary" => {
             let words = [("optimal", BoundaryMethod::Optimal), ("grown", BoundaryMethod::Grown)];
             options.boundary = argument("'optimal' or 'grown'").word(&words)?;
@@ -61,6 +69,13 @@ pub fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyA
             options.self_crossing = argument("'error' or 'union'").word(&words)?;
         }
         "proof_nodes" => options.proof_nodes = argument("a whole number not below 0").count()?,
+        "bend" => options.bend = argument("a number from 0 to 1").float()?,
+        "density" => {
+            let it = argument(
+                "'width', one positive number per point of the outline, or a sequence of such arrays, for the outline and its holes; or None",
+            );
+            options.density = it.optional(density)?;
+        }
         "relax" => options.relax = argument("True or False").bool()?,
         "least" => options.least = argument("True or False").bool()?,
         _ => return Ok(false),
@@ -87,12 +102,31 @@ pub fn set_inflate(options: &mut InflateOptions, name: &str, value: &Bound<'_, P
             let it = argument("numbers, the first 0 and the others positive, or None");
             options.curve = it.optional(|it| it.numbers())?;
         }
+        "uv" => {
+            let words = [("apart", UvLayout::Apart), ("shared", UvLayout::Shared)];
+            options.uv = argument("'apart' or 'shared'").word(&words)?;
+        }
         "front" => options.front = argument(side).optional(depths)?,
         "back" => options.back = argument(side).optional(depths)?,
         "corner_angle" => options.corner_angle = argument("a number of radians from 0 to pi").float()?,
         _ => return Ok(false),
     }
     Ok(true)
+}
+
+fn density(it: Argument<'_, '_>) -> PyResult<Density> {
+    if it.value.is_instance_of::<PyString>() {
+        return it.word(&[("width", ())]).map(|()| Density::Width);
+    }
+    // Arrays in a row may have different lengths: they are no array together.
+    let mut rows = it.value.try_iter().map_err(|_| it.wrong_type())?;
+    let nested = rows.any(|row| row.is_ok_and(|row| row.len().is_ok()));
+    if !nested {
+        return Ok(Density::PerPoint(vec![it.numbers()?]));
+    }
+    let rows = it.value.try_iter().map_err(|_| it.wrong_type())?;
+    let row = |row: PyResult<Bound<'_, PyAny>>| Argument { value: &row?, ..it }.numbers();
+    rows.map(row).collect::<PyResult<Vec<Vec<f64>>>>().map(Density::PerPoint)
 }
 
 fn mirror(it: Argument<'_, '_>) -> PyResult<Mirror> {

@@ -23,8 +23,11 @@ pub fn sketch(py: Python<'_>, report: &SketchReport) -> PyResult<Py<PyDict>> {
     dict.set_item("corners", report.corners)?;
     dict.set_item("released_corners", report.released_corners)?;
     dict.set_item("bridged_inlets", report.bridged_inlets)?;
+    dict.set_item("across", report.across)?;
     dict.set_item("repaired", report.repaired)?;
     dict.set_item("mirror_error", report.mirror_error)?;
+    dict.set_item("bend", report.bend)?;
+    dict.set_item("scale_range", report.scale_range)?;
     dict.set_item("placements", report.placements)?;
     dict.set_item("seconds", seconds(py, &report.seconds)?)?;
     Ok(dict.unbind())

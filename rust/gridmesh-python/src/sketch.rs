@@ -22,9 +22,13 @@ use crate::{options, reports};
 ///     Contours inside the outline, in the same way.
 /// edge_length : float, optional
 ///     Edge length of the mesh, in the units of the outline; positive. Not together with `triangles`.
-/// triangles : int, optional
+/// triangles : int or "auto", optional
 ///     Number of triangles of the flat patch, from 6 to 20 million; 2000 if neither is given. Reached within
 ///     10 %, below 60 within 6 triangles (a handful comes in few sizes): `report["triangles"]` says how many.
+///     "auto": four across the thinnest limb (see `thickness`), but at least 1000 and at most `max_triangles`;
+///     where those cannot follow the outline, the least number that can.
+/// max_triangles : int
+///     The largest number that "auto" chooses.
 /// boundary : {"optimal", "grown"}
 ///     "optimal": the boundary of least cost for this lattice and `max_distance`, where cost = turns +
 ///     `closeness` x squared distance in edge lengths. "grown": the growth of the paper's sections
@@ -52,6 +56,17 @@ use crate::{options, reports};
 /// proof_nodes : int
 ///     Bounds the search that proves optimality where the first solution had conflicts: so many parts of the search
 ///     space at most, and for each lattice angle tried 30 million states of it, some seconds; 0 beside `mirror`.
+/// bend : float
+///     How far the lattice may bend with the outline, from 0 (straight) to 1: a conformal map takes the
+///     outline to where it runs along lattice directions, which leaves far fewer irregular vertices and lets the
+///     size of the triangles vary a little. Several bends are tried, and straight lattices where they do not serve. The least
+///     angles can be smaller than on a straight lattice, and some thin parts coarser.
+///     Without effect beside `angle` or `origin` and with boundary="grown".
+/// density : "width", (n,) array of positive numbers, or a sequence of such arrays, optional
+///     With `bend` above 0: where there should be more triangles: "width": in narrow parts; numbers: at each point of the
+///     outline so many times the triangles of elsewhere, as a sequence for the outline and its holes. It is a wish:
+///     the map stays conformal, so that neighbouring triangles differ little in size. Numbers not together with
+///     self_crossing="union".
 /// relax : bool
 ///     False leaves the interior vertices where the lattice has them; triangles may then be inverted,
 ///     and such a patch is refused (kind "inverted").
@@ -70,8 +85,10 @@ use crate::{options, reports};
 ///     threads. `report` has "triangles", "irregular" (irregular vertices after stitching),
 ///     "minimum_irregular" (the least that any such body has), "turns", "turns_before" (a grown
 ///     boundary's, before it is straightened), "turns_bound", "cost", "cost_bound" (None where none
-///     was computed), "optimal", "max_distance_used", "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
+///     was computed), "optimal" (all three about the lattice that was taken, bent or straight), "bend" (how far it is bent, 0 if it is straight), "scale_range" (largest over smallest edge length of the bent lattice), "max_distance_used", "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
 ///     (radians), "corners" (drawn ones), "released_corners" (those without a vertex of their own), "bridged_inlets" (with mesh vertices in them: 0, unless `relax` is off),
+///     "across" (triangles across the thinnest limb; None unless `triangles` is "auto", and where no part is
+///     longer than it is wide),
 ///     "repaired" (repeated points dropped), "mirror_error" (greatest distance of a vertex from the
 ///     image of its partner, in edge lengths; None without `mirror`), "placements" (of the lattice, tried) and "seconds" (per
 ///     stage).
@@ -97,7 +114,7 @@ use crate::{options, reports};
 #[pyfunction]
 #[pyo3(
     signature = (outline, holes = None, *, progress = None, **options),
-    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, relax=True, least=True, progress=None)"
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, max_triangles=20000, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, bend=0.0, density=None, relax=True, least=True, progress=None)"
 )]
 pub fn mesh_sketch(
     py: Python<'_>,

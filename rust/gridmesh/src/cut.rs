@@ -6,6 +6,7 @@
 //! together.
 
 mod beside;
+mod bounds;
 mod bridge;
 mod bulge;
 mod cap;
@@ -92,7 +93,8 @@ pub struct Cut {
 /// [`Error::StrokeTooShort`] and [`Error::SelfIntersecting`] for strokes that sweep no surface,
 /// [`Error::BehindEye`], [`Error::StrokeMisses`] if nothing is divided, [`Error::StillJoined`] if what a stroke crosses
 /// without its ends continued does not come apart, [`Error::CutFailed`] where rounding leaves no
-/// consistent division, [`Error::Cancelled`]. Nothing is returned half cut.
+/// consistent division, [`Error::TooLarge`] if an `edge_length` would make more than 20,000 edges along the cut or two million
+/// triangles of caps, [`Error::Cancelled`]. Nothing is returned half cut.
 ///
 /// Source: Nealen et al. 2009, section V and figure 2. The paper takes the cut itself from FiberMesh.
 pub fn cut(
@@ -328,6 +330,9 @@ fn part(
                         tally.stage("faces");
                         tally.report.cut_faces = parted.cut_faces;
                         if let Some(length) = options.edge_length {
+                            if redrawn == 0 {
+                                bounds::check(vertices, faces, &parted, &sheet, length)?;
+                            }
                             redrawn += 1;
                             let again = |in_the_way: Vec<u32>| {
                                 let before = wanted.len();

@@ -329,19 +329,18 @@ impl fmt::Display for Error {
                     "hole {hole} {reason}; each hole must lie inside the outline and apart from the others"
                 )
             }
-            Error::NotSymmetric { what, distance, allowed, at: [x, y] } => {
-                write!(f, "the {what} is not its own mirror image: near ({x:.6}, {y:.6}) ")?;
-                if distance.is_finite() {
-                    write!(f, "it is {distance:.3e} off")?;
-                } else {
-                    write!(f, "it has no partner across the axis")?;
-                }
-                write!(
-                    f,
-                    "; allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
-                     or mesh it without mirror"
-                )
-            }
+            Error::NotSymmetric { what, distance, allowed, at: [x, y] } if distance.is_finite() => write!(
+                f,
+                "the {what} is not its own mirror image: near ({x:.6}, {y:.6}) it is {distance:.3e} off; \
+                 allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
+                 or mesh it without mirror"
+            ),
+            Error::NotSymmetric { what, allowed, at: [x, y], .. } => write!(
+                f,
+                "the {what} is not its own mirror image: near ({x:.6}, {y:.6}) it has no partner across the axis; \
+                 allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
+                 or mesh it without mirror"
+            ),
             Error::InvalidOption { name, value, allowed } => {
                 write!(f, "{name} is {value}; allowed: {allowed}")
             }

@@ -4,12 +4,12 @@ mod crease;
 mod field;
 mod height;
 mod inlets;
-mod laplace;
+pub(crate) mod laplace;
 mod polish;
 mod section;
 mod side;
 mod spread;
-mod topology;
+pub(crate) mod topology;
 
 use std::time::Instant;
 
@@ -20,7 +20,7 @@ use crate::error::{Error, Result};
 use crate::patch::Patch;
 use crate::progress::{Progress, Rising};
 use crate::stitch::projects_well;
-use crate::surface::Surface;
+use crate::surface::{Surface, UvLayout};
 use field::Field;
 use height::{Flat, bends, squared_height};
 use inlets::Inlets;
@@ -64,6 +64,8 @@ pub struct InflateOptions {
     /// Turning angle in radians from which on a drawn corner stays a corner; below it the stroke
     /// is taken for a coarsely drawn smooth one and the body is rounded there.
     pub corner_angle: f64,
+    /// Where the back lies in the texture.
+    pub uv: UvLayout,
 }
 
 impl Default for InflateOptions {
@@ -75,6 +77,7 @@ impl Default for InflateOptions {
             back: None,
             curve: None,
             corner_angle: 40f64.to_radians(),
+            uv: UvLayout::Apart,
         }
     }
 }
@@ -182,7 +185,7 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         return Err(Error::Solver { stage: "inflation", reason: "a height is not a number".into() });
     }
     let apart = top[first..].iter().zip(&bottom).all(|(a, b)| a.z >= 0.0 && b.z <= 0.0 && a.z > b.z);
-    let mut surface = Surface::assemble(patch, top, Some(bottom));
+    let mut surface = Surface::assemble(patch, top, Some(bottom), options.uv);
     let report = &mut surface.report;
     report.shortened = front.shortened;
     report.repaired = height.lifted + usize::from(height.limited);

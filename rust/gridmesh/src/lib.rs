@@ -4,6 +4,7 @@
 pub mod assemble;
 pub mod axial;
 pub mod band;
+pub mod bend;
 pub mod boundary;
 pub mod cells;
 pub mod combine;
@@ -40,5 +41,6 @@ pub mod surface;
 pub mod svg;
 mod symmetry;
 pub mod target;
+pub mod thickness;
 pub mod trace;
 mod union;

@@ -10,6 +10,12 @@ pub const MAX_TRIANGLES: f64 = 20e6;
 /// Triangles of the flat patch when nothing is asked for.
 pub const DEFAULT_TRIANGLES: usize = 2000;
 
+/// The least number of triangles of the flat patch that is chosen.
+pub const LEAST_CHOSEN: usize = 1000;
+
+/// The largest number of triangles that is chosen, unless told otherwise.
+pub const MOST_CHOSEN: usize = 20_000;
+
 /// Drawn corners that turn by more than this are kept, unless told otherwise: 40 degrees.
 pub const DEFAULT_CORNER_ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
@@ -45,6 +51,16 @@ pub enum Mirror {
     },
 }
 
+/// Where a drawing should have more triangles than elsewhere.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Density {
+    /// In narrow parts.
+    Width,
+    /// At each input point so many times the triangles of elsewhere: the outline's numbers, then those of
+    /// the holes; a contour with no numbers has no wish.
+    PerPoint(Vec<Vec<f64>>),
+}
+
 /// Options of [`mesh_sketch`](crate::sketch::mesh_sketch).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SketchOptions {
@@ -53,6 +69,12 @@ pub struct SketchOptions {
     /// Triangles of the flat patch, 6 or more; 2000 if neither is given. Reached within 10 %, below 60 within 6
     /// triangles: the report says how many there are.
     pub triangles: Option<usize>,
+    /// Choose the number of triangles: four across the thinnest limb, but at least 1000 and at most
+    /// `max_triangles`; where those cannot follow the drawing, the least number that can. Exclusive with
+    /// `edge_length` and `triangles`.
+    pub automatic: bool,
+    /// The largest number that `automatic` chooses.
+    pub max_triangles: usize,
     /// How the boundary is found.
     pub boundary: BoundaryMethod,
     /// Greatest distance of the lattice path from the curve, in edges: 0.5 to 4.
@@ -74,6 +96,11 @@ pub struct SketchOptions {
     /// Search nodes spent on proving a boundary optimal whose first solution had conflicts, at most; a proof ends
     /// after 30 million states too, some seconds, whatever this number. Not beside `mirror`.
     pub proof_nodes: usize,
+    /// How far the lattice may bend with the drawing, 0 to 1; 0 is a straight lattice. Without effect
+    /// beside a given `angle` or `origin` and with `boundary` grown.
+    pub bend: f64,
+    /// The wish for more triangles in some parts; only with `bend` above 0.
+    pub density: Option<Density>,
     /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and is
     /// refused ([`Error::Inverted`]) where that inverts triangles.
     pub relax: bool,
@@ -87,6 +114,8 @@ impl Default for SketchOptions {
         Self {
             edge_length: None,
             triangles: None,
+            automatic: false,
+            max_triangles: MOST_CHOSEN,
             boundary: BoundaryMethod::Optimal,
             max_distance: 1.5,
             closeness: 0.3,
@@ -96,6 +125,8 @@ impl Default for SketchOptions {
             mirror: None,
             self_crossing: SelfCrossing::Error,
             proof_nodes: 0,
+            bend: 0.0,
+            density: None,
             relax: true,
             least: true,
         }
@@ -118,6 +149,22 @@ impl SketchOptions {
                 allowed: "one of edge_length and triangles, or neither",
             });
         }
+        if self.automatic {
+            let limit = self.max_triangles;
+            if self.edge_length.is_some() || self.triangles.is_some() {
+                return Err(Error::InvalidOption {
+                    name: "triangles",
+                    value: "automatic, and given".to_owned(),
+                    allowed: "one of automatic, a number and an edge length",
+                });
+            }
+            if limit < 6 {
+                return refuse("max_triangles", limit as f64, "at least 6");
+            }
+            if limit as f64 > MAX_TRIANGLES {
+                return Err(Error::TooLarge { triangles: limit as f64, limit: MAX_TRIANGLES });
+            }
+        }
         if let Some(h) = self.edge_length
             && !(h.is_finite() && h > 0.0)
         {
@@ -136,6 +183,26 @@ impl SketchOptions {
         }
         if !(0.0..=100.0).contains(&self.closeness) {
             return refuse("closeness", self.closeness, "0 to 100");
+        }
+        if !(0.0..=1.0).contains(&self.bend) {
+            return refuse("bend", self.bend, "0 to 1");
+        }
+        if self.density.is_some() && self.bend == 0.0 {
+            return Err(Error::InvalidOption {
+                name: "density",
+                value: "given, with bend 0".to_owned(),
+                allowed: "none, or bend above 0: triangles of a straight lattice have one size",
+            });
+        }
+        if let Some(Density::PerPoint(given)) = &self.density {
+            if let Some(&wrong) = given.iter().flatten().find(|&&d| !(d.is_finite() && d > 0.0)) {
+                return refuse("density", wrong, "finite numbers above 0");
+            }
+            if self.self_crossing == SelfCrossing::Union {
+                let value = "numbers, beside self_crossing union".to_owned();
+                let allowed = "'width' or none: the outer outline has other points";
+                return Err(Error::InvalidOption { name: "density", value, allowed });
+            }
         }
         if let Some(angle) = self.angle
             && !angle.is_finite()
@@ -209,11 +276,18 @@ pub struct SketchReport {
     pub corners: usize,
     /// Corners that got no vertex of their own.
     pub released_corners: usize,
+    /// Triangles across the thinnest limb; `None` where no part is longer than it is wide, and unless the
+    /// number of triangles was left to the drawing (`automatic`).
+    pub across: Option<f64>,
     /// Input points dropped because they repeat their predecessor.
     pub repaired: usize,
     /// Greatest distance of a vertex from the mirror image of its partner, in edges: rounding, if the
     /// drawing is exactly symmetric. `None` without `mirror`.
     pub mirror_error: Option<f64>,
+    /// How far the lattice is bent: 0 if it is straight.
+    pub bend: f64,
+    /// Largest over smallest local edge length of the lattice; 1 if it is straight.
+    pub scale_range: f64,
     /// Lattice placements tried before one gave a valid patch.
     pub placements: usize,
     /// Seconds spent in each stage.

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::assemble::assemble;
+use crate::axial::Axial;
 use crate::curve::ClosedCurve;
 use crate::deviation::{Stray, beside, crossings, deviation};
 use crate::error::Result;
@@ -75,17 +76,19 @@ impl Placed {
 /// triangle is inverted, also after rounding to `f32` at the lattice origin, and that the drawing
 /// lies within two edges of the boundary.
 ///
-/// Where it does not, as at a tip that the lattice path cuts off, a boundary vertex is held at the
+/// `laid` gives the positions of lattice points in units of `lattice`, from which they are moved.
+/// Where the drawing does not, as at a tip that the lattice path cuts off, a boundary vertex is held at the
 /// farthest point and the patch relaxed again.
 pub(crate) fn place(
     contours: &[ClosedCurve],
     lattice: &Lattice,
+    laid: impl Fn(&[Axial]) -> Vec<DVec2>,
     outline: &Outline,
     options: &SketchOptions,
     progress: Progress<'_>,
 ) -> Result<Result<Placed, Obstacle>> {
     let region = assemble(&outline.paths);
-    let lattice_positions: Vec<DVec2> = region.points.iter().map(|&p| Lattice::units(p)).collect();
+    let lattice_positions = laid(&region.points);
     let h = lattice.edge_length;
     let drawn: Vec<(Vec<DVec2>, Vec<f64>)> = contours
         .iter()

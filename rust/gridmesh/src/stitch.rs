@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use crate::embed::is_planar_embedding;
 use crate::patch::Patch;
-use crate::surface::{Surface, contours};
+use crate::surface::{Surface, UvLayout, contours};
 
 /// Two copies of the patch glued along all contours, flat in the plane z = 0.
 ///
@@ -28,7 +28,7 @@ pub fn flat(patch: &Patch) -> Surface {
 fn build(patch: &Patch, back: Option<Vec<DVec3>>) -> Surface {
     let clock = Instant::now();
     let front = patch.vertices.iter().map(|p| p.extend(0.0)).collect();
-    let mut surface = Surface::assemble(patch, front, back);
+    let mut surface = Surface::assemble(patch, front, back, UvLayout::Apart);
     surface.report.embedded = projects_well(patch, &patch.vertices);
     if !surface.report.embedded {
         surface.report.self_intersections = crate::embed::count_self_intersections(

@@ -22,12 +22,23 @@ pub struct Surface {
     /// Texture coordinates in \[0, 1\], one per corner of each triangle (three per triangle).
     ///
     /// Each triangle appears as it lies in the flat patch, at one scale for both directions: the
-    /// front as drawn, the back beside (or, for wide drawings, below) it as seen from behind. The
-    /// two islands do not overlap, all triangles are counter-clockwise, and because inflation keeps
-    /// angles nearly, there is little distortion.
+    /// front as drawn; the back, if they are [`UvLayout::Apart`], beside (or, for wide drawings, below) it
+    /// as seen from behind, so that the two islands do not overlap and all triangles are
+    /// counter-clockwise; or, if they are [`UvLayout::Shared`], where the front is. Because inflation
+    /// keeps angles nearly, there is little distortion.
     pub uv: Vec<DVec2>,
     /// Numbers about it.
     pub report: SurfaceReport,
+}
+
+/// Where the back of a body lies in the texture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UvLayout {
+    /// Beside the front: each side has a part of the texture of its own.
+    #[default]
+    Apart,
+    /// Where the front is: what is seen on one side is seen on the other too, and shows twice as fine.
+    Shared,
 }
 
 /// Numbers about a [`Surface`].
@@ -64,7 +75,12 @@ pub struct SurfaceReport {
 impl Surface {
     /// The patch's triangles at `front`, with a back sheet at `back` (interior vertices only) unless
     /// that is none; topology and measures checked, self-intersections left at zero.
-    pub(crate) fn assemble(patch: &Patch, front: Vec<DVec3>, back: Option<Vec<DVec3>>) -> Surface {
+    pub(crate) fn assemble(
+        patch: &Patch,
+        front: Vec<DVec3>,
+        back: Option<Vec<DVec3>>,
+        layout: UvLayout,
+    ) -> Surface {
         let first = patch.n_boundary() as u32;
         let offset = patch.vertices.len() as u32 - first;
         let closed = back.is_some();
@@ -86,7 +102,7 @@ impl Surface {
             ..SurfaceReport::default()
         };
         let silhouette = patch.loops.iter().map(|contour| contour.vertices().collect()).collect();
-        let uv = texture_coordinates(patch, closed);
+        let uv = texture_coordinates(patch, closed, layout);
         Surface { vertices, triangles, silhouette, uv, report }
     }
 }
@@ -97,13 +113,14 @@ pub(crate) fn contours(patch: &Patch) -> Vec<std::ops::Range<u32>> {
 }
 
 /// See [`Surface::uv`].
-fn texture_coordinates(patch: &Patch, closed: bool) -> Vec<DVec2> {
+fn texture_coordinates(patch: &Patch, closed: bool, layout: UvLayout) -> Vec<DVec2> {
     const MARGIN: f64 = 1.0 / 128.0;
     let low = patch.vertices.iter().fold(DVec2::INFINITY, |low, &p| low.min(p));
     let high = patch.vertices.iter().fold(DVec2::NEG_INFINITY, |high, &p| high.max(p));
     let size = high - low;
     // The islands stand beside each other along the shorter side of the drawing's box.
-    let step = match (closed, size.x <= size.y) {
+    let is_apart = closed && layout == UvLayout::Apart;
+    let step = match (is_apart, size.x <= size.y) {
         (false, _) => DVec2::ZERO,
         (true, true) => DVec2::new(0.5, 0.0),
         (true, false) => DVec2::new(0.0, 0.5),
@@ -119,7 +136,11 @@ fn texture_coordinates(patch: &Patch, closed: bool) -> Vec<DVec2> {
     for t in &patch.triangles {
         uv.extend(t.map(|v| clamp(corner + lift + scale * (at(v) - low))));
     }
-    if closed {
+    if closed && !is_apart {
+        for corners in 0..patch.triangles.len() {
+            uv.extend([uv[3 * corners], uv[3 * corners + 2], uv[3 * corners + 1]]);
+        }
+    } else if closed {
         let side = DVec2::new(step.x, 0.0);
         for &[a, b, c] in &patch.triangles {
             uv.extend([a, c, b].map(|v| {

@@ -6,6 +6,5 @@ op.shape = "BODY"
 op.profile = "EVEN"
 op.use_sides = False
 op.depth = 1.0
-op.resolution = "TRIANGLES"
-op.triangles = 2000
+op.resolution = "AUTO"
 op.mirror = "OFF"

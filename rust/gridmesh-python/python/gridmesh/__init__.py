@@ -2,9 +2,9 @@
 
 ``mesh_sketch`` meshes the inside of a drawing, ``inflate`` makes a smooth watertight body of it, ``stitch``
 a flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. ``combine`` unites drawings or
-cuts one from another. ``fill_hole`` and ``fill_holes`` close holes of a mesh with patches that fit their
-boundaries vertex for vertex, ``regrid`` replaces a region by one. ``cut`` divides a mesh along a stroke
-and caps it; ``cut_reach`` tells how far a stroke's ends go.
+cuts one from another, ``thickness`` measures their limbs. ``fill_hole`` and ``fill_holes`` close holes of a
+mesh with patches that fit their boundaries vertex for vertex, ``regrid`` replaces a region by one. ``cut``
+divides a mesh along a stroke and caps it; ``cut_reach`` tells how far a stroke's ends go.
 Positions are float64, indices int32, angles radians, options keyword-only. The same input gives the same
 bytes. The one exception for what cannot be done is ``GridMeshError``.
 """
@@ -29,6 +29,7 @@ from gridmesh._native import (
     mesh_sketch,
     regrid,
     stitch,
+    thickness,
 )
 
 __all__ = [
@@ -51,4 +52,5 @@ __all__ = [
     "mesh_sketch",
     "regrid",
     "stitch",
+    "thickness",
 ]

@@ -31,6 +31,7 @@ __all__ = [
     "mesh_sketch",
     "regrid",
     "stitch",
+    "thickness",
 ]
 
 __version__: str
@@ -42,7 +43,8 @@ _Progress = Callable[[float], object]
 
 class _Options(TypedDict, total=False):
     edge_length: float | None
-    triangles: int | None
+    triangles: int | Literal["auto"] | None
+    max_triangles: int
     boundary: Literal["optimal", "grown"]
     max_distance: float
     closeness: float
@@ -51,6 +53,8 @@ class _Options(TypedDict, total=False):
     mirror: _Axis | Literal["auto"] | None
     self_crossing: Literal["error", "union"]
     proof_nodes: int
+    bend: float
+    density: Literal["width"] | npt.ArrayLike | Sequence[npt.ArrayLike] | None
     relax: bool
     least: bool
     depth: float
@@ -58,6 +62,7 @@ class _Options(TypedDict, total=False):
     curve: npt.ArrayLike | None
     front: _Side
     back: _Side
+    uv: Literal["apart", "shared"]
 
 class GridMeshError(ValueError):
     kind: str
@@ -124,7 +129,8 @@ def mesh_sketch(
     holes: Sequence[_Points] = (),
     *,
     edge_length: float | None = None,
-    triangles: int | None = None,
+    triangles: int | Literal["auto"] | None = None,
+    max_triangles: int = 20000,
     boundary: Literal["optimal", "grown"] = "optimal",
     max_distance: float = 1.5,
     closeness: float = 0.3,
@@ -134,6 +140,8 @@ def mesh_sketch(
     mirror: _Axis | Literal["auto"] | None = None,
     self_crossing: Literal["error", "union"] = "error",
     proof_nodes: int = 0,
+    bend: float = 0.0,
+    density: Literal["width"] | npt.ArrayLike | Sequence[npt.ArrayLike] | None = None,
     relax: bool = True,
     least: bool = True,
     progress: _Progress | None = None,
@@ -145,6 +153,7 @@ def combine(
     *,
     how: Literal["union", "difference"] = "union",
 ) -> list[tuple[npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]]: ...
+def thickness(outline: _Points, holes: Sequence[_Points] = ()) -> npt.NDArray[np.float64]: ...
 def stitch(patch: Patch) -> Surface: ...
 def flat(patch: Patch) -> Surface: ...
 def inflate(
@@ -156,6 +165,7 @@ def inflate(
     front: _Side = None,
     back: _Side = None,
     corner_angle: float = 0.6981317007977318,
+    uv: Literal["apart", "shared"] = "apart",
     progress: _Progress | None = None,
 ) -> Surface: ...
 

@@ -41,7 +41,8 @@ impl Scene {
         size: f64,
         weight: f64,
     ) -> Anything<Self> {
-        let options = SketchOptions { triangles: Some(triangles), boundary, ..SketchOptions::default() };
+        let options =
+            SketchOptions { triangles: Some(triangles), boundary, bend: 0.0, ..SketchOptions::default() };
         let sketch = mesh_sketch(&drawing.outline, &drawing.holes, &options, Progress::NONE)
             .map_err(|error| format!("{}: {error}", drawing.name))?;
         let lattice = sketch.patch.lattice;

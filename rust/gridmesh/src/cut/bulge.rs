@@ -10,7 +10,7 @@ use super::input::triangles;
 use super::options::Keep;
 use super::regions::Spot;
 use crate::cut::cross::Node;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fill::meet::{Box3, count_meetings, near_boxes};
 use crate::fill::{FillOptions, fill_hole};
 use crate::progress::Progress;
@@ -24,10 +24,9 @@ pub(super) enum Bulged {
     Whole,
     /// It bulges less.
     Reduced,
-    /// It would leave the model, however little it bulges.
-    Leaves,
-    /// It would repeat an edge of the other piece.
-    Repeats,
+    /// It has to lie flat: it would leave the model, however little it bulges, or repeat an edge, or its rim has edges
+    /// without a length or touches itself.
+    Flat,
 }
 
 impl Capper<'_> {
@@ -46,7 +45,11 @@ impl Capper<'_> {
         let around = self.side(left);
         let nodes = outline.iter().map(|s| s.node).collect::<Vec<_>>();
         let options = FillOptions { smooth: self.options.smooth, ..FillOptions::default() };
-        let fill = fill_hole(&positions, &around, &nodes, &options, progress)?;
+        let fill = match fill_hole(&positions, &around, &nodes, &options, progress) {
+            // What is filled in space is held to more than what is filled in the unrolled surface.
+            Err(Error::ZeroLengthEdge { .. } | Error::SelfTouching { .. }) => return Ok(Bulged::Flat),
+            fill => fill?,
+        };
         let place: FxHashMap<u32, usize> = nodes.iter().enumerate().map(|(k, &v)| (v, k)).collect();
         let repeats = |t: &[u32; 3]| {
             (0..3).any(|k| {
@@ -56,7 +59,7 @@ impl Capper<'_> {
             })
         };
         if fill.triangles.iter().any(repeats) {
-            return Ok(Bulged::Repeats);
+            return Ok(Bulged::Flat);
         }
         // Without a bulge: what hangs evenly in the rim.
         let rim = nodes.iter().flat_map(|&v| positions[v as usize].to_array()).collect::<Vec<_>>();
@@ -77,7 +80,7 @@ impl Capper<'_> {
                 break;
             }
         }
-        let Some((share, at)) = chosen else { return Ok(Bulged::Leaves) };
+        let Some((share, at)) = chosen else { return Ok(Bulged::Flat) };
         let base = self.first + self.caps.vertices.len() as u32;
         let old = positions.len() as u32;
         let known = nodes.iter().map(|&v| GeomWithData::new(positions[v as usize].to_array(), v));

@@ -12,7 +12,7 @@ use super::cross::Node;
 use super::input::Polygons;
 use super::loops::Loops;
 use super::mirrored;
-use super::options::CutOptions;
+use super::options::{CutOptions, Keep};
 use super::parted::Parted;
 use super::regions::{self, Region, Spot};
 use super::report::Tally;
@@ -166,8 +166,7 @@ pub(super) fn close(
                 report.reduced_caps += 1;
                 continue;
             }
-            Bulged::Leaves => report.reduced_caps += 1,
-            Bulged::Repeats => report.repeated += 1,
+            Bulged::Flat => report.reduced_caps += 1,
         }
         let plan = capper.plan(outline, progress.part(1.0, 1.0))?;
         report.folded += usize::from(plan.folded);
@@ -208,10 +207,13 @@ impl Capper<'_> {
                 self.facets.insert(facet);
             }
         };
-        for part in &self.parted.parts {
+        // Of a piece that is not kept nothing can be repeated.
+        let is_kept = |left: bool| self.options.keep.has(if left { Keep::Left } else { Keep::Right });
+        for part in self.parted.parts.iter().filter(|part| is_kept(part.left)) {
             note(&part.corners);
         }
-        for f in (0..self.faces.len()).filter(|&f| !self.parted.divided[f]) {
+        let whole = (0..self.faces.len()).filter(|&f| !self.parted.divided[f]);
+        for f in whole.filter(|&f| is_kept(self.parted.left[f])) {
             note(self.faces.face(f));
         }
     }
@@ -258,7 +260,7 @@ impl Capper<'_> {
         let n = polygon.len();
         let roll = Roll::new(self.sheet, polygon);
         let base = self.first + self.caps.vertices.len() as u32;
-        let name = |v: u32| polygon.get(v as usize).map_or(base + v.wrapping_sub(n as u32), |s| s.node);
+        let name = |v: u32| polygon.get(v as usize).map_or_else(|| base + (v - n as u32), |s| s.node);
         let mut flat = polygon.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
         flat.extend(&patch.interior);
         let near = sources::nearest_on_rim(n, &flat, &patch.triangles);

@@ -69,6 +69,12 @@ pub(super) fn check(vertices: &[DVec3], faces: Polygons<'_>, stroke: &[DVec3]) -
     Ok(())
 }
 
+/// Corners this near to a triangle may be on its border, but for rounding: twice an area, as a part of the square over the face.
+const ROUNDING: f64 = 1e-12;
+
+/// Ears with such corners come after all others.
+const LAST: f64 = 1e-6;
+
 /// Calls `emit` with the triangles of a face: ears cut off in the plane of its mean normal, the roundest first.
 /// Depends on the face alone, so that it is divided alike wherever it is looked at.
 pub(super) fn triangles(vertices: &[DVec3], corners: &[u32], mut emit: impl FnMut([u32; 3])) {
@@ -83,6 +89,8 @@ pub(super) fn triangles(vertices: &[DVec3], corners: &[u32], mut emit: impl FnMu
     let flat = (0..n).map(|k| DVec2::new(at(k).dot(e), at(k).dot(f))).collect::<Vec<_>>();
     let mut left = (0..n).collect::<Vec<_>>();
     let area = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a);
+    let size = flat.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let rounding = ROUNDING * size * size;
     while left.len() > 3 {
         let m = left.len();
         let mut best = (f64::NEG_INFINITY, 0);
@@ -92,16 +100,18 @@ pub(super) fn triangles(vertices: &[DVec3], corners: &[u32], mut emit: impl FnMu
             let double = area(a, b, c);
             let edges = (b - a).length_squared() + (c - b).length_squared() + (a - c).length_squared();
             let mut shape = double / edges.max(f64::MIN_POSITIVE);
+            // How far inside the triangle another corner is, or outside if it is negative.
             let inside = |&o: &usize| {
-                o != i
-                    && o != j
-                    && o != l
-                    && area(a, b, flat[o]) >= 0.0
-                    && area(b, c, flat[o]) >= 0.0
-                    && area(c, a, flat[o]) >= 0.0
+                let p = flat[o];
+                area(a, b, p).min(area(b, c, p)).min(area(c, a, p))
             };
-            if double > 0.0 && left.iter().any(inside) {
+            let others = left.iter().filter(|&&o| o != i && o != j && o != l);
+            let deepest = others.map(inside).fold(f64::NEG_INFINITY, f64::max);
+            if double > 0.0 && deepest >= 0.0 {
                 shape = -1.0;
+            } else if double > 0.0 && deepest >= -rounding {
+                // A corner on the side that is cut would be left with a triangle of no area.
+                shape *= LAST;
             }
             if shape > best.0 {
                 best = (shape, k);
@@ -122,4 +132,41 @@ pub(super) fn volume(vertices: &[DVec3], origin: DVec3, corners: &[u32]) -> f64 
         sum += a.dot(b.cross(c));
     });
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_with_corners_in_one_line_are_divided_into_triangles_with_areas() {
+        // A comb.
+        for n in 2..12u32 {
+            let mut outline = vec![DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, -1.0, 0.0)];
+            for k in (0..n).rev() {
+                let at = |t: f64| -1.0 + 2.0 * (f64::from(k) + t) / f64::from(n);
+                let high = if k == n - 1 { 1.0 } else { at(0.6) };
+                outline.extend([DVec3::new(high, 0.4, 0.0), DVec3::new(at(0.0), 0.4, 0.0)]);
+                if k > 0 {
+                    outline.extend([DVec3::new(at(0.0), -0.5, 0.0), DVec3::new(at(-0.4), -0.5, 0.0)]);
+                }
+            }
+            for turn in 0..40 {
+                let turn = glam::DMat3::from_rotation_z(0.37 * f64::from(turn))
+                    * glam::DMat3::from_rotation_x(0.71 * f64::from(turn));
+                let vertices = outline.iter().map(|&p| turn * p).collect::<Vec<_>>();
+                let corners = (0..vertices.len() as u32).collect::<Vec<_>>();
+                let (mut sum, mut least) = (0.0, f64::INFINITY);
+                triangles(&vertices, &corners, |t| {
+                    let [a, b, c] = t.map(|v| outline[v as usize]);
+                    let area = 0.5 * (b - a).cross(c - a).z;
+                    sum += area;
+                    least = least.min(area);
+                });
+                let next = outline.iter().cycle().skip(1);
+                let whole: f64 = outline.iter().zip(next).map(|(p, q)| 0.5 * p.cross(*q).z).sum();
+                assert!((sum - whole).abs() < 1e-12 && least > 1e-4, "{n} {least} {sum} {whole}");
+            }
+        }
+    }
 }

@@ -29,7 +29,8 @@ pub struct CutReport {
     pub cap_min_angle: f64,
     /// Mean of twice the inscribed by the circumscribed radius over the caps; 1 without caps.
     pub cap_radius_ratio: f64,
-    /// Caps that bulge less than they should, or not at all, because they would leave the model.
+    /// Caps that bulge less than they should, or not at all, because they would leave the model or repeat one of its edges,
+    /// or their line has edges without a length or touches itself.
     pub reduced_caps: usize,
     /// Caps that lie folded on the swept surface, because their line crosses itself there.
     pub folded: usize,

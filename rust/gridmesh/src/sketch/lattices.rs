@@ -86,9 +86,8 @@ impl Job<'_> {
         Lattice { origin: nearest, ..asked }
     }
 
-    /// Of the six angles of one lattice that which turns with the drawing: the search breaks ties by
-    /// lattice direction, and shifts are not the same in all six frames.
-    fn turned_with_drawing(&self, angle: f64) -> f64 {
+    /// From the centre to the farthest point of the outline.
+    pub(super) fn farthest(&self) -> DVec2 {
         let mut farthest = DVec2::ZERO;
         for &point in self.contours[0].points() {
             let out = point - self.centre;
@@ -96,7 +95,13 @@ impl Job<'_> {
                 farthest = out;
             }
         }
-        let ahead = farthest.to_angle();
+        farthest
+    }
+
+    /// Of the six angles of one lattice that which turns with the drawing: the search breaks ties by
+    /// lattice direction, and shifts are not the same in all six frames.
+    fn turned_with_drawing(&self, angle: f64) -> f64 {
+        let ahead = self.farthest().to_angle();
         ahead + (angle - ahead).rem_euclid(FRAC_PI_3)
     }
 }

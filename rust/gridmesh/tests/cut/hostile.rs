@@ -343,3 +343,29 @@ fn faces_without_area_repeat_no_edge() {
         }
     }
 }
+
+#[test]
+fn edge_lengths_that_ask_for_too_much_are_refused_before_the_work() {
+    let stroke = line(&[(-1.0, 0.4), (2.0, 0.6)]);
+    for (mesh, y) in [(cube(), 0.0), (ball(12), -0.5)] {
+        let stroke = stroke.iter().map(|p| *p + y * DVec3::Y).collect::<Vec<_>>();
+        for length in [1e-300, 1e-12, 1e-9, 1e-6, 1e-4] {
+            for sweep in [Sweep::Along(-DVec3::Z), Sweep::Through(DVec3::new(0.3, 0.2, 9.0))] {
+                for smooth in [Smooth::Flat, Smooth::Tangent] {
+                    for gap in [0.0, 0.01] {
+                        let edge_length = Some(length);
+                        let options = CutOptions { edge_length, smooth, gap, ..CutOptions::new(sweep) };
+                        let refused = mesh.cut(&stroke, &options).err();
+                        assert_eq!(refused.map_or("none", |e| e.kind()), "too_large", "{length}");
+                    }
+                }
+            }
+        }
+        let options = CutOptions { edge_length: Some(0.02), ..down() };
+        assert_closed(&mesh.cut(&stroke, &options).unwrap());
+    }
+    // The limit itself: a cap of two million triangles.
+    let told = cube().cut(&stroke, &CutOptions { edge_length: Some(1e-3), ..down() }).err();
+    let told = told.map(|e| e.to_string()).unwrap_or_default();
+    assert!(told.contains("2.3") && told.contains("2.000e6"), "{told}");
+}

@@ -142,7 +142,8 @@ pub fn untouched(mesh: &Mesh, cut: &Cut) -> BTreeMap<i32, Side> {
         for f in 0..faces.len() {
             let source = piece.source_face[f];
             let old = faces.face(f).iter().map(|&v| piece.source_vertices[v as usize][0]).collect::<Vec<_>>();
-            if source >= 0 && mesh.faces().face(source as usize) == old {
+            let is_old = |v: &u32| piece.source_weights[*v as usize][0] == 1.0;
+            if source >= 0 && mesh.faces().face(source as usize) == old && faces.face(f).iter().all(is_old) {
                 found.insert(source, piece.side);
             }
         }

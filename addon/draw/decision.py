@@ -1,0 +1,359 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a stroke does, and to which body: the same rule while it is drawn and when it is finished.
+
+numpy only, no bpy. A decision depends on the stroke, the keys that are held and the bodies that are there; it changes
+nothing. Adding is the default, to take away is asked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..native import native
+from ..outlines import Plane, area
+from .trace import Mirror, Trace, closed
+
+Part = tuple[np.ndarray, list[np.ndarray]]
+"""An outline and its holes, (n, 2) each."""
+
+TURNED, APART = 0.94, 0.5
+"""A stroke is in a body's plane if its own is turned by at most 20 degrees from it (here the cosine), and is at most
+this part of the body's size away from its middle: views are seldom turned back exactly."""
+
+CHOSEN_TURNED, CHOSEN_APART = 0.99, 0.1
+"""The same where the plane was chosen and not only looked at, and for bodies that are joined: 8 degrees."""
+
+EDGE_ON = 0.26
+"""Sine of 15 degrees: a stroke does not take the plane of a body that is seen at less."""
+
+
+class DecisionError(ValueError):
+    """A stroke does nothing. The message says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A body as decisions see it: its outline and holes in the frame of its plane, in the world's units."""
+
+    name: str
+    plane: Plane
+    outline: np.ndarray
+    holes: list[np.ndarray]
+    thickness: float = 0.0
+    """From its plane to where it ends, on the thicker side."""
+    surface: np.ndarray | None = None
+    """(k, 3) points of its surface, in the frame of its plane."""
+    low: np.ndarray = field(init=False)
+    high: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "low", self.outline.min(axis=0))
+        object.__setattr__(self, "high", self.outline.max(axis=0))
+
+    @property
+    def part(self) -> Part:
+        """Outline and holes."""
+        return self.outline, self.holes
+
+    @property
+    def size(self) -> float:
+        """Diagonal of its bounds."""
+        return float(np.linalg.norm(self.high - self.low))
+
+    def height(self, place: np.ndarray) -> float:
+        """How far its surface is from its plane near a point (3,) of the plane's frame, on the side of that."""
+        if self.surface is None or not len(self.surface):
+            return self.thickness
+        apart = self.surface[:, :2] - place[:2]
+        near = np.argsort((apart * apart).sum(axis=1), kind="stable")[:12]
+        side = -1.0 if place[2] < 0 else 1.0
+        return float((side * self.surface[near, 2]).max())
+
+    def on(self, plane: Plane) -> Part:
+        """Outline and holes in the frame of another plane."""
+
+        def laid(ring: np.ndarray) -> np.ndarray:
+            return plane.local(self.plane.world(np.column_stack([ring, np.zeros(len(ring))])))[:, :2]
+
+        return laid(self.outline), [laid(hole) for hole in self.holes]
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What was asked for: an action, or the keys that are held."""
+
+    action: str = "AUTO"
+    subtract: bool = False
+    part: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """What a stroke does."""
+
+    action: str
+    """"NEW", "EXTEND", "TRIM", "HOLE" or "PART"; empty if it does nothing."""
+    plane: Plane
+    strokes: list[np.ndarray]
+    """(n, 2) in the plane, closed: the stroke, and its mirror image if that belongs to the same body."""
+    body: str = ""
+    """The body that is changed, or that a part belongs to."""
+    joined: tuple[str, ...] = ()
+    """Other bodies that become one with it."""
+    hint: str = ""
+    """What else is worth saying."""
+    symmetric: bool = False
+
+    def parts(self) -> list[Part]:
+        """What the strokes cover, united where they meet."""
+        return covered(self.strokes)
+
+
+def decide(trace: Trace, shapes: list[Shape], wanted: Wanted, mirror: Mirror | None = None) -> list[Decision]:
+    """Decide what a stroke does; with a mirror its image too, in the same decision if both belong together.
+
+    Raises
+    ------
+    DecisionError
+        If it does nothing. What it would do if it were a little longer is not guessed.
+    """
+    first = _decided(trace, shapes, wanted)
+    if mirror is None:
+        return [first]
+    image = mirror.image(first.plane, first.strokes[0])
+    if first.action in {"NEW", "PART"} and _meet((first.strokes[0], []), (image, [])):
+        return [_with(first, [first.strokes[0], image], symmetric=True)]
+    world = first.plane.world(np.column_stack([image, np.zeros(len(image))]))
+    try:
+        second = _decided(trace.through(world), shapes, wanted)
+    except DecisionError:
+        return [first]
+    if second.action in {"EXTEND", "TRIM", "HOLE"} and second.body == first.body:
+        joined = tuple(dict.fromkeys((*first.joined, *second.joined)))
+        action = "TRIM" if "TRIM" in {first.action, second.action} else first.action
+        return [_with(first, [first.strokes[0], image], action=action, joined=joined)]
+    if second.action in {"NEW", "PART"}:
+        second = _with(second, [image]) if second.plane is first.plane else second
+    return [first, second]
+
+
+def _with(decision: Decision, strokes: list[np.ndarray], **changed: Any) -> Decision:
+    values = {**decision.__dict__, "strokes": strokes, **changed}
+    return Decision(**values)
+
+
+@dataclass(frozen=True, eq=False)
+class _Met:
+    """A body that a stroke may change, and how the stroke lies to it."""
+
+    shape: Shape
+    how: str
+    stroke: np.ndarray
+    begins: bool
+    """Whether the stroke begins in it."""
+    depth: float
+    inside: int
+    """Points of the stroke that lie in it."""
+
+
+def _decided(trace: Trace, shapes: list[Shape], wanted: Wanted) -> Decision:
+    own = trace.on(trace.plane)
+    if own is None or not len(own):
+        raise DecisionError("the stroke leaves the plane; turn the view or choose another plane")
+    own = closed(own)
+    action = wanted.action
+    taking = action in {"TRIM", "HOLE"} or (action == "AUTO" and wanted.subtract)
+    met = _ranked([one for shape in shapes if (one := _met(trace, shape, taking)) is not None])
+    if taking:
+        if not met:
+            raise DecisionError("there is no body under the stroke to take away from")
+        return _taken(met[0])
+    if action == "PART" or (action == "AUTO" and wanted.part):
+        return _part(trace, own, met, shapes)
+    across = [one for one in met if one.how == "across"]
+    if action == "EXTEND":
+        across += [one for one in met if one.how == "around"]
+        if not across:
+            reason = (
+                f"the stroke lies inside '{met[0].shape.name}', which it does not extend"
+                if met
+                else "there is no body under the stroke to extend"
+            )
+            raise DecisionError(reason)
+    if across and action != "NEW":
+        return _extended(across[0], shapes)
+    return Decision("NEW", trace.plane, [own], hint=_hidden(trace, own, shapes))
+
+
+def _taken(met: _Met) -> Decision:
+    hint = "nothing would be left of it" if met.how == "around" else ""
+    action = "HOLE" if met.how == "inside" else "TRIM"
+    return Decision(action, met.shape.plane, [met.stroke], met.shape.name, hint=hint)
+
+
+def _extended(met: _Met, shapes: list[Shape]) -> Decision:
+    plane = met.shape.plane
+    joined = []
+    for other in shapes:
+        if other is met.shape or not together(met.shape, other):
+            continue
+        part = other.on(plane)
+        # What overlaps already was drawn as a part of its own and stays one.
+        if _meet((met.stroke, []), part) and not _meet(met.shape.part, part):
+            joined.append(other.name)
+    return Decision("EXTEND", plane, [met.stroke], met.shape.name, tuple(joined))
+
+
+def _part(trace: Trace, own: np.ndarray, met: list[_Met], shapes: list[Shape]) -> Decision:
+    if met:
+        return Decision("PART", met[0].shape.plane, [met[0].stroke], met[0].shape.name)
+    under = []
+    for shape in shapes:
+        points = trace.on(shape.plane)
+        if trace.seen and points is not None and inside(shape.part, points[:1])[0]:
+            under.append((trace.depth(shape.plane), shape.name))
+    if under:
+        return Decision("PART", trace.plane, [own], min(under)[1])
+    return Decision("NEW", trace.plane, [own], hint="there is no body that it could be a part of")
+
+
+def _hidden(trace: Trace, own: np.ndarray, shapes: list[Shape]) -> str:
+    """Say so if a new body would not be seen, or would hide another."""
+    world = trace.plane.world(np.column_stack([own, np.zeros(len(own))]))
+    for shape in shapes:
+        place = shape.plane.local(world)
+        middle = place.mean(axis=0)
+        turned = abs(trace.plane.axes[2] @ shape.plane.axes[2]) < TURNED
+        if turned or abs(middle[2]) > shape.thickness:
+            continue
+        how = _lies(shape, place[:, :2])
+        # As thick as a ball of its area: that is the most that sticks out.
+        if how == "inside" and abs(middle[2]) + np.sqrt(area(own) / np.pi) < shape.height(middle):
+            return f"inside '{shape.name}': not visible; use Plane: Surface"
+        if how == "around":
+            return f"'{shape.name}' will be inside it: not visible"
+    return ""
+
+
+def _met(trace: Trace, shape: Shape, taking: bool) -> _Met | None:
+    """How a stroke lies to a body; None if it is not in its plane or beside it."""
+    points = trace.on(shape.plane)
+    if points is None:
+        return None
+    begins = bool(inside(shape.part, points[:1])[0])
+    points = closed(points)
+    turned = abs(float(trace.plane.axes[2] @ shape.plane.axes[2]))
+    apart = abs(float(trace.plane.local(shape.plane.origin[None])[0, 2])) / max(shape.size, 1e-30)
+    limits = (TURNED, APART) if trace.free else (CHOSEN_TURNED, CHOSEN_APART)
+    near = turned > limits[0] and apart < limits[1]
+    sine = abs(float(trace.directions[0] @ shape.plane.axes[2]))
+    if not near and not (trace.seen and begins and sine > EDGE_ON and (trace.free or taking)):
+        return None
+    how = _lies(shape, points)
+    if how == "apart":
+        return None
+    within = int(np.count_nonzero(inside(shape.part, points)))
+    return _Met(shape, how, points, begins, trace.depth(shape.plane), within)
+
+
+def _ranked(met: list[_Met]) -> list[_Met]:
+    """Those that the stroke begins in first: the nearest, and of those in one plane the smallest."""
+    begun = [one for one in met if one.begins]
+    nearest = min((one.depth for one in begun), default=0.0)
+    tie = max((one.shape.thickness + 0.02 * one.shape.size for one in begun), default=0.0)
+
+    def rank(one: _Met) -> tuple[bool, float, float, int, str]:
+        far = 0.0 if not one.begins or one.depth - nearest <= tie else one.depth
+        size = area(one.shape.outline) if one.begins else 0.0
+        return not one.begins, far, size, -one.inside, one.shape.name
+
+    return sorted(met, key=rank)
+
+
+def together(one: Shape, other: Shape) -> bool:
+    """Whether two bodies lie in one plane."""
+    if abs(one.plane.axes[2] @ other.plane.axes[2]) < CHOSEN_TURNED:
+        return False
+    world = other.plane.world(np.column_stack([other.outline, np.zeros(len(other.outline))]))
+    off = np.abs(one.plane.local(world)[:, 2]).max()
+    return bool(off < CHOSEN_APART * max(one.size, other.size))
+
+
+def _lies(shape: Shape, points: np.ndarray) -> str:
+    """How a stroke lies to a body; while it encloses nothing yet, its points tell."""
+    if (points.max(axis=0) < shape.low).any() or (points.min(axis=0) > shape.high).any():
+        return "apart"
+    if len(points) > 2:
+        try:
+            return relation(shape.outline, shape.holes, points)
+        except native("combine").GridMeshError:
+            pass  # a line: it is told by its points
+    within = inside(shape.part, points)
+    return "inside" if within.all() else "across" if within.any() else "apart"
+
+
+def relation(outline: np.ndarray, holes: list[np.ndarray], stroke: np.ndarray) -> str:
+    """How a stroke (n, 2) lies to a drawing: "apart", "inside", "around" or "across".
+
+    Holes count as outside. Raises what `gridmesh.combine` raises for strokes that enclose nothing.
+    """
+    gridmesh = native("combine")
+    own = area(outline) - sum(area(hole) for hole in holes)
+    rest = sum(_area(part) for part in gridmesh.combine(outline, stroke, holes, how="difference"))
+    both = sum(_area(part) for part in gridmesh.combine(outline, stroke, holes, how="union"))
+    drawn, taken = both - rest, own - rest
+    least = 1e-6 * max(own, drawn)
+    if taken <= least:
+        return "apart"
+    if rest <= least:
+        return "around"
+    return "inside" if drawn - taken <= least else "across"
+
+
+def _area(part: Part) -> float:
+    outline, holes = part
+    return area(outline) - sum(area(hole) for hole in holes)
+
+
+def _meet(one: Part, other: Part) -> bool:
+    # Each outline filled against the other with its holes: one may lie in a hole of the other.
+    try:
+        return relation(*one, other[0]) != "apart" and relation(*other, one[0]) != "apart"
+    except native("combine").GridMeshError:
+        return False  # one encloses nothing yet
+
+
+def united(one: Part, other: Part) -> list[Part]:
+    """What is in either of two parts, the largest first."""
+    gridmesh = native("combine")
+    parts = gridmesh.combine(one[0], other[0], one[1], how="union")
+    for hole in other[1]:
+        # What of the other's hole is not covered stays open.
+        for open_part, _ in gridmesh.combine(hole, one[0], [], how="difference"):
+            outline, holes = parts[0]
+            parts = gridmesh.combine(outline, open_part, holes, how="difference") + parts[1:]
+    return parts
+
+
+def covered(strokes: list[np.ndarray]) -> list[Part]:
+    """What strokes (n, 2) cover: their outer outlines, united where they meet."""
+    gridmesh = native("combine")
+    parts = gridmesh.combine(strokes[0], strokes[0], [], how="union")[:1]
+    for stroke in strokes[1:]:
+        parts = united(parts[0], (stroke, []))
+    return parts
+
+
+def inside(part: Part, points: np.ndarray) -> np.ndarray:
+    """Whether points (n, 2) lie inside an outline with holes, by the parity of crossings."""
+    odd = np.zeros(len(points), bool)
+    for ring in (part[0], *part[1]):
+        a, b = ring, np.roll(ring, -1, axis=0)
+        spans = (a[None, :, 1] > points[:, 1, None]) != (b[None, :, 1] > points[:, 1, None])
+        rise = np.where(spans, b[None, :, 1] - a[None, :, 1], 1.0)
+        x = a[None, :, 0] + (points[:, 1, None] - a[None, :, 1]) * (b - a)[None, :, 0] / rise
+        odd ^= (np.count_nonzero(spans & (x > points[:, 0, None]), axis=1) % 2).astype(bool)
+    return odd

@@ -1,0 +1,278 @@
+//! The lattice bends: a conformal map takes the drawing to a plane in which its outline runs along the
+//! directions of a straight lattice.
+//!
+//! The lattice is laid in that bent plane and its vertices are pulled back: inside, triangles stay
+//! equilateral but for their size; outside, the steps are gone in which a straight lattice follows a
+//! limb that runs askew. The map has derivative exp(u + i v). The rotation v is harmonic and turns
+//! the outline's tangents into multiples of 60 degrees, found by dynamic programming; u, the log of the
+//! scale, is its harmonic conjugate; the map itself is the one whose gradient is nearest. All solves
+//! are on a coarse triangulation of the drawing, the carrier.
+//!
+//! Everything is computed in the drawing's own frame (centred, turned by its farthest point, edges of
+//! length one, rounded to a millionth of an edge), so that a drawing that is moved, turned or scaled
+//! bends the same way.
+
+pub(crate) mod carrier;
+pub(crate) mod choose;
+pub(crate) mod conformal;
+pub mod directions;
+mod grid;
+pub(crate) mod image;
+mod mirrored;
+mod sized;
+mod tangents;
+mod width;
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use crate::axial::Axial;
+use crate::curve::ClosedCurve;
+use crate::lattice::Lattice;
+use crate::options::Density;
+use crate::outline::Outline;
+use carrier::{Carrier, Line};
+use image::{BentContours, Image, WayBack};
+
+/// Coordinates in a drawing's own frame are multiples of this, in edges.
+const GRAIN: f64 = 1.0 / 1_048_576.0;
+
+/// A drawing in its own frame, in edges, and the coarse triangulation that carries its maps.
+pub(crate) struct Ground {
+    /// From the drawing to its frame: [`Lattice::to_units`].
+    frame: Lattice,
+    lines: Vec<Line>,
+    carrier: Carrier,
+    /// Wishes for the number of triangles at the carrier's boundary vertices.
+    densities: Option<Vec<f64>>,
+    asks_width: bool,
+    /// The first axis of the frame is an axis of symmetry.
+    is_symmetric: bool,
+}
+
+impl Ground {
+    /// `frame`: a point and a direction that move with the drawing, and the edge length. None where
+    /// the contours are too near to each other.
+    pub(crate) fn new(
+        contours: &[ClosedCurve],
+        frame: Lattice,
+        density: Option<&Density>,
+        is_symmetric: bool,
+    ) -> Option<Self> {
+        let rounded = |p: &DVec2| (frame.to_units(*p) / GRAIN).round() * GRAIN;
+        let line = |c: &ClosedCurve| Line::new(c.points().iter().map(rounded).collect());
+        let lines: Vec<Line> = contours.iter().map(line).collect();
+        let carrier = Carrier::new(&lines)?;
+        let densities = match density {
+            Some(Density::PerPoint(given)) => Some(densities(contours, &carrier, given)?),
+            _ => None,
+        };
+        let asks_width = density == Some(&Density::Width);
+        Some(Self { frame, lines, carrier, densities, asks_width, is_symmetric })
+    }
+}
+
+/// The wishes at input points, interpolated at the carrier's boundary vertices.
+fn densities(contours: &[ClosedCurve], carrier: &Carrier, given: &[Vec<f64>]) -> Option<Vec<f64>> {
+    let mut found = Vec::new();
+    for (k, (contour, rim)) in contours.iter().zip(&carrier.rims).enumerate() {
+        let given = given.get(k).filter(|given| !given.is_empty());
+        for &s in &rim.arcs {
+            let Some(given) = given else {
+                found.push(1.0);
+                continue;
+            };
+            let (segment, t) = contour.source(s / rim.length * contour.length());
+            let (i, n) = (segment as usize, given.len());
+            let (from, to) = (given.get(i)?.ln(), given.get((i + 1) % n)?.ln());
+            found.push((from + t * (to - from)).exp());
+        }
+    }
+    Some(found)
+}
+
+/// A bent drawing: contours to lay a straight lattice in, and the way back.
+pub(crate) struct Bent {
+    ground: Arc<Ground>,
+    image: Image,
+    drawing: BentContours,
+    /// How far it is bent, of what was asked for: 0 to 1.
+    pub(crate) share: f64,
+    /// The angle by which the drawing is turned as a whole.
+    turn: f64,
+    /// What its range of sizes is worth, in turns.
+    pub(crate) price: f64,
+}
+
+impl Bent {
+    /// The bent contours, in edges.
+    pub(crate) fn contours(&self) -> &[ClosedCurve] {
+        &self.drawing.contours
+    }
+
+    /// The direction of the axis of symmetry, which passes through the origin.
+    pub(crate) fn axis(&self) -> DVec2 {
+        DVec2::from_angle(self.turn)
+    }
+
+    /// Largest over smallest local edge length.
+    pub(crate) fn scale_range(&self) -> f64 {
+        let (low, high) =
+            self.image.u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &u| (l.min(u), h.max(u)));
+        (high - low).exp()
+    }
+
+    /// A lattice of the bent plane as it lies in the middle of the drawing: where positions are measured.
+    pub(crate) fn lattice(&self, bent: &Lattice) -> Lattice {
+        let frame = &self.ground.frame;
+        Lattice {
+            origin: frame.origin,
+            angle: frame.angle + bent.angle - self.turn,
+            edge_length: frame.edge_length * bent.edge_length,
+        }
+    }
+
+    /// The outline with arc lengths of the drawing, in edges.
+    pub(crate) fn outline(&self, outline: Outline, bent: &Lattice) -> Outline {
+        let h = bent.edge_length;
+        let drawn = |(contour, arcs): (usize, &Vec<f64>)| {
+            arcs.iter().map(|s| self.drawing.drawn_arc(contour, s * h) / h).collect()
+        };
+        let arcs = outline.arcs.iter().enumerate().map(drawn).collect();
+        Outline { arcs, ..outline }
+    }
+
+    /// Where lattice points lie in the drawing, in units of [`Bent::lattice`]; those of the outline's
+    /// paths come first, and are taken back beside where they belong.
+    pub(crate) fn positions(&self, outline: &Outline, bent: &Lattice, points: &[Axial]) -> Vec<DVec2> {
+        let way = WayBack::new(&self.ground.carrier, &self.image);
+        let lattice = self.lattice(bent);
+        let known = outline.arcs.iter().enumerate().flat_map(|(k, arcs)| arcs.iter().map(move |&s| (k, s)));
+        let mut known = known.map(Some).chain(std::iter::repeat(None));
+        points
+            .iter()
+            .map(|&point| {
+                let x = bent.from_units(Lattice::units(point));
+                let at = match known.next().flatten() {
+                    Some((contour, s)) => way.beside(contour, s * bent.edge_length, x),
+                    None => way.at(x),
+                };
+                lattice.to_units(self.ground.frame.from_units(at))
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_3, TAU};
+
+    use super::conformal::{Operators, keep_area};
+    use super::tangents::Tangents;
+    use super::*;
+    use crate::contours::read_contours;
+    use crate::error::Result;
+    use crate::progress::Progress;
+
+    fn ground(outline: &[DVec2], holes: &[Vec<DVec2>]) -> Result<Arc<Ground>> {
+        let contours = read_contours(outline, holes)?;
+        let frame = Lattice { origin: DVec2::ZERO, angle: 0.0, edge_length: 1.0 };
+        let found = Ground::new(&contours, frame, None, false);
+        found
+            .map(Arc::new)
+            .ok_or(crate::error::Error::Solver { stage: "test", reason: "no carrier".to_owned() })
+    }
+
+    fn circle(radius: f64, centre: DVec2) -> Vec<DVec2> {
+        (0..200).map(|i| centre + radius * DVec2::from_angle(TAU * f64::from(i) / 200.0)).collect()
+    }
+
+    fn bar(angle: f64, length: f64, width: f64) -> Vec<DVec2> {
+        let ends = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let size = 0.5 * DVec2::new(length, width);
+        ends.map(|e| DVec2::from_angle(angle).rotate(DVec2::from_array(e) * size)).to_vec()
+    }
+
+    /// The first rotation from a start angle, with its turns.
+    fn rotation(ground: &Ground, start: f64, beta: f64) -> Result<(Vec<f64>, usize)> {
+        let tangents: Vec<Tangents> =
+            ground.lines.iter().map(|line| Tangents::new(&line.points, &line.arcs)).collect();
+        let operators = Operators::new(&ground.carrier, &tangents)?;
+        let robin = operators.robin(beta)?;
+        let mut found = operators.rotations(&[start], beta, &robin, 1.0)?;
+        let found = found.remove(0);
+        Ok((found.v, found.turns))
+    }
+
+    #[test]
+    fn a_map_of_no_rotation_is_the_drawing() -> Result<()> {
+        let ground = ground(&circle(12.0, DVec2::ZERO), &[])?;
+        let carrier = &ground.carrier;
+        let operators =
+            Operators::new(carrier, &[Tangents::new(&ground.lines[0].points, &ground.lines[0].arcs)])?;
+        let solver = operators.solver()?;
+        let v = vec![0.4; carrier.vertices.len()];
+        let mut u = solver.scale(&v)?;
+        keep_area(carrier, &mut u);
+        assert!(u.iter().all(|u| u.abs() < 1e-6));
+        let image = solver.map(carrier, &u, &v)?;
+        let shift = image[0] - DVec2::from_angle(0.4).rotate(carrier.vertices[0]);
+        for (p, q) in carrier.vertices.iter().zip(&image) {
+            assert!((DVec2::from_angle(0.4).rotate(*p) + shift).distance(*q) < 1e-6);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_bar_askew_is_turned_into_a_lattice_direction() -> Result<()> {
+        let ground = ground(&bar(0.3, 60.0, 6.0), &[])?;
+        let (v, turns) = rotation(&ground, 0.0, 3.0)?;
+        assert_eq!(turns, 6);
+        let middle = (0..v.len()).filter(|&i| ground.carrier.vertices[i].length() < 15.0);
+        for i in middle {
+            let off = (0.3 + v[i]) / FRAC_PI_3;
+            assert!((off - off.round()).abs() * FRAC_PI_3 < 0.03, "{off}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn turns_add_up_to_six_for_an_outline_and_for_a_hole() -> Result<()> {
+        let hole: Vec<DVec2> = circle(5.0, DVec2::new(2.0, 1.0));
+        let ground = ground(&circle(16.0, DVec2::ZERO), &[hole])?;
+        for start in [0.0, 0.3, 0.8] {
+            assert_eq!(rotation(&ground, start, 1.0)?.1, 12);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn the_way_back_leads_to_the_drawing() -> Result<()> {
+        let wavy: Vec<DVec2> = (0..300)
+            .map(|i| {
+                let t = TAU * f64::from(i) / 300.0;
+                (14.0 + 4.0 * (3.0 * t).cos() + 2.0 * (2.0 * t + 1.0).sin()) * DVec2::from_angle(t)
+            })
+            .collect();
+        let ground = ground(&wavy, &[])?;
+        let bends = choose::candidates(&ground, 1.0, 2, Progress::NONE)?;
+        assert!(!bends.is_empty());
+        for bent in bends {
+            let carrier = &ground.carrier;
+            let way = WayBack::new(carrier, &bent.image);
+            for (p, q) in carrier.vertices.iter().zip(&bent.image.positions) {
+                assert!(way.at(*q).distance(*p) < 1e-9);
+            }
+            // Arc lengths lead to points whose images they came from.
+            let (contour, line) = (&bent.contours()[0], &ground.lines[0]);
+            for k in 0..200 {
+                let s = contour.length() * f64::from(k) / 200.0;
+                let drawn = bent.drawing.drawn_arc(0, s).rem_euclid(line.length());
+                assert!(way.at(contour.point_at(s)).distance(line.at(drawn)) < 0.3);
+            }
+            assert!(bent.scale_range() > 1.0 && bent.scale_range() < 20.0);
+        }
+        Ok(())
+    }
+}

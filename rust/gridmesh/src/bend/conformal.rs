@@ -1,0 +1,217 @@
+//! Conformal maps of the drawing by their derivative exp(u + i v): rotation v, log scale u, map f.
+
+use std::f64::consts::FRAC_PI_3;
+
+use glam::DVec2;
+
+use super::carrier::Carrier;
+use super::directions::{Directions, directions};
+use super::tangents::Tangents;
+use super::width::room;
+use crate::error::Result;
+use crate::inflate::laplace::{Factor, Pattern, cotangent_weights};
+use crate::inflate::topology::Topology;
+
+/// What keeps the operators definite whose constants are free.
+const FLOOR: f64 = 1e-9;
+/// Rounds of directions for the rotation and rotation for the directions.
+const ROUNDS: usize = 6;
+
+/// The cotangent Laplacian of a carrier and what stands on its boundary; lengths in edges.
+pub struct Operators {
+    topology: Topology,
+    weights: Vec<f64>,
+    pattern: Pattern,
+    /// Length of contour that each boundary vertex stands for.
+    lengths: Vec<f64>,
+    /// The part of it that wants to run along a lattice direction.
+    pulls: Vec<f64>,
+    /// Smoothed tangent angle at each boundary vertex.
+    tangents: Vec<f64>,
+    /// Per contour: first vertex, number of vertices, sixths of a circle that the tangent turns.
+    contours: Vec<(usize, usize, i32)>,
+}
+
+/// A rotation and the directions that it was made for.
+#[derive(Clone)]
+pub struct Rotation {
+    /// At each vertex of the carrier, in radians.
+    pub v: Vec<f64>,
+    /// Sum over the contours.
+    pub turns: usize,
+    pub misfit: f64,
+}
+
+/// Operators and one factorisation for each boundary weight.
+pub struct Solver<'a> {
+    pub operators: &'a Operators,
+    neumann: Factor<'a>,
+}
+
+impl Operators {
+    pub fn new(carrier: &Carrier, tangents: &[Tangents]) -> Result<Self> {
+        let topology = Topology::new(carrier.vertices.len(), &carrier.triangles);
+        let weights = cotangent_weights(&topology, &carrier.vertices, &carrier.triangles)?;
+        let pattern = Pattern::new(&topology, 0)?;
+        let mut at_rim = Vec::new();
+        for (rim, tangents) in carrier.rims.iter().zip(tangents) {
+            at_rim.extend(rim.arcs.iter().map(|&s| tangents.at(s)));
+        }
+        let contours =
+            carrier.rims.iter().zip(tangents).map(|(rim, t)| (rim.start, rim.len(), t.total())).collect();
+        let lengths = carrier.lengths();
+        let pulls = lengths.iter().zip(room(carrier)).map(|(length, room)| length * room).collect();
+        Ok(Self { topology, weights, pattern, lengths, pulls, tangents: at_rim, contours })
+    }
+
+    /// The Laplacian with `beta` times the length of contour that wants a direction on its diagonal.
+    pub fn robin(&self, beta: f64) -> Result<Factor<'_>> {
+        let diagonal = |v: usize| self.pulls.get(v).map_or(0.0, |pull| beta * pull);
+        self.pattern.factor(&self.topology, &self.weights, diagonal)
+    }
+
+    pub fn solver(&self) -> Result<Solver<'_>> {
+        Ok(Solver {
+            operators: self,
+            neumann: self.pattern.factor(&self.topology, &self.weights, |_| FLOOR)?,
+        })
+    }
+
+    /// The directions for a rotation, contour by contour.
+    fn directions(&self, v: &[f64], price: f64) -> Vec<Directions> {
+        let of = |&(start, n, total): &(usize, usize, i32)| {
+            let range = start..start + n;
+            let turned: Vec<f64> =
+                self.tangents[range.clone()].iter().zip(&v[range.clone()]).map(|(t, v)| t + v).collect();
+            directions(&turned, &self.pulls[range], total, price)
+        };
+        self.contours.iter().map(of).collect()
+    }
+
+    pub fn lengths(&self) -> &[f64] {
+        &self.lengths
+    }
+
+    /// The differences of a function along the contours, halves to both ends of each chord.
+    pub fn along(&self, of: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; of.len()];
+        for &(start, n, _) in &self.contours {
+            for i in 0..n {
+                let (a, b) = (start + i, start + (i + 1) % n);
+                let change = 0.5 * (of[b] - of[a]);
+                sums[a] += change;
+                sums[b] += change;
+            }
+        }
+        sums
+    }
+
+    /// The matrix of [`Operators::robin`] times a function.
+    pub fn times(&self, of: &[f64], beta: f64) -> Vec<f64> {
+        (0..of.len())
+            .map(|v| {
+                let slots = self.topology.range(v);
+                let sum: f64 = slots
+                    .map(|slot| self.weights[slot] * (of[v] - of[self.topology.near[slot] as usize]))
+                    .sum();
+                sum + self.pulls.get(v).map_or(0.0, |pull| beta * pull * of[v])
+            })
+            .collect()
+    }
+
+    /// Rotations that turn tangents into lattice directions, each of least
+    /// `1/2 |grad v|^2 + beta/2 |v - (60 m - tangent)|^2` with `m` the directions of least cost for it,
+    /// in turns, from even rotations by `starts` on. `robin` is the factor for `beta`. One solve a
+    /// round for all.
+    pub fn rotations(
+        &self,
+        starts: &[f64],
+        beta: f64,
+        robin: &Factor<'_>,
+        price: f64,
+    ) -> Result<Vec<Rotation>> {
+        let n = self.topology.start.len() - 1;
+        let mut found: Vec<(Vec<f64>, Vec<Directions>)> =
+            starts.iter().map(|&start| (vec![start; n], Vec::new())).collect();
+        let mut open: Vec<usize> = (0..starts.len()).collect();
+        for _ in 0..ROUNDS {
+            open.retain(|&k| {
+                let (v, directions) = &mut found[k];
+                let next = self.directions(v, price);
+                let moves = !next.iter().map(|d| &d.steps).eq(directions.iter().map(|d| &d.steps));
+                *directions = next;
+                moves
+            });
+            let mut sides = vec![0.0; n * open.len()];
+            for (&k, side) in open.iter().zip(sides.chunks_exact_mut(n)) {
+                for (&(start, ..), found) in self.contours.iter().zip(&found[k].1) {
+                    for (i, &m) in found.steps.iter().enumerate() {
+                        let wish = FRAC_PI_3 * f64::from(m) - self.tangents[start + i];
+                        side[start + i] = beta * self.pulls[start + i] * wish;
+                    }
+                }
+            }
+            if open.is_empty() {
+                break;
+            }
+            robin.solve(&mut sides, open.len())?;
+            for (&k, side) in open.iter().zip(sides.chunks_exact(n)) {
+                found[k].0.copy_from_slice(side);
+            }
+        }
+        let finished = found.into_iter().map(|(v, _)| {
+            let last = self.directions(&v, price);
+            let turns = last.iter().map(|d| d.turns).sum();
+            Rotation { v, turns, misfit: last.iter().map(|d| d.misfit).sum() }
+        });
+        Ok(finished.collect())
+    }
+}
+
+impl Solver<'_> {
+    /// The harmonic conjugate of a rotation, up to a constant: its normal derivative is the rotation's
+    /// derivative along the contours.
+    pub fn scale(&self, v: &[f64]) -> Result<Vec<f64>> {
+        let mut u = self.operators.along(v);
+        self.neumann.solve(&mut u, 1)?;
+        Ok(u)
+    }
+
+    /// Solves with the Laplacian alone, in place; the right side should add up to zero.
+    pub fn potential(&self, of: &mut [f64]) -> Result<()> {
+        self.neumann.solve(of, 1)
+    }
+
+    /// The map whose gradient is nearest to exp(u) times the rotation by v, its image centred.
+    pub fn map(&self, carrier: &Carrier, u: &[f64], v: &[f64]) -> Result<Vec<DVec2>> {
+        let n = carrier.vertices.len();
+        let mut sums = vec![0.0; 2 * n];
+        for t in &carrier.triangles {
+            let corner = t.map(|i| carrier.vertices[i as usize]);
+            let mean = |of: &[f64]| t.iter().map(|&i| of[i as usize]).sum::<f64>() / 3.0;
+            let gradient = DVec2::from_angle(mean(v)) * mean(u).exp();
+            for k in 0..3 {
+                // Twice the area times the gradient of the corner's hat function.
+                let across = (corner[(k + 2) % 3] - corner[(k + 1) % 3]).perp();
+                let i = t[k] as usize;
+                sums[i] += 0.5 * (across.x * gradient.x - across.y * gradient.y);
+                sums[n + i] += 0.5 * (across.x * gradient.y + across.y * gradient.x);
+            }
+        }
+        self.neumann.solve(&mut sums, 2)?;
+        Ok((0..n).map(|i| DVec2::new(sums[i], sums[n + i])).collect())
+    }
+}
+
+/// Shifts a log scale so that the map keeps the area.
+pub fn keep_area(carrier: &Carrier, u: &mut [f64]) {
+    let (mut before, mut after) = (0.0, 0.0);
+    for t in &carrier.triangles {
+        let [a, b, c] = t.map(|i| carrier.vertices[i as usize]);
+        let doubled = (b - a).perp_dot(c - a);
+        before += doubled;
+        after += doubled * (2.0 / 3.0 * t.iter().map(|&i| u[i as usize]).sum::<f64>()).exp();
+    }
+    let shift = 0.5 * (after / before).ln();
+    u.iter_mut().for_each(|u| *u -= shift);
+}

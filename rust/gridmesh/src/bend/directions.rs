@@ -1,0 +1,132 @@
+//! Which lattice direction each stretch of a contour should follow: cyclic dynamic programming.
+
+use std::f64::consts::FRAC_PI_3;
+
+/// A direction may be this many multiples of 60 degrees from the nearest one.
+const REACH: i32 = 2;
+const STATES: usize = 2 * REACH as usize + 1;
+
+/// Directions along a closed contour and what they cost.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Directions {
+    /// For each sample the multiple of 60 degrees that the tangent should have.
+    pub steps: Vec<i32>,
+    /// Sum of the absolute changes from sample to sample, once around.
+    pub turns: usize,
+    /// Sum of the squared distances between tangent and direction, weighted by length.
+    pub misfit: f64,
+}
+
+/// The integers `m` along a closed contour for which `sum of length (tangent - 60 m)^2 + price x sum of
+/// |change of m|` is least, where `m` gains `total` in one turn.
+///
+/// `tangents` are unwrapped angles in radians at the samples, `lengths` how much of the contour each
+/// sample stands for. The contour is cut where its tangents agree best with a direction for some
+/// samples; there `m` is the nearest integer. O(samples).
+pub fn directions(tangents: &[f64], lengths: &[f64], total: i32, price: f64) -> Directions {
+    let n = tangents.len();
+    let nearest = |angle: f64| (angle / FRAC_PI_3).round() as i32;
+    let misfit = |angle: f64, m: i32| (angle - FRAC_PI_3 * f64::from(m)).powi(2);
+    let start = quietest(&tangents.iter().map(|&a| misfit(a, nearest(a))).collect::<Vec<f64>>());
+    // From the start on, a turn further beyond the seam.
+    let at = |k: usize| {
+        let i = (start + k) % n;
+        (tangents[i] + if start + k >= n { FRAC_PI_3 * f64::from(total) } else { 0.0 }, lengths[i])
+    };
+    let mut costs = [f64::INFINITY; STATES];
+    let (first, first_length) = at(0);
+    let base = nearest(first);
+    costs[REACH as usize] = first_length * misfit(first, base);
+    let mut bases = vec![base];
+    let mut back: Vec<[u8; STATES]> = vec![[0; STATES]];
+    for k in 1..n {
+        let (angle, length) = at(k);
+        let (before, base) = (bases[k - 1], nearest(angle));
+        let mut next = [f64::INFINITY; STATES];
+        let mut from = [0u8; STATES];
+        for (state, (next, from)) in next.iter_mut().zip(&mut from).enumerate() {
+            let m = base + state as i32 - REACH;
+            for (other, &cost) in costs.iter().enumerate() {
+                let change = (m - (before + other as i32 - REACH)).abs();
+                let sum = cost + price * f64::from(change);
+                if sum < *next {
+                    (*next, *from) = (sum, other as u8);
+                }
+            }
+            *next += length * misfit(angle, m);
+        }
+        costs = next;
+        bases.push(base);
+        back.push(from);
+    }
+    let end = bases[0] + total;
+    let closing = |state: usize| (end - (bases[n - 1] + state as i32 - REACH)).abs();
+    let mut state = (0..STATES)
+        .min_by(|&a, &b| {
+            let sum = |s: usize| costs[s] + price * f64::from(closing(s));
+            sum(a).total_cmp(&sum(b))
+        })
+        .unwrap_or(REACH as usize);
+    let mut steps = vec![0; n];
+    for k in (0..n).rev() {
+        let m = bases[k] + state as i32 - REACH;
+        steps[(start + k) % n] = if start + k >= n { m - total } else { m };
+        state = back[k][state] as usize;
+    }
+    let change = |i: usize| if i + 1 < n { steps[i + 1] - steps[i] } else { steps[0] + total - steps[i] };
+    let turns = (0..n).map(|i| change(i).unsigned_abs() as usize).sum();
+    let misfit = (0..n).map(|i| lengths[i] * misfit(tangents[i], steps[i])).sum();
+    Directions { steps, turns, misfit }
+}
+
+/// Where the sum over seven samples in a row is least: their middle.
+fn quietest(misfits: &[f64]) -> usize {
+    let n = misfits.len();
+    let around = |i: usize| (0..7).map(|k| misfits[(i + n * 3 + k - 3) % n]).sum::<f64>();
+    (0..n).min_by(|&i, &j| around(i).total_cmp(&around(j)).then(i.cmp(&j))).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_circle_turns_six_times_and_a_hole_six_times_back() {
+        for total in [6, -6] {
+            for shift in [0.0, 0.3, 1.0] {
+                let tangents: Vec<f64> =
+                    (0..120).map(|i| shift + f64::from(total) * FRAC_PI_3 * f64::from(i) / 120.0).collect();
+                let found = directions(&tangents, &[1.0; 120], total, 0.2);
+                assert_eq!(found.turns, 6);
+                assert!(found.misfit < 120.0 * (0.5 * FRAC_PI_3).powi(2));
+            }
+        }
+    }
+
+    #[test]
+    fn small_wiggles_do_not_turn() {
+        let tangents: Vec<f64> =
+            (0..60).map(|i| FRAC_PI_3 * f64::from(i / 10) + if i % 2 == 0 { 0.45 } else { -0.45 }).collect();
+        let found = directions(&tangents, &[1.0; 60], 6, 1.0);
+        assert_eq!(found.turns, 6);
+    }
+
+    #[test]
+    fn the_start_does_not_matter() {
+        let wavy = |i: i32| {
+            let t = std::f64::consts::TAU * f64::from(i) / 90.0;
+            t + 0.7 * (3.0 * t).sin() + 0.3 * (5.0 * t + 1.0).cos()
+        };
+        let whole: Vec<f64> = (0..180).map(wavy).collect();
+        let lengths: Vec<f64> = (0..180).map(|i| 1.0 + 0.3 * f64::from(i % 90).sin()).collect();
+        let first = directions(&whole[..90], &lengths[..90], 6, 0.2);
+        for shift in [1, 17, 60] {
+            let found = directions(&whole[shift..shift + 90], &lengths[shift..shift + 90], 6, 0.2);
+            assert_eq!(found.turns, first.turns);
+            for i in 0..90 {
+                let j = (i + shift) % 90;
+                assert_eq!(found.steps[i], first.steps[j] + if i + shift >= 90 { 6 } else { 0 });
+            }
+        }
+    }
+}

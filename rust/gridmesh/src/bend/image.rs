@@ -1,0 +1,192 @@
+//! The bent drawing, and the way back from the bent plane.
+
+use glam::DVec2;
+
+use super::carrier::{Carrier, Line, Rim};
+use super::grid::TriangleGrid;
+use crate::contours::read_contours;
+use crate::curve::ClosedCurve;
+use crate::segments::{nearest_on_segment, orientation};
+
+/// A carrier with its image under a conformal map: log scale and rotation at the vertices.
+pub struct Image {
+    pub positions: Vec<DVec2>,
+    pub u: Vec<f64>,
+    pub v: Vec<f64>,
+}
+
+impl Image {
+    /// The linear part of the map near a vertex, and its inverse.
+    fn turned(&self, i: usize, d: DVec2) -> DVec2 {
+        self.u[i].exp() * DVec2::from_angle(self.v[i]).rotate(d)
+    }
+
+    fn turned_back(&self, i: usize, d: DVec2) -> DVec2 {
+        (-self.u[i]).exp() * DVec2::from_angle(-self.v[i]).rotate(d)
+    }
+
+    /// True if no triangle of the carrier is turned over (exact).
+    pub fn is_upright(&self, carrier: &Carrier) -> bool {
+        let at = |v: u32| self.positions[v as usize];
+        carrier.triangles.iter().all(|t| orientation(at(t[0]), at(t[1]), at(t[2])) > 0.0)
+    }
+
+    /// A point beside the chord from the `i`-th vertex of a contour, bent: from both ends by their own
+    /// derivative.
+    fn beside(&self, carrier: &Carrier, rim: &Rim, i: usize, t: f64, point: DVec2) -> DVec2 {
+        let ends = [rim.start + i, rim.next(i)];
+        let [a, b] = ends.map(|e| self.positions[e] + self.turned(e, point - carrier.vertices[e]));
+        let middle = self.positions[ends[0]].lerp(self.positions[ends[1]], t);
+        let off = point - carrier.vertices[ends[0]].lerp(carrier.vertices[ends[1]], t);
+        let [p, q] = ends.map(|e| self.turned(e, off));
+        // Half the chord's image, half the ends' derivatives: exact for quadratic maps.
+        0.5 * (middle + p.lerp(q, t) + a.lerp(b, t))
+    }
+}
+
+/// The contours of a bent drawing and the arc lengths on the drawing that theirs stand for.
+pub struct BentContours {
+    pub contours: Vec<ClosedCurve>,
+    arcs: Vec<ArcMap>,
+}
+
+/// Arc lengths at the points of a bent contour, and on the drawing; both from the bent contour's start.
+struct ArcMap {
+    bent: Vec<f64>,
+    drawn: Vec<f64>,
+}
+
+impl BentContours {
+    /// The images of the drawn points, or where those meet themselves or each other, of the carrier's
+    /// boundary alone. None if that does too.
+    pub fn new(carrier: &Carrier, image: &Image, lines: &[Line]) -> Option<Self> {
+        Self::with(carrier, image, lines, true).or_else(|| Self::with(carrier, image, lines, false))
+    }
+
+    fn with(carrier: &Carrier, image: &Image, lines: &[Line], in_detail: bool) -> Option<Self> {
+        let mut rings: Vec<Vec<DVec2>> = Vec::new();
+        let mut drawn: Vec<Vec<f64>> = Vec::new();
+        for (rim, line) in carrier.rims.iter().zip(lines) {
+            let (mut ring, mut at) = (Vec::new(), Vec::new());
+            let mut next = 0;
+            for (i, &from) in rim.arcs.iter().enumerate() {
+                ring.push(image.positions[rim.start + i]);
+                at.push(from);
+                let to = rim.end(i);
+                while in_detail && next < line.points.len() && line.arcs[next] < to {
+                    let s = line.arcs[next];
+                    if s > from {
+                        let t = (s - from) / (to - from);
+                        ring.push(image.beside(carrier, rim, i, t, line.points[next]));
+                        at.push(s);
+                    }
+                    next += 1;
+                }
+            }
+            rings.push(ring);
+            drawn.push(at);
+        }
+        let contours = read_contours(&rings[0], &rings[1..]).ok()?;
+        let arcs = contours
+            .iter()
+            .zip(&drawn)
+            .zip(lines)
+            .map(|((contour, at), line)| ArcMap::new(contour, at, line.length()))
+            .collect::<Option<Vec<ArcMap>>>()?;
+        Some(Self { contours, arcs })
+    }
+
+    /// The arc length on the drawing at one on a bent contour; both unwrapped, increasing together.
+    pub fn drawn_arc(&self, contour: usize, s: f64) -> f64 {
+        self.arcs[contour].drawn(s)
+    }
+}
+
+impl ArcMap {
+    /// `at`: arc length on the drawing of each point that the contour was read from.
+    fn new(contour: &ClosedCurve, at: &[f64], length: f64) -> Option<Self> {
+        let n = contour.points().len();
+        let mut drawn: Vec<f64> = Vec::with_capacity(n + 1);
+        for &s in &contour.arc()[..n] {
+            let (segment, t) = contour.source(s);
+            // Points are dropped where they repeat: then the segment that is left is the longest.
+            let i = (segment as usize + usize::from(t > 0.5)) % at.len();
+            let lap = drawn.last().map_or(0.0, |last| ((last - at[i]) / length).ceil().max(0.0));
+            drawn.push(at[i] + lap * length);
+        }
+        drawn.push(drawn[0] + length);
+        drawn.windows(2).all(|s| s[0] < s[1]).then(|| Self { bent: contour.arc().to_vec(), drawn })
+    }
+
+    fn drawn(&self, s: f64) -> f64 {
+        let n = self.drawn.len() - 1;
+        let (whole, length) = (self.bent[n], self.drawn[n] - self.drawn[0]);
+        let lap = (s / whole).floor();
+        let s = s - lap * whole;
+        let i = self.bent.partition_point(|&a| a <= s).clamp(1, n) - 1;
+        let t = ((s - self.bent[i]) / (self.bent[i + 1] - self.bent[i])).clamp(0.0, 1.0);
+        self.drawn[i] + t * (self.drawn[i + 1] - self.drawn[i]) + lap * length
+    }
+}
+
+/// Finds the place on the drawing of points of the bent plane.
+pub struct WayBack<'a> {
+    carrier: &'a Carrier,
+    image: &'a Image,
+    grid: TriangleGrid,
+}
+
+impl<'a> WayBack<'a> {
+    pub fn new(carrier: &'a Carrier, image: &'a Image) -> Self {
+        let grid = TriangleGrid::new(&image.positions, &carrier.triangles);
+        Self { carrier, image, grid }
+    }
+
+    /// The point of the drawing that was bent onto `x`: barycentric on the carrier, corrected by the
+    /// derivatives at the corners; outside by the derivative at the nearest chord.
+    pub fn at(&self, x: DVec2) -> DVec2 {
+        let (carrier, image) = (self.carrier, self.image);
+        if let Some((t, weights)) = self.grid.locate(x, &image.positions, &carrier.triangles) {
+            let corners = carrier.triangles[t].map(|v| v as usize);
+            return self.blend(x, &corners, &weights);
+        }
+        let mut best: Option<(f64, [usize; 2], f64)> = None;
+        for rim in &carrier.rims {
+            for i in 0..rim.len() {
+                let ends = [rim.start + i, rim.next(i)];
+                let [a, b] = ends.map(|e| image.positions[e]);
+                let (t, squared) = nearest_on_segment(x, a, b);
+                if best.is_none_or(|(least, ..)| squared < least) {
+                    best = Some((squared, ends, t));
+                }
+            }
+        }
+        best.map_or(x, |(_, ends, t)| self.off_chord(x, ends, t))
+    }
+
+    /// The same for a point beside a place of a contour, given by its arc length on the drawing.
+    pub fn beside(&self, contour: usize, s: f64, x: DVec2) -> DVec2 {
+        let rim = &self.carrier.rims[contour];
+        let s = s.rem_euclid(rim.length);
+        let i = rim.arcs.partition_point(|&a| a <= s).clamp(1, rim.len()) - 1;
+        let t = ((s - rim.arcs[i]) / (rim.end(i) - rim.arcs[i])).clamp(0.0, 1.0);
+        self.off_chord(x, [rim.start + i, rim.next(i)], t)
+    }
+
+    fn off_chord(&self, x: DVec2, ends: [usize; 2], t: f64) -> DVec2 {
+        let (carrier, image) = (self.carrier, self.image);
+        let foot = image.positions[ends[0]].lerp(image.positions[ends[1]], t);
+        let [p, q] = ends.map(|e| image.turned_back(e, x - foot));
+        carrier.vertices[ends[0]].lerp(carrier.vertices[ends[1]], t) + p.lerp(q, t)
+    }
+
+    /// Half the linear map, half the corners' own derivatives: exact for quadratic maps.
+    fn blend(&self, x: DVec2, corners: &[usize; 3], weights: &[f64; 3]) -> DVec2 {
+        let (carrier, image) = (self.carrier, self.image);
+        let mut sum = DVec2::ZERO;
+        for (&c, &w) in corners.iter().zip(weights) {
+            sum += w * (carrier.vertices[c] + 0.5 * image.turned_back(c, x - image.positions[c]));
+        }
+        sum
+    }
+}

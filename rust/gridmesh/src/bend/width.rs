@@ -1,0 +1,90 @@
+//! How wide the drawing is along its contours, and the sizes that this asks for.
+
+use glam::DVec2;
+
+use super::carrier::{Carrier, Rim};
+
+/// Parts narrower than this want more triangles across, in edges.
+const WIDE: f64 = 12.0;
+/// Nothing is asked to be finer than by this factor, as a logarithm.
+const MOST: f64 = 1.2;
+/// Standard deviation of the smoothing of widths along the contours, in edges.
+const SIGMA: f64 = 1.5;
+
+/// Sizes that the boundary vertices wish for.
+pub struct Wish {
+    /// Log scale of each.
+    pub sizes: Vec<f64>,
+    /// How much each counts.
+    pub shares: Vec<f64>,
+}
+
+impl Wish {
+    /// Finer where the drawing is narrow; wide parts count little.
+    pub fn of_narrowness(carrier: &Carrier) -> Self {
+        const LITTLE: f64 = 0.1;
+        let sizes = narrowness(carrier);
+        let shares = sizes.iter().map(|size| LITTLE + size / MOST).collect();
+        Self { sizes, shares }
+    }
+
+    /// So many times the triangles at each boundary vertex.
+    pub fn of_densities(densities: &[f64]) -> Self {
+        let sizes = densities.iter().map(|density| 0.5 * density.ln()).collect();
+        Self { sizes, shares: vec![1.0; densities.len()] }
+    }
+}
+
+/// Log scale that each boundary vertex wishes for: finer where the drawing is narrow.
+fn narrowness(carrier: &Carrier) -> Vec<f64> {
+    log_widths(carrier).iter().map(|width| (WIDE.ln() - width).clamp(0.0, MOST)).collect()
+}
+
+/// How much the direction of each boundary vertex counts, 0 to 1: less at tips and in parts too narrow for
+/// two lattice lines, which no lattice direction suits.
+pub fn room(carrier: &Carrier) -> Vec<f64> {
+    const NARROW: f64 = 2.5;
+    const LEAST: f64 = 0.02;
+    log_widths(carrier).iter().map(|width| (width.exp() / NARROW).powi(2).clamp(LEAST, 1.0)).collect()
+}
+
+/// Logarithm of the width at each boundary vertex, smoothed along the contours.
+///
+/// The width at a vertex is twice the smallest circle that touches the contour there from inside and
+/// meets a contour again. O(square of the number of boundary vertices).
+fn log_widths(carrier: &Carrier) -> Vec<f64> {
+    let n: usize = carrier.rims.iter().map(Rim::len).sum();
+    let at = &carrier.vertices[..n];
+    let mut found = Vec::with_capacity(n);
+    for rim in &carrier.rims {
+        let count = rim.len();
+        let widths: Vec<f64> = (0..count)
+            .map(|i| {
+                let p = at[rim.start + i];
+                let ahead = at[rim.next(i)] - at[rim.start + (i + count - 1) % count];
+                let inwards = ahead.perp().normalize_or_zero();
+                let radius = |q: &DVec2| {
+                    let d = *q - p;
+                    let depth = d.dot(inwards);
+                    if depth > 0.0 { d.length_squared() / (2.0 * depth) } else { f64::INFINITY }
+                };
+                2.0 * at.iter().map(radius).fold(f64::INFINITY, f64::min)
+            })
+            .collect();
+        let logs: Vec<f64> = widths.iter().map(|w| w.clamp(0.5, 1e6).ln()).collect();
+        for i in 0..count {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for (&s, log) in rim.arcs.iter().zip(&logs) {
+                let d = (s - rim.arcs[i]).abs();
+                let d = d.min(rim.length - d);
+                if d < 3.0 * SIGMA {
+                    let weight = (-0.5 * (d / SIGMA).powi(2)).exp();
+                    sum += weight * log;
+                    weights += weight;
+                }
+            }
+            found.push(sum / weights);
+        }
+    }
+    found
+}

@@ -1,0 +1,131 @@
+//! Boundaries on bent lattices.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::{Asked, Effort, Found, Job, SLIGHT, centroid, faults};
+use crate::bend::{Bent, Ground, choose};
+use crate::curve::ClosedCurve;
+use crate::error::{Error, Result};
+use crate::lattice::Lattice;
+use crate::options::{BoundaryMethod, Mirror, SketchOptions};
+use crate::outline::Outline;
+use crate::progress::Progress;
+use crate::symmetry::Symmetry;
+
+/// So many bends are traced.
+const TRACED: usize = 2;
+
+impl Job<'_> {
+    /// True if the lattice may bend.
+    fn bends(&self) -> bool {
+        let options = self.options;
+        options.bend > 0.0
+            && options.boundary == BoundaryMethod::Optimal
+            && options.angle.is_none()
+            && options.origin.is_none()
+    }
+
+    /// The best patch on a bent lattice, by cost, faults and least angle; none where the lattice does not
+    /// bend.
+    pub(super) fn best_bent(
+        &mut self,
+        asked: Asked,
+        effort: Effort,
+        progress: Progress<'_>,
+    ) -> Result<Option<Found>> {
+        if effort != Effort::Full || !self.bends() {
+            return Ok(None);
+        }
+        let started = Instant::now();
+        let mut outlines = match self.bent_outlines(asked, progress.part(0.0, 0.3)) {
+            // What the solver cannot do is left to the straight lattice; the report says so.
+            Err(Error::Solver { .. }) => Vec::new(),
+            outlines => outlines?,
+        };
+        outlines.sort_by(|a, b| (a.0.price + a.2.cost).total_cmp(&(b.0.price + b.2.cost)));
+        self.lap("bend", started);
+        let mut best: Option<Found> = None;
+        for (bent, lattice, outline) in outlines {
+            self.placements += 1;
+            let started = Instant::now();
+            let placed = self.place(Some(&bent), &lattice, &outline, progress.part(0.3, 0.6))?;
+            self.lap("placement", started);
+            let Ok((placed, mirror_error)) = placed else { continue };
+            if placed.fault(self.options).is_some() {
+                continue;
+            }
+            let faults = faults(&placed);
+            let found = Found { faults, bent: Some(bent), outline, placed, mirror_error };
+            let is_good = found.faults <= SLIGHT && found.starved() == 0.0;
+            if best.as_ref().is_none_or(|best| found.score() < best.score()) {
+                best = Some(found);
+            }
+            if is_good {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The boundaries on the most promising bent lattices.
+    fn bent_outlines(&self, asked: Asked, progress: Progress<'_>) -> Result<Vec<(Bent, Lattice, Outline)>> {
+        let edge_length = match asked {
+            Asked::EdgeLength(h) => h,
+            Asked::Triangles(n) => self.first_guess(n),
+        };
+        let ahead = self.symmetry.as_ref().map_or(self.farthest(), |symmetry| symmetry.axis.direction);
+        let frame = Lattice { angle: ahead.to_angle(), origin: self.centre, edge_length };
+        let density = self.options.density.as_ref();
+        let Some(ground) = Ground::new(&self.contours, frame, density, self.symmetry.is_some()) else {
+            return Ok(Vec::new());
+        };
+        let bends = choose::candidates(&Arc::new(ground), self.options.bend, TRACED, progress)?;
+        let found: Vec<Result<Option<(Bent, Lattice, Outline)>>> =
+            bends.into_par_iter().map(|bent| self.bent_outline(asked, bent, progress)).collect();
+        found.into_iter().filter_map(Result::transpose).collect()
+    }
+
+    /// The boundary on the straight lattice of a bent plane, where there is one.
+    fn bent_outline(
+        &self,
+        asked: Asked,
+        bent: Bent,
+        progress: Progress<'_>,
+    ) -> Result<Option<(Bent, Lattice, Outline)>> {
+        let contours = bent.contours().to_vec();
+        let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
+        let centre = centroid(contours[0].points());
+        let asked = match asked {
+            Asked::EdgeLength(_) => Asked::EdgeLength(1.0),
+            Asked::Triangles(n) => Asked::Triangles(n),
+        };
+        let symmetry = match &self.symmetry {
+            None => None,
+            Some(_) => {
+                let mirror = Mirror::Axis { point: DVec2::ZERO, direction: bent.axis() };
+                match Symmetry::find(&contours, mirror, 1.0) {
+                    Ok(symmetry) => Some(symmetry),
+                    Err(_) => return Ok(None),
+                }
+            }
+        };
+        let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
+        let along = symmetry.is_some().then_some(0.0);
+        let options =
+            SketchOptions { edge_length: None, triangles: None, angle: along, ..self.options.clone() };
+        let job =
+            Job { contours, symmetry, options: &options, area, centre, seconds: Vec::new(), placements: 0 };
+        let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick).first() else {
+            return Ok(None);
+        };
+        let Ok((lattice, outline)) = job.outline(asked, Effort::Full, angle, shift, progress)? else {
+            return Ok(None);
+        };
+        let outline = bent.outline(outline, &lattice);
+        Ok(Some((bent, lattice, outline)))
+    }
+}

@@ -1,0 +1,174 @@
+"""Lattices that bend with the drawing: what they promise beside what every patch does."""
+
+import gridmesh
+import numpy as np
+import pytest
+from checks import check_patch
+from sketches import DRAWINGS, SHAPES, blob, circle
+
+
+def mesh_sketch(*drawing, bend=1.0, **options):
+    return gridmesh.mesh_sketch(*drawing, bend=bend, **options)
+
+
+def blobs(count):
+    random = np.random.default_rng(5)
+    return [
+        blob(list(random.uniform(-0.2, 0.2, 5)), list(random.uniform(0, 6, 5)), 200) for _ in range(count)
+    ]
+
+
+def limb(angle):
+    """A bar askew, twelve times as long as wide."""
+    box = np.array([[-6.0, -0.5], [6.0, -0.5], [6.0, 0.5], [-6.0, 0.5]])
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    return box @ turn
+
+
+def with_a_foot(angle):
+    """A disc with a bar that runs askew to another."""
+    t = np.linspace(0, 2 * np.pi, 90, endpoint=False)
+    x, y = np.cos(t), np.sin(t)
+    radius = 1 + 2.2 * np.exp(-0.5 * (np.angle(np.exp(1j * t)) / 0.16) ** 2)
+    radius += 2.2 * np.exp(-0.5 * (np.angle(np.exp(1j * (t - angle))) / 0.16) ** 2)
+    return np.column_stack([radius * x, radius * y])
+
+
+@pytest.mark.parametrize("triangles", [300, 2000, 9000])
+def test_drawings_have_fewer_irregular_vertices_than_on_straight_lattices(triangles):
+    irregular = []
+    for drawing in DRAWINGS.values():
+        points = drawing["points"]
+        straight, bent = (mesh_sketch(points, triangles=triangles, bend=b) for b in (0, 1))
+        check_patch(bent, [points])
+        assert straight.report["bend"] == 0
+        assert straight.report["scale_range"] == 1
+        irregular.append((straight.report["irregular"], bent.report["irregular"]))
+    straight, bent = np.array(irregular).sum(axis=0)
+    assert bent <= {300: 0.95, 2000: 0.8, 9000: 0.65}[triangles] * straight
+
+
+def test_the_number_of_irregular_vertices_hardly_grows_with_the_triangles():
+    few, many = (
+        np.median([mesh_sketch(points, triangles=n).report["irregular"] for points in blobs(9)])
+        for n in (2000, 16000)
+    )
+    assert many <= few * 4 / 3
+
+
+def test_limbs_askew_are_followed_without_steps():
+    straight, bent = (mesh_sketch(with_a_foot(0.9), triangles=3000, bend=b) for b in (0, 1))
+    assert bent.report["irregular"] <= 0.75 * straight.report["irregular"]
+    assert bent.report["bend"] > 0
+    assert bent.report["scale_range"] > 1
+
+
+def test_a_straight_bar_needs_no_bend():
+    for angle in (0.0, 0.4, 1.0):
+        report = mesh_sketch(limb(angle), triangles=1500).report
+        assert report["irregular"] <= 6 + 2
+
+
+def test_outlines_with_holes_bend_too():
+    outline, hole = 4 * blobs(3)[2], circle(60, 0.6)[::-1] + [0.3, 0.2]
+    straight, bent = (mesh_sketch(outline, [hole], triangles=4000, bend=b) for b in (0, 1))
+    check_patch(bent, [outline, hole])
+    assert bent.report["bend"] > 0
+    assert bent.report["irregular"] < straight.report["irregular"]
+
+
+def test_a_drawing_whose_bent_image_overlaps_itself_is_meshed():
+    # A spiral of one and a half turns.
+    t = np.linspace(0.4, 3.4 * np.pi, 160)
+    wall = [np.column_stack([r * np.cos(t), r * np.sin(t)]) for r in (0.4 * t, 0.4 * t + 0.9)]
+    spiral = np.vstack([wall[0], wall[1][::-1]])
+    check_patch(mesh_sketch(spiral, triangles=3000), [spiral])
+
+
+def test_straight_is_what_is_asked_for_by_an_angle_an_origin_or_growth():
+    points = blobs(1)[0]
+    for options in ({"angle": 0.2}, {"origin": (0.0, 0.0), "angle": 0.1}, {"boundary": "grown"}, {"bend": 0}):
+        assert mesh_sketch(points, triangles=1000, **options).report["bend"] == 0
+
+
+def test_half_a_bend_is_less_of_one():
+    points = with_a_foot(0.9)
+    ranges = [mesh_sketch(points, triangles=3000, bend=b).report["scale_range"] for b in (0.02, 1)]
+    assert 1 <= ranges[0] < ranges[1]
+
+
+@pytest.mark.parametrize("name", [*SHAPES, *DRAWINGS])
+def test_the_same_drawing_bends_the_same_way_however_it_lies(name):
+    points = {**SHAPES, **DRAWINGS}[name]["points"]
+    try:
+        expected = mesh_sketch(points, triangles=1500)
+    except gridmesh.GridMeshError:
+        return
+    small = mesh_sketch(points[::-1] * 0.125, triangles=1500)
+    assert (small.vertices * 8).tobytes() == expected.vertices.tobytes()
+    assert small.report["scale_range"] == expected.report["scale_range"]
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_symmetric_drawings_bend_symmetrically(turn):
+    half = np.linspace(0, np.pi, 80)
+    radius = 2 + 0.7 * np.cos(3 * half) + 0.3 * np.cos(2 * half)
+    right = np.column_stack([radius * np.sin(half), -radius * np.cos(half)])[1:-1]
+    points = np.vstack([[[0, -radius[0]]], right, [[0, radius[-1]]], right[::-1] * [-1, 1]])
+    points = points @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    straight, bent = (mesh_sketch(points, triangles=4000, mirror="auto", bend=b) for b in (0, 1))
+    check_patch(bent, [points])
+    assert bent.report["bend"] > 0
+    assert bent.report["irregular"] < straight.report["irregular"]
+    assert bent.report["mirror_error"] < 1e-9
+
+
+def lengths_near(patch, at, radius):
+    edges = np.concatenate([patch.triangles[:, [0, 1]], patch.triangles[:, [1, 2]]])
+    ends = patch.vertices[edges]
+    near = np.linalg.norm(ends.mean(axis=1) - at, axis=1) < radius
+    return np.median(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)[near])
+
+
+def test_density_makes_triangles_smaller_where_it_is_asked_for():
+    points = circle(120)
+    density = np.where(points[:, 0] > 0.3, 4.0, 1.0)
+    patch = mesh_sketch(points, triangles=2000, density=density)
+    check_patch(patch, [points])
+    assert lengths_near(patch, [0.8, 0], 0.3) < 0.8 * lengths_near(patch, [-0.8, 0], 0.3)
+    again = mesh_sketch(points[::-1], triangles=2000, density=density[::-1])
+    assert again.vertices.tobytes() == patch.vertices.tobytes()
+
+
+def test_density_reaches_holes():
+    points, hole = circle(120), circle(40, 0.2)[::-1] + [0.4, 0]
+    # Not all around: the lattice has as many turns there as anywhere.
+    density = [np.ones(120), np.where(hole[:, 0] > 0.45, 8.0, 1.0)]
+    plain, dense = (mesh_sketch(points, [hole], triangles=3000, density=d) for d in (None, density))
+    check_patch(dense, [points, hole])
+    assert lengths_near(dense, [0.65, 0], 0.15) < 0.9 * lengths_near(plain, [0.65, 0], 0.15)
+
+
+def test_narrow_parts_get_more_triangles_by_width():
+    points = with_a_foot(1.4)
+    plain, wide = (mesh_sketch(points, triangles=1500, density=d) for d in (None, "width"))
+    tip = points[np.argmax(points[:, 0])] - [0.4, 0]
+    assert lengths_near(wide, tip, 0.5) <= lengths_near(plain, tip, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("options", "kind"),
+    [
+        ({"bend": 1.5}, "invalid_option"),
+        ({"bend": np.nan}, "invalid_option"),
+        ({"density": np.ones(99)}, "invalid_option"),
+        ({"density": -np.ones(100)}, "invalid_option"),
+        ({"density": "height"}, "invalid_option"),
+        ({"density": "width", "bend": 0}, "invalid_option"),
+        ({"density": np.ones(100), "self_crossing": "union"}, "invalid_option"),
+    ],
+)
+def test_what_is_not_allowed_is_refused(options, kind):
+    with pytest.raises(gridmesh.GridMeshError) as refused:
+        mesh_sketch(circle(), triangles=500, **options)
+    assert refused.value.kind == kind

@@ -1,0 +1,156 @@
+"""thickness, and triangles="auto": how thick limbs are, and as many triangles as make them round."""
+
+import gridmesh
+import numpy as np
+import pytest
+from sketches import DRAWINGS, SHAPES, circle
+
+SIZES = [1.0, 1e-9, 1e9]
+
+
+def bar(length, width, turn=0.0, n=0, jitter=0.0):
+    """A bar with round ends; `n` points along it that tremble."""
+    t = np.linspace(-np.pi / 2, np.pi / 2, 30)
+    cap = width / 2 * np.c_[np.cos(t), np.sin(t)]
+    points = np.r_[cap + [length / 2 - width / 2, 0], -cap - [length / 2 - width / 2, 0]]
+    if n:
+        closed = np.r_[points, points[:1]]
+        arc = np.r_[0, np.cumsum(np.hypot(*np.diff(closed, axis=0).T))]
+        at = np.linspace(0, arc[-1], n, endpoint=False)
+        points = np.c_[np.interp(at, arc, closed[:, 0]), np.interp(at, arc, closed[:, 1])]
+        points += jitter * np.random.default_rng(1).normal(size=points.shape)
+    c, s = np.cos(turn), np.sin(turn)
+    return points @ [[c, s], [-s, c]]
+
+
+def hand(width):
+    """A palm with five fingers of a width."""
+    out = 0.5 * circle(80)
+    for at, length in ((-60, 0.5), (-25, 0.8), (0, 0.9), (25, 0.8), (70, 0.6)):
+        finger = bar(2 * length, width) + [length, 0]
+        turn = np.radians(90 - at)
+        c, s = np.cos(turn), np.sin(turn)
+        out = gridmesh.combine(out, finger @ [[c, s], [-s, c]] + 0.1 * np.array([c, s]))[0][0]
+    return out
+
+
+@pytest.mark.parametrize("scale", SIZES)
+@pytest.mark.parametrize("turn", [0.0, 0.4, 1.3])
+@pytest.mark.parametrize("width", [0.1, 1.0, 3.0])
+def test_a_bar_is_as_thick_as_it_is(width, turn, scale):
+    limbs = gridmesh.thickness(scale * bar(10, width, turn))
+    assert limbs[0, 2] == pytest.approx(scale * width, rel=0.05)
+
+
+@pytest.mark.parametrize("jitter", [0.003, 0.01])
+def test_a_trembling_pen_makes_no_limbs(jitter):
+    limbs = gridmesh.thickness(bar(10, 1, n=600, jitter=jitter))
+    assert len(limbs) <= 2
+    assert limbs[0, 2] == pytest.approx(1.0, rel=0.06)
+
+
+@pytest.mark.parametrize("name", ["circle", "messy"])
+def test_a_compact_shape_has_no_limb(name):
+    assert len(gridmesh.thickness(SHAPES[name]["points"])) == 0
+
+
+def test_fingers_are_found():
+    limbs = gridmesh.thickness(hand(0.12))
+    assert (limbs[:, 2] < 0.16).sum() == 5
+    assert limbs[0, 2] == pytest.approx(0.12, rel=0.05)
+    assert (np.diff(limbs[:, 2]) >= 0).all()
+    assert not limbs.flags.writeable
+
+
+def test_a_neck_is_found_and_a_tip_is_not():
+    two = gridmesh.combine(bar(6, 0.4), circle(60) - [3, 0])[0][0]
+    two = gridmesh.combine(two, circle(60) + [3, 0])[0][0]
+    assert gridmesh.thickness(two)[0, 2] == pytest.approx(0.4, rel=0.05)
+    spike = [[0, -1], [6, 0], [0, 1]]
+    assert not (gridmesh.thickness(spike)[:, 2] < 0.5).any()
+
+
+def test_the_wall_of_a_ring_is_found():
+    limbs = gridmesh.thickness(circle(200), [0.8 * circle(200)])
+    assert limbs[0, 2] == pytest.approx(0.2, rel=0.05)
+
+
+def test_same_wherever_the_drawing_begins_and_whichever_way_it_runs():
+    points = DRAWINGS["camel"]["points"]
+    wanted = gridmesh.thickness(points)
+    for other in (np.roll(points, 50, axis=0), points[::-1]):
+        np.testing.assert_allclose(gridmesh.thickness(other)[:, 2], wanted[:, 2], rtol=0.05)
+    np.testing.assert_array_equal(gridmesh.thickness(points), wanted)
+
+
+@pytest.mark.parametrize("width", [0.08, 0.12, 0.2])
+def test_automatic_puts_four_triangles_across_a_finger(width):
+    patch = gridmesh.mesh_sketch(hand(width), triangles="auto")
+    assert 3.6 <= patch.report["across"] <= 4.4
+    assert 1000 * 0.9 <= len(patch.triangles) <= 20000
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_automatic_keeps_its_limits(name):
+    points = DRAWINGS[name]["points"]
+    report = gridmesh.mesh_sketch(points, triangles="auto").report
+    assert 900 <= report["triangles"] <= 22000
+    less = gridmesh.mesh_sketch(points, triangles="auto", max_triangles=4000).report
+    assert less["triangles"] <= 4400
+
+
+def test_only_automatic_measures_limbs():
+    points = DRAWINGS["camel"]["points"]
+    assert gridmesh.mesh_sketch(points, triangles=2000).report["across"] is None
+    patch = gridmesh.mesh_sketch(points, triangles="auto", max_triangles=4000)
+    wanted = gridmesh.thickness(points)[0, 2] / (np.sqrt(3) / 2 * patch.edge_length)
+    assert patch.report["across"] == pytest.approx(wanted, rel=1e-9)
+
+
+def test_automatic_gives_way_where_it_cannot_follow():
+    """A slip 60 times as long as it is wide: its number is chosen like any other, and it is meshed."""
+    report = gridmesh.mesh_sketch(bar(60, 1), triangles="auto").report
+    assert report["across"] >= 3.6
+
+
+def test_what_is_refused():
+    points = circle()
+    with pytest.raises(gridmesh.GridMeshError, match="'auto'"):
+        gridmesh.mesh_sketch(points, triangles="many")
+    with pytest.raises(gridmesh.GridMeshError, match="max_triangles is 5; allowed: at least 6"):
+        gridmesh.mesh_sketch(points, triangles="auto", max_triangles=5)
+    with pytest.raises(gridmesh.GridMeshError, match="one of automatic"):
+        gridmesh.mesh_sketch(points, triangles="auto", edge_length=0.1)
+    with pytest.raises(gridmesh.GridMeshError, match="NaN"):
+        gridmesh.thickness([[0, 0], [np.nan, 1], [1, 1]])
+
+
+def overlapping(patch, surface):
+    half = 3 * len(patch.triangles)
+    front, back = surface.uv[:half].reshape(-1, 3, 2), surface.uv[half:].reshape(-1, 3, 2)
+    return front, back[:, [0, 2, 1]]
+
+
+@pytest.mark.parametrize("name", ["camel", "letter"])
+def test_uv_layouts(name):
+    patch = gridmesh.mesh_sketch(DRAWINGS[name]["points"], triangles=2000)
+    shared, apart = gridmesh.inflate(patch, uv="shared"), gridmesh.inflate(patch)
+    front, back = overlapping(patch, shared)
+    np.testing.assert_array_equal(front, back)
+    for surface in (shared, apart):
+        assert surface.uv.min() >= 0
+        assert surface.uv.max() <= 1
+    # No seam through a triangle: each is as it lies in the patch, at one scale.
+    for surface in (shared, apart):
+        corners = surface.uv[: 3 * len(patch.triangles)].reshape(-1, 3, 2)
+        flat = patch.vertices[patch.triangles]
+        ratio = np.linalg.norm(np.diff(corners, axis=1), axis=2) / np.linalg.norm(
+            np.diff(flat, axis=1), axis=2
+        )
+        assert ratio.max() / ratio.min() < 1 + 1e-6
+    front, back = overlapping(patch, apart)
+    low, high = front.reshape(-1, 2), back.reshape(-1, 2)
+    boxes_apart = (low.max(0) < high.min(0)) | (high.max(0) < low.min(0))
+    assert boxes_apart.any()
+    with pytest.raises(gridmesh.GridMeshError, match="'apart' or 'shared'"):
+        gridmesh.inflate(patch, uv="beside")
