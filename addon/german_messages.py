@@ -852,6 +852,14 @@ _LIBRARY_PARTS = {
     "the sides of the drawing differ and do not": (
         "die Seiten der Zeichnung sind verschieden und sind es nicht"
     ),
+    "'width' or none: the outer outline has other points": "'width' oder nichts: der äußere Umriss hat andere Punkte",
+    "0 to 1": "0 bis 1",
+    "finite numbers above 0": "endliche Zahlen über 0",
+    "given, with bend 0": "gegeben, mit bend 0",
+    "none, or bend above 0: triangles of a straight lattice have one size": "nichts, oder bend über 0: Dreiecke eines geraden Gitters haben eine Größe",
+    "numbers, beside self_crossing union": "Zahlen, neben self_crossing union",
+    "one number for each point of the outline, and of each hole that has any": "eine Zahl je Punkt des Umrisses, und jedes Lochs, das welche hat",
+    "{} numbers": "{0} Zahlen",
 }
 
 MESSAGES = (
