@@ -60,6 +60,7 @@ SHAPING = (*SketchOptions.__annotations__, *ShapeOptions.__annotations__, "pen")
 
 def of_operator(operator: Any) -> dict[str, Any]:
     """Options as they are set, by name."""
+    operator.settle_resolution()
     return {name: getattr(operator, name) for name in (*SHAPING, "curve")}
 
 

@@ -171,10 +171,13 @@ def _stay(ob: bpy.types.Object) -> None:
 def _mend_own(source: bpy.types.Object, group: list[bpy.types.Object]) -> None:
     """Leave an outline to one body, as its child, and give the others copies; who shares the mesh shares the outline."""
     first = _first(group, source)
+    if source.parent not in group:  # of those that share it, the one that was given the same parent
+        first = next((ob for ob in group if source.parent in frames.ancestors(ob)), first)
     above = frames.ancestors(first)
     if source.parent != first and _ours(source) and source not in above:
         matrix = frames.stored(first)
-        if matrix is not None and (source.parent is None or source.parent in above):
+        elsewhere = source.parent is not None and source.parent not in above and not is_linked(source.parent)
+        if matrix is not None and not elsewhere:
             frames.nest(source, first, matrix)
     for ob in group:
         if ob.data == first.data:
