@@ -106,11 +106,13 @@ mod tests {
         };
         // Work that ends only when it is told to, but for the first items.
         let each = |&k: &usize, progress: Progress<'_>| {
-            while k >= 10 {
+            if k < 10 {
+                return Ok(k);
+            }
+            loop {
                 progress.report(0.0)?;
                 thread::yield_now();
             }
-            Ok(k)
         };
         let items = (0..12).collect::<Vec<_>>();
         let pool = |items: &[usize]| in_parallel(items, |_| 1, Progress::new(&callback), each);
