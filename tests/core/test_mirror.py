@@ -57,7 +57,9 @@ def test_symmetric_outlines_get_symmetric_meshes(amplitudes, triangles, turn, au
         return
     check_patch(patch, [points])
     size = np.ptp(points, axis=0).max()
-    assert patch.report["mirror_error"] * patch.edge_length <= 1e-11 * size
+    # Of axes that fit within a thousandth of the size "auto" takes the most upright one: a polygon near a circle has many.
+    round_enough = auto and max(map(abs, amplitudes)) < 0.02
+    assert patch.report["mirror_error"] * patch.edge_length <= (2e-3 if round_enough else 1e-11) * size
     if not auto:
         assert partners(patch, *axis) <= 1e-11 * size
 
