@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from .. import density
+from .. import density, frames
 from ..live import engine
 from ..live import ui as live_ui
 from ..live.reading import LostError, sketch_of
@@ -44,7 +44,7 @@ def of_body(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> density.Den
 
 
 def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
-    return [ob for ob in selected(context) if ob.type == "MESH" and engine.is_linked(ob) and ob.is_editable]
+    return [ob for ob in selected(context) if ob.type == "MESH" and frames.is_linked(ob) and ob.is_editable]
 
 
 class OBJECT_OT_gridmesh_refine(bpy.types.Operator):  # noqa: N801
@@ -92,7 +92,7 @@ def _offer(panel: Any, context: bpy.types.Context) -> None:
 
 def _note(ob: bpy.types.Object, context: bpy.types.Context) -> list[str]:
     """What the overlay writes of a body with too few triangles."""
-    found = of_body(ob, context.evaluated_depsgraph_get()) if engine.is_linked(ob) else None
+    found = of_body(ob, context.evaluated_depsgraph_get()) if frames.is_linked(ob) else None
     return found.text.split("; ") if found is not None and found.is_low else []
 
 

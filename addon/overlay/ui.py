@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 
-from ..live import engine
+from .. import frames
 from ..operators import refine
 from ..telling import told
 from . import viewport
@@ -44,7 +44,7 @@ class MESH_OT_gridmesh_quality(bpy.types.Operator):  # noqa: N801
         all_of_them = [(ob, viewport.of_object(ob, depsgraph)) for ob in viewport.shown(context)]
         for ob, found in all_of_them:
             self.report({"INFO"}, told(f"'{ob.name}': {found.text}"))
-            across = refine.of_body(ob, depsgraph) if engine.is_linked(ob) else None
+            across = refine.of_body(ob, depsgraph) if frames.is_linked(ob) else None
             if across is not None and across.is_low:
                 self.report({"WARNING"}, told(f"'{ob.name}': {across.text}"))
         found = [quality for _, quality in all_of_them]
