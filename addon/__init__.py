@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """GridMesh: smooth bodies with clean triangle meshes from drawn strokes.
 
-    operators.strokes -> strokes, curves (from Blender) -> outlines, api (numpy only) -> meshes (to Blender)
+    bodies: strokes, curves (from Blender) -> outlines, api (numpy only) -> data.meshes (to Blender)
     draw -> outlines of its own; live keeps bodies up to date with their strokes; overlay shows what meshes are like
-    operators.fill -> editmesh (from Blender) -> holes, api (no bpy) -> editmesh, attributes (to Blender)
-    operators.cut -> cutline, cutobject (from Blender) -> cutsweep, cutting (no bpy) -> cutmesh, cutcorners (to Blender)
+    pictures: images (from Blender) -> cutouts (numpy only) -> placing (to Blender)
+    fill: editmesh (from Blender) -> holes, api (no bpy) -> editmesh, data.attributes (to Blender)
+    cut: cutline, cutobject (from Blender) -> cutsweep, cutting (no bpy) -> cutmesh, cutcorners (to Blender)
 
-`properties` holds what the redo panel shows, `ui` the sidebar and the menus. The native module `gridmesh` is
+`ui.properties` holds what the redo panel shows, `ui.panels` the sidebar and the menus, `text` all words. The native module `gridmesh` is
 imported by `native` when it is first needed, so that the extension registers, and can say what is wrong, without it;
 and bpy only in `register`, so that `outlines` and `api` run in plain Python.
 """
@@ -18,7 +19,7 @@ def register() -> None:
     """Register all classes, menu entries and the like; if one fails, none stays."""
     import bpy
 
-    from . import translations
+    from .text import translations
 
     done = []
     try:
@@ -48,17 +49,22 @@ def unregister() -> None:
 
 
 def _classes() -> tuple[type, ...]:
-    from . import ui
+    from .bodies import operator as strokes
+    from .cut import operator as cut
     from .draw import operator as draw
+    from .fill import operator as fill
     from .live import properties as live
+    from .live import refine
     from .live import ui as live_ui
-    from .operators import cut, fill, refine, strokes
     from .overlay import ui as overlay
+    from .pictures import operator as pictures
+    from .ui import panels as ui
 
     return (
         *strokes.classes,
         *fill.classes,
         *cut.classes,
+        *pictures.classes,
         *overlay.classes,
         *refine.classes,
         *live.classes,
@@ -70,13 +76,16 @@ def _classes() -> tuple[type, ...]:
 
 def _parts() -> tuple[ModuleType, ...]:
     """Modules with more to register than classes; their `unregister` may be called at any time."""
-    from . import cli, frames, keys, preset_files, translations, ui
-    from .draw import cut_tool
+    from . import cli
+    from .cut import tool as cut_tool
+    from .data import frames
     from .draw import tool as draw
-    from .live import engine, handlers, watch
+    from .live import engine, handlers, refine, watch
     from .live import properties as live
-    from .operators import refine
     from .overlay import ui as overlay
+    from .text import translations
+    from .ui import keys, preset_files
+    from .ui import panels as ui
 
     return (
         translations,

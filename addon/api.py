@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from .bodies.outlines import Sketch, Stroke, StrokeError, area, nest, prepare, project
 from .native import MANIFEST, NATIVE_VERSION, NativeError, native  # noqa: F401 (known to callers from here)
-from .outlines import Sketch, Stroke, StrokeError, area, nest, prepare, project
 
 Progress = Callable[[float], object]
 """Called with the fraction that is done, from any thread; cancels by returning False."""

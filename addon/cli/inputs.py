@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..outlines import Stroke
+from ..bodies.outlines import Stroke
 
 
 class InputError(ValueError):

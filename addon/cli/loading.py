@@ -17,8 +17,8 @@ import bmesh
 import bpy
 import numpy as np
 
-from .. import strokes
-from ..outlines import Stroke
+from ..bodies import strokes
+from ..bodies.outlines import Stroke
 from . import files, inputs, sound
 from .inputs import InputError
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,17 +10,18 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import api, cutline, cutsweep, cutting, strokes
+from .. import api
 from ..api import Body
-from ..cutobject import Caps, Target
-from ..operators import cut as cut_operator
-from ..operators import fill as fill_operator
-from ..outlines import Stroke
+from ..bodies import strokes
+from ..bodies.outlines import Stroke
+from ..cut import cutline, cutsweep, cutting
+from ..cut.cutobject import Caps, Target
+from ..data import defaults
+from ..fill import filling
+from ..fill.editmesh import EditMesh
 from . import jobs, loading, params
 from .loading import LoadError
 from .outputs import placed
-
-_CORNER = math.radians(40.0)
 
 
 class MakeError(ValueError):
@@ -45,12 +45,12 @@ def strokes_to_bodies(source: Path, pattern: str | None, options: dict[str, Any]
     """Make a body of each closed stroke."""
     found, reasons, notes = loading.drawn(source, pattern, scripts=scripts)
     sketches, failures, more = api.sketches_of(
-        found, close_gaps=options.get("close_gaps", 0.2), holes=options.get("holes", True)
+        found, close_gaps=options.get("close_gaps", defaults.CLOSE_GAPS), holes=options.get("holes", True)
     )
-    corner = options.get("corner_angle", _CORNER)
+    corner = options.get("corner_angle", defaults.CORNER_ANGLE)
     sketch_options = {key: value for key, value in options.items() if key in params.SKETCH}
     if "edge_length" not in options:
-        sketch_options.setdefault("triangles", 2000)
+        sketch_options.setdefault("triangles", defaults.TRIANGLES)
     body_options = {key: value for key, value in options.items() if key in params.BODY}
     bodies, refused = api.build(sketches, sketch_options, {**body_options, "corner_angle": corner})
     reasons = reasons + [str(failure) for failure in failures + refused]
@@ -81,7 +81,7 @@ def _numbers(what: str, n: int, reports: list[dict[str, Any]]) -> dict[str, Any]
 def fill(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: bool) -> Made:
     """Fill the holes of every mesh."""
     found, notes = loading.meshes(source, pattern, scripts=scripts, weld=options.get("weld"))
-    most = options.get("max_open_edges", 200_000)
+    most = options.get("max_open_edges", defaults.MAX_OPEN_EDGES)
     reports: list[dict[str, Any]] = []
     reasons: list[str] = []
     larger = 0
@@ -100,22 +100,22 @@ def fill(source: Path, pattern: str | None, options: dict[str, Any], *, scripts:
         larger += job.found.larger + job.found.hidden
     if reasons and not reports:
         raise MakeError("holes", "; ".join(reasons))
-    notes = notes + reasons + fill_operator.warnings_of(reports)
+    notes = notes + reasons + filling.warnings_of(reports)
     if larger:
         notes.append(f"{larger} holes left open: hidden, or with more than max_edges edges")
     return Made(found, _numbers("holes", len(reports), reports), notes)
 
 
-def _filled(ob: bpy.types.Object, options: dict[str, Any]) -> fill_operator.Job:
+def _filled(ob: bpy.types.Object, options: dict[str, Any]) -> filling.Job:
     """Fill the holes of one mesh; the job tells what came of it."""
     bpy.context.view_layer.objects.active = ob
     bpy.ops.object.mode_set(mode="EDIT")
     try:
-        job = fill_operator.Job(fill_operator.EditMesh(ob))
-        job.find_all(options.get("max_edges", 100))
+        job = filling.Job(EditMesh(ob))
+        job.find_all(options.get("max_edges", defaults.MAX_HOLE_EDGES))
         job.fill(options.get("smooth", "tangent"), lambda _: True)
         if job.patches:
-            fill_operator.add_all([job], quads=options.get("quads", False))
+            filling.add_all([job], quads=options.get("quads", False))
     finally:
         bpy.ops.object.mode_set(mode="OBJECT")
     return job
@@ -142,7 +142,10 @@ def cut(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: 
     for ob in found:
         target = Target(ob)
         stroke = cutsweep.checked(
-            points - target.origin, cyclic=cyclic, sweep=sweep, close_gaps=options.get("close_gaps", 0.1)
+            points - target.origin,
+            cyclic=cyclic,
+            sweep=sweep,
+            close_gaps=options.get("close_gaps", defaults.CUT_CLOSE_GAPS),
         )
         try:
             division = cutting.divide(
@@ -161,15 +164,11 @@ def cut(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: 
             missed.append(f"'{ob.name}': {error}")
             objects.append(ob)
             continue
-        if any(part.is_empty for part in division.parts):
-            missed.append(f"'{ob.name}': the stroke leaves nothing of it on one side")
-            objects.append(ob)
-            continue
         caps = Caps(smooth == "flat", False, None)
         objects += target.apply(bpy.context, division.parts, stroke, sweep, caps, together=together)
         reports.append(_of_caps(division, gap=bool(options.get("gap"))))
         pieces += len(division.parts)
-        notes += cut_operator.warnings_of(division.report, capped=cap)
+        notes += cutting.warnings_of(division.report, capped=cap)
     if not reports:
         raise MakeError("cut", "; ".join(missed))
     return Made(objects, _numbers("pieces", pieces, reports), notes + missed)

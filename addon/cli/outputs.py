@@ -13,8 +13,8 @@ from pathlib import Path
 import bpy
 from mathutils import Matrix
 
-from .. import meshes
 from ..api import Body
+from ..data import meshes
 from . import drafts
 from .loading import said
 from .whole import is_whole

@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..data import defaults
+
 _MOST = 2**31 - 1
 """Largest count: what Blender can number."""
 
@@ -55,7 +57,7 @@ _SMOOTH = ("flat", "tangent", "curvature")
 _GAPS = "largest gap that is closed, relative to the stroke"
 
 SKETCH = {
-    "triangles": Param("count", "triangles of one side (2000)"),
+    "triangles": Param("count", f"triangles of one side ({defaults.TRIANGLES})"),
     "edge_length": Param("number", "length of the edges, instead of their number"),
     "boundary": Param("choice", "how the rim is found", ("optimal", "grown")),
     "max_distance": Param("number", "how far the rim may stray, in edge lengths"),
@@ -79,15 +81,19 @@ OPS: Mapping[str, Mapping[str, Param]] = {
     "strokes": {
         **SKETCH,
         **BODY,
-        "close_gaps": Param("number", f"{_GAPS} (0.2)", least=0, most=1),
+        "close_gaps": Param("number", f"{_GAPS} ({defaults.CLOSE_GAPS})", least=0, most=1),
         "holes": Param("switch", "outlines inside others are holes (true)"),
     },
     "fill": {
         "weld": _WELD,
         "smooth": Param("choice", "how patches continue the surface (tangent)", _SMOOTH),
-        "max_edges": Param("count", "holes with more edges stay open; 0: none does (100)"),
+        "max_edges": Param(
+            "count", f"holes with more edges stay open; 0: none does ({defaults.MAX_HOLE_EDGES})"
+        ),
         "quads": Param("switch", "join triangles to quads where that gives good ones (false)"),
-        "max_open_edges": Param("count", "meshes with more open edges are refused (200000)"),
+        "max_open_edges": Param(
+            "count", f"meshes with more open edges are refused ({defaults.MAX_OPEN_EDGES})"
+        ),
     },
     "cut": {
         "weld": _WELD,
@@ -105,7 +111,7 @@ OPS: Mapping[str, Mapping[str, Param]] = {
         "smooth": Param("choice", "shape of the caps (flat)", _SMOOTH),
         "gap": Param("number", "width of what is taken away (0)"),
         "extend_ends": Param("switch", "the ends of the stroke are continued through everything (true)"),
-        "close_gaps": Param("number", f"{_GAPS} (0.1)", least=0, most=1),
+        "close_gaps": Param("number", f"{_GAPS} ({defaults.CUT_CLOSE_GAPS})", least=0, most=1),
     },
 }
 

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from ..bodies.outlines import Plane, area
 from ..native import native
-from ..outlines import Plane, area
 from .trace import Mirror, Trace, closed
 
 Part = tuple[np.ndarray, list[np.ndarray]]

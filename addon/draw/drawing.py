@@ -8,13 +8,16 @@ from typing import Any
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
-from .. import api, frames, meshes, profilecurve, strokes, written
+from .. import api
+from ..bodies import profilecurve, strokes
+from ..bodies.outlines import Plane, Stroke, StrokeError, prepare
+from ..data import frames, meshes, written
 from ..live import engine, outlined
 from ..live.linework import nearest
 from ..live.outlined import OutlineError, radii
 from ..native import native
-from ..outlines import Plane, Stroke, StrokeError, prepare
 from . import shapes
 from .decision import Decision, Part, united
 from .gesture import FEWEST
@@ -295,23 +298,42 @@ def _split(
     widths = [nearest(ring, *known) for ring in rings]
     local = [frames.to_local(ob, ring) for ring in rings]
     middle = (local[0].min(axis=0) + local[0].max(axis=0)) / 2
-    place = frames.place(ob)
-    place[:3, 3] = frames.moved(middle[None], place)[0]
     try:
         body = outlined.make(
             context,
             [ring - middle for ring in local],
             widths,
-            place,
+            np.eye(4),
             _Like(ob.gridmesh_live),
             name=ob.name,
             collections=list(ob.users_collection),
         )
     except OutlineError as error:
         raise DrawError(_of_stroke(str(error))) from error
-    if ob.parent is not None:
-        _hang(context, body, ob.parent, ob.parent_type, ob.parent_bone)
+    _lay_like(context, body, ob, middle)
     return body
+
+
+def _lay_like(
+    context: bpy.types.Context, body: bpy.types.Object, other: bpy.types.Object, middle: np.ndarray
+) -> None:
+    """Let a body lie as another one does, sheared if that is, its own origin where `middle` of the other's space is."""
+    space = frames.space(other)
+    offset = Matrix.Translation(frames.moved(middle[None], space)[0])
+    place = other.matrix_world @ offset
+    body.parent, body.parent_type, body.parent_bone = other.parent, other.parent_type, other.parent_bone
+    body.matrix_parent_inverse = other.matrix_parent_inverse
+    body.rotation_mode = other.rotation_mode
+    body.matrix_basis = other.matrix_basis @ offset
+    space[:3, 3] = 0.0
+    if not np.array_equal(space, np.eye(4)):
+        body.gridmesh_live.space, body.gridmesh_live.digest = space.ravel().tolist(), ""
+        frames.nest(body.gridmesh_live.source, body, np.eye(4))
+        engine.remake(body)
+    context.view_layer.update()
+    if not np.allclose(body.matrix_world, place, rtol=1e-5, atol=1e-6):
+        body.matrix_world = place  # the other has constraints
+        context.view_layer.update()
 
 
 def _inked(drawn: list[shapes.Drawn], ink: _Ink) -> tuple[np.ndarray, np.ndarray]:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..density import automatic
+from ..bodies.density import automatic
+from ..bodies.outlines import Plane, area
 from ..native import native
-from ..outlines import Plane, area
 from .decision import Part
 from .trace import Trace, pack, unpack  # noqa: F401 (scripts take them from here)
 

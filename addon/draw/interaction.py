@@ -9,10 +9,10 @@ import bpy
 import numpy as np
 from bpy.app.translations import pgettext_iface
 
-from .. import frames
+from ..bodies.strokes import selected
+from ..data import frames
 from ..live import engine
-from ..strokes import selected
-from ..telling import told
+from ..text.telling import told
 from . import planes, shapes
 from .decision import Decision, DecisionError, Shape, Wanted, decide
 from .gesture import Gesture

@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 from mathutils import Matrix
 
-from .. import frames
+from ..data import frames
 from ..live import engine
 from .pencil import erase
 from .shapes import Drawn

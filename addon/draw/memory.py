@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..outlines import Plane
+from ..bodies.outlines import Plane
 from .decision import Wanted
 from .trace import Mirror, Trace, flat, unpack
 

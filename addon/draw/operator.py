@@ -14,8 +14,8 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..native import NativeError, native
-from ..operators.messages import counted
-from ..telling import told
+from ..text.messages import counted
+from ..text.telling import told
 from . import drawing, memory, options, planes, shapes, simplifying
 from .decision import Decision, DecisionError, Wanted, decide
 from .interaction import Interaction, mirror_place
@@ -25,7 +25,7 @@ _DONE = {
     "EXTEND": "Extended {}",
     "TRIM": "Trimmed {}",
     "HOLE": "Made a hole in {}",
-    "PART": "Added a part: {}",
+    "PART": "Added {} as part",
 }
 
 timing: list[float] = []

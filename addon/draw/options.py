@@ -7,7 +7,7 @@ from typing import Any
 
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 
-from ..properties import CurveOption, ShapeOptions, SketchOptions
+from ..ui.properties import CurveOption, ShapeOptions, SketchOptions
 
 ACTIONS = [
     (

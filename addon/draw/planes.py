@@ -8,7 +8,7 @@ import numpy as np
 from bpy_extras import view3d_utils
 from mathutils import Vector
 
-from ..outlines import Plane
+from ..bodies.outlines import Plane
 
 CHOICES = [
     ("VIEW", "View", "Facing the view, through the 3D cursor"),

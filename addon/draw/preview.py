@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..outlines import Plane
+from ..bodies.outlines import Plane
 from .decision import Decision
 from .gesture import Gesture
 from .trace import Mirror, Trace

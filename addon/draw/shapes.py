@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .. import frames
+from ..bodies.outlines import Plane, Sketch, project
+from ..data import frames
 from ..live import engine
 from ..live.reading import LostError, sketch_of
-from ..outlines import Plane, Sketch, project
 from .decision import Shape
 
 SAMPLES = 2000

@@ -7,12 +7,12 @@ import bpy
 import numpy as np
 from bpy.props import FloatProperty
 
-from .. import frames, written
+from ..bodies.strokes import selected
+from ..data import frames, written
 from ..live import engine, outlined
 from ..native import NativeError
-from ..operators.messages import counted, listed
-from ..strokes import selected
-from ..telling import told
+from ..text.messages import counted, listed
+from ..text.telling import told
 from . import shapes
 from .drawing import DrawError, refuse
 from .fewer import simplified

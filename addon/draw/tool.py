@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from .. import frames
+from ..data import frames
 from . import interaction
 from .operator import OBJECT_OT_gridmesh_draw
 from .simplifying import OBJECT_OT_gridmesh_simplify

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..outlines import OpenError, Plane, close
+from ..bodies.outlines import OpenError, Plane, close
 
 OVERSHOOT = 0.2
 """Ends that pass each other are cut off up to this part of the stroke's size."""

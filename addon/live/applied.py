@@ -13,8 +13,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import frames, written
-from ..outlines import Sketch
+from ..bodies.outlines import Sketch
+from ..data import frames, written
 from . import family
 from .reading import LostError, sketch_of
 
@@ -28,9 +28,14 @@ _places: dict[int, np.ndarray] = {}
 """World matrices by `session_uid`, where bodies and drawings were seen last."""
 
 
+_hands: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
+"""By `session_uid`, of bodies changed by hand: vertices (n, 3), space and world matrix, as they were seen last."""
+
+
 def forget() -> None:
     """Forget what has been seen: in another file."""
     _places.clear()
+    _hands.clear()
     written.forget()
 
 
@@ -129,6 +134,7 @@ def absorb(ob: bpy.types.Object) -> None:
         return
     matrix = written.motion(mesh)
     if matrix is None:
+        _absorb_by_hand(ob)
         return
     source = ob.gridmesh_live.source
     group = [ob] if mesh.users < 2 else [one for one in family.bodies(source) if one.data == mesh]
@@ -148,7 +154,31 @@ def absorb(ob: bpy.types.Object) -> None:
             for one, values in zip(group, before, strict=True):
                 one.gridmesh_live.space = values
             return
+        elif frames.owned(holder) is not None and (known := frames.stored(holder)) is not None:
+            # Applied under a parent that shears: Blender cannot leave the outline where it was.
+            frames.nest(source, holder, known)
     written.sign(mesh)
+
+
+def _absorb_by_hand(ob: bpy.types.Object) -> None:
+    """Take over what was applied to a body whose mesh was changed by hand: it is rebuilt where it is."""
+    live, uid = ob.gridmesh_live, ob.session_uid
+    points = written.points_of(ob.data).reshape(-1, 3)
+    space, world = frames.space(ob), np.array(ob.matrix_world)
+    known = _hands.get(uid)
+    _hands[uid] = points, space, world
+    if known is None or len(known[0]) != len(points) or np.array_equal(known[0], points):
+        return
+    if not np.array_equal(known[1], space):
+        return  # a step back or forth, of both
+    matrix = written.affine(known[0].astype(float), points.astype(float))
+    if matrix is None or not _close(world @ matrix, known[2]):
+        return
+    live.space = (matrix @ space).ravel().tolist()
+    link = np.array(live.carried, float).reshape(4, 4)
+    if link[3, 3]:
+        live.carried = (link @ np.linalg.inv(matrix)).ravel().tolist()
+    _hands[uid] = points, frames.space(ob), world
 
 
 def reframe(ob: bpy.types.Object) -> None:

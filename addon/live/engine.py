@@ -16,10 +16,11 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import frames, meshes, profilecurve, written
 from ..api import Body
+from ..bodies import profilecurve
+from ..bodies.outlines import Plane, Sketch, Stroke
+from ..data import frames, meshes, written
 from ..native import NativeError
-from ..outlines import Plane, Sketch, Stroke
 from . import applied, family, linework
 from .family import bodies
 from .reading import LostError, sketch_of
@@ -143,18 +144,46 @@ def refresh() -> int:
 
 
 def remake(ob: bpy.types.Object) -> bool:
-    """Make a body in full because somebody asked, whether it follows or not, and whether there is a window or not."""
+    """Make a body in full because somebody asked, whether it follows or not, and whether there is a window or not.
+
+    One that shares its mesh hands its options over to the body that writes that.
+    """
+    asked, ob = ob, hand_over(ob)
     _states.pop(ob.session_uid, None)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     with resting():
-        return _updated(ob, depsgraph, True)
+        done = _updated(ob, depsgraph, True)
+    _tell(asked.gridmesh_live, ob.gridmesh_live.problem)
+    return done
+
+
+def hand_over(ob: bpy.types.Object) -> bpy.types.Object:
+    """Give the options of a body to the others that share its mesh and drawing; return the one that writes the mesh."""
+    writer = family.writer(ob)
+    if ob.data.users < 2:
+        return writer
+    own = ob.gridmesh_live
+    for other in bodies(own.source):
+        if other == ob or other.data != ob.data or not other.is_editable:
+            continue
+        live = other.gridmesh_live
+        live.copy_options(own)
+        live.quiet = True
+        live.pen, live.algorithm = own.pen, own.algorithm
+        live.quiet = False
+        points = own.curve_points()
+        if points is None:
+            profilecurve.remove(other)
+        else:
+            profilecurve.put(other, points)
+    return writer
 
 
 def rebuild(ob: bpy.types.Object) -> None:
     """Make a body anew whose mesh was changed by hand, and let it follow again; the changes are lost."""
     if ob.mode == "OBJECT" and ob.is_editable and ob.data.is_editable:
         written.sign(ob.data)
-    ob.gridmesh_live.digest = ""
+    ob.gridmesh_live.digest = family.writer(ob).gridmesh_live.digest = ""
     remake(ob)
     ob.gridmesh_live.enabled = True
 

@@ -14,8 +14,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import frames, placing
-from ..frames import is_linked
+from ..data import frames, placing
+from ..data.frames import is_linked
 from . import linework
 from .reading import LostError, sketch_of
 
@@ -126,6 +126,7 @@ def mend() -> list[bpy.types.Object]:
             _mend_own(source, group)
         else:
             _mend_shared(group)
+    _part_unlike(everybody)
     used = {ob.gridmesh_live.source for ob in everybody}
     for source in [ob for ob in bpy.data.objects if ob.type == "GREASEPENCIL" and ob.gridmesh_outline]:
         if source not in used and source.users_scene and _ours(source):
@@ -190,6 +191,30 @@ def _mend_own(source: bpy.types.Object, group: list[bpy.types.Object]) -> None:
             frames.nest(copy, ob, matrix)
         ob.gridmesh_live.source = copy
         _memory.present.add(copy.session_uid)
+
+
+def _part_unlike(everybody: list[bpy.types.Object]) -> None:
+    """Give bodies that share a mesh meshes of their own where each has an outline, and those lie in other ways."""
+    meshes: dict[bpy.types.Mesh, list[bpy.types.Object]] = {}
+    for ob in everybody:
+        if (
+            ob.data.users > 1
+            and _ours(ob)
+            and ob.data.library is None
+            and ob.gridmesh_live.source is not None
+        ):
+            meshes.setdefault(ob.data, []).append(ob)
+    for group in meshes.values():
+        first = min(group, key=lambda ob: ob.session_uid)
+        source, frame = first.gridmesh_live.source, frames.frame(first)
+        for ob in group:
+            other = ob.gridmesh_live.source
+            if other == source:
+                continue
+            lies = frames.frame(ob)
+            if other.data != source.data or np.abs(lies - frame).max() > 1e-5 * np.abs(frame).max():
+                ob.data = ob.data.copy()
+                ob.gridmesh_live.digest = first.gridmesh_live.digest = ""
 
 
 def _mend_shared(group: list[bpy.types.Object]) -> None:

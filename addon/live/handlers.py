@@ -11,7 +11,8 @@ from typing import Any
 
 import bpy
 
-from .. import frames, strokes, written
+from ..bodies import strokes
+from ..data import frames, written
 from . import applied, engine, family, migration
 
 _DRAWINGS = tuple(
@@ -67,7 +68,7 @@ def _take_over(
         for ob in shaped:
             applied.absorb(ob)
         for ob in followers:
-            if ob.gridmesh_live.enabled and ob.gridmesh_live.source in sources:
+            if ob.gridmesh_live.source in sources:
                 applied.reframe(ob)
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import placing
-from ..outlines import Sketch
+from ..bodies.outlines import Sketch
+from ..data import placing
 
 LAYER = "Outline"
 

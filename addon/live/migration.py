@@ -9,7 +9,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from .. import frames, meshes, written
+from ..data import frames, meshes, written
 from . import engine, family
 from .reading import LostError, sketch_of
 from .solve import ALGORITHM

@@ -9,8 +9,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import frames, placing, written
-from ..outlines import Stroke
+from ..bodies.outlines import Stroke
+from ..data import frames, placing, written
 from . import engine
 from .linework import LAYER, RADIUS, drawn, radii, write
 

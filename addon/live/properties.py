@@ -13,9 +13,10 @@ from bpy.props import (
     StringProperty,
 )
 
-from .. import profilecurve
-from ..properties import ShapeOptions, SketchOptions
-from ..strokes import SOURCE_TYPES
+from ..bodies import profilecurve
+from ..bodies.strokes import SOURCE_TYPES
+from ..data import defaults
+from ..ui.properties import ShapeOptions, SketchOptions
 
 SHAPE_ICONS = {
     "ROUND": "LINCURVE",
@@ -31,7 +32,7 @@ def _changed(live: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None
     from . import engine
 
     if live.enabled and not live.quiet:
-        engine.touch(live.id_data)
+        engine.touch(engine.hand_over(live.id_data))
 
 
 def _with_update(deferred: Any) -> Any:
@@ -58,7 +59,9 @@ class GridMeshLive(SketchOptions, ShapeOptions, bpy.types.PropertyGroup):
     layer: StringProperty(options={"HIDDEN"})
     stroke: IntProperty(options={"HIDDEN"})
     count: IntProperty(options={"HIDDEN"})
-    close_gaps: FloatProperty(name="Close Gaps", subtype="FACTOR", default=0.2, min=0.0, max=1.0)
+    close_gaps: FloatProperty(
+        name="Close Gaps", subtype="FACTOR", default=defaults.CLOSE_GAPS, min=0.0, max=1.0
+    )
     use_holes: BoolProperty(name="Holes", default=True)
     pen: FloatProperty(
         name="Pen Width",

@@ -6,8 +6,10 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from .. import api, curves, frames, strokes
-from ..outlines import Sketch
+from .. import api
+from ..bodies import curves, strokes
+from ..bodies.outlines import Sketch
+from ..data import frames
 
 
 class LostError(Exception):

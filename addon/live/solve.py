@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..api import Body, native, reason_of
-from ..outlines import Plane, Sketch, project
+from ..bodies.outlines import Plane, Sketch, project
 
 ALGORITHM = 2
 """Raised when the same stroke and options give another body. A body made by another one is left alone until asked."""

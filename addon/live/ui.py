@@ -8,31 +8,34 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty
 
-from .. import frames, profilecurve, wrapping, written
-from ..strokes import selected
-from ..telling import told
-from ..translations import CONTEXT
+from ..bodies import profilecurve
+from ..bodies.strokes import selected
+from ..data import frames, written
+from ..text.telling import told
+from ..text.translations import CONTEXT
+from ..ui import wrapping
 from . import engine, migration, watch
 from .solve import ALGORITHM
 
 
-def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
-    return [ob for ob in selected(context) if ob.type == "MESH" and frames.is_linked(ob)]
-
-
-class _OnBodies:
+class OnBodies:
     """What needs bodies with a link in the selection."""
+
+    @classmethod
+    def chosen(cls, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Selected bodies that are linked to a drawing."""
+        return [ob for ob in selected(context) if ob.type == "MESH" and frames.is_linked(ob)]
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Ask for a body."""
-        if _chosen(context):
+        if cls.chosen(context):
             return True
         cls.poll_message_set(told("Select a body that is linked to its drawing", "tooltips"))
         return False
 
 
-class OBJECT_OT_gridmesh_freeze(_OnBodies, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_freeze(OnBodies, bpy.types.Operator):  # noqa: N801
     """Make plain meshes of the selected bodies; outlines drawn with the tool are removed"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_freeze"
@@ -41,12 +44,12 @@ class OBJECT_OT_gridmesh_freeze(_OnBodies, bpy.types.Operator):  # noqa: N801
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Cut the links."""
-        for ob in _chosen(context):
+        for ob in self.chosen(context):
             engine.freeze(ob)
         return {"FINISHED"}
 
 
-class OBJECT_OT_gridmesh_adopt(_OnBodies, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_adopt(OnBodies, bpy.types.Operator):  # noqa: N801
     """Make the selected bodies anew with this version of GridMesh, and let them follow their drawing"""  # noqa: D400
 
     bl_idname = "object.gridmesh_adopt"
@@ -56,7 +59,7 @@ class OBJECT_OT_gridmesh_adopt(_OnBodies, bpy.types.Operator):  # noqa: N801
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Take the bodies over and make them in full, also in background: it was asked for."""
         problems = []
-        for ob in _chosen(context):
+        for ob in self.chosen(context):
             live = ob.gridmesh_live
             live.algorithm, live.digest = ALGORITHM, ""
             engine.remake(ob)
@@ -68,7 +71,7 @@ class OBJECT_OT_gridmesh_adopt(_OnBodies, bpy.types.Operator):  # noqa: N801
         return {"FINISHED"}
 
 
-class OBJECT_OT_gridmesh_rebuild(_OnBodies, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_rebuild(OnBodies, bpy.types.Operator):  # noqa: N801
     """Make the selected bodies anew from their outlines; what was changed in their meshes by hand is lost"""  # noqa: D400
 
     bl_idname = "object.gridmesh_rebuild"
@@ -78,7 +81,7 @@ class OBJECT_OT_gridmesh_rebuild(_OnBodies, bpy.types.Operator):  # noqa: N801
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Give up what was changed by hand, and follow again; also in background: it was asked for."""
         problems = []
-        for ob in _chosen(context):
+        for ob in self.chosen(context):
             engine.rebuild(ob)
             if ob.gridmesh_live.problem:
                 problems.append(f"'{ob.name}': {ob.gridmesh_live.problem}")
@@ -87,7 +90,7 @@ class OBJECT_OT_gridmesh_rebuild(_OnBodies, bpy.types.Operator):  # noqa: N801
         return {"FINISHED"}
 
 
-class OBJECT_OT_gridmesh_curve(_OnBodies, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_curve(OnBodies, bpy.types.Operator):  # noqa: N801
     """Give the selected bodies a curve that reshapes their profile, from rim to top; edit it below"""  # noqa: D400
 
     bl_idname = "object.gridmesh_curve"
@@ -114,7 +117,7 @@ class OBJECT_OT_gridmesh_curve(_OnBodies, bpy.types.Operator):  # noqa: N801
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Change the curves; those that follow are made anew, also in background: it was asked for."""
         problems = []
-        for ob in _chosen(context):
+        for ob in self.chosen(context):
             if not ob.is_editable:
                 problems.append(f"'{ob.name}': it is linked from another file")
                 continue

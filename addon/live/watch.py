@@ -11,7 +11,8 @@ from time import perf_counter
 
 import bpy
 
-from .. import frames, profilecurve
+from ..bodies import profilecurve
+from ..data import frames
 from . import engine
 
 CATEGORY = "GridMesh"

@@ -9,9 +9,9 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 
-from .. import frames
-from ..operators import refine
-from ..telling import told
+from ..data import frames
+from ..live import refine
+from ..text.telling import told
 from . import viewport
 
 SWITCH = "gridmesh_quality"

@@ -8,8 +8,8 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..strokes import selected
-from ..telling import told
+from ..bodies.strokes import selected
+from ..text.telling import told
 from .quality import Quality, measure
 
 MARGIN, LINE, ABOVE = 14, 18, 36

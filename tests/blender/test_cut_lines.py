@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from drawings import circle
 
-from addon import cutsweep, cutting, drawnline
+from addon.cut import cutsweep, cutting, drawnline
 
 RIGHTWARD = np.array([[0.0, 0.0], [10.0, 0.0], [20.0, 0.0]])
 

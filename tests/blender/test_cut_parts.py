@@ -6,7 +6,8 @@ import pytest
 from cuts import caps, check_sound, cut, drawn, is_closed, line, stroke_object, volume
 from drawings import activate, circle, mesh_objects, vertices
 
-from addon import drawnline, frames
+from addon.cut import drawnline
+from addon.data import frames
 
 BEHIND = [(-2.0, 0.0, 0.1), (2.0, 0.0, 0.2)]
 
@@ -158,4 +159,4 @@ def test_reduced_caps_are_told(capfd):
     ob = bpy.context.object
     pieces = cut(ob, line((-3, 0, 0.97), (3, 0, 0.97)), smooth="TANGENT", edge_length=0.5)
     assert all(volume(piece) > 0 for piece in pieces)
-    assert "less than the model around" in capfd.readouterr().out
+    assert "less than the mesh around" in capfd.readouterr().out

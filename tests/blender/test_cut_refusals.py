@@ -154,7 +154,7 @@ def test_refused_in_edit_mode():
 @pytest.mark.parametrize("editing", [False, True])
 def test_failure_half_way_leaves_nothing(editing, monkeypatch):
     """Should writing fail in the middle, the mesh is as before."""
-    from addon import cutmesh
+    from addon.cut import cutmesh
 
     def fails(*_args, **_options):
         raise RuntimeError("on purpose")

@@ -7,7 +7,7 @@ from cuts import stroke_object
 from drawings import activate
 from test_ui import Layout
 
-from addon import ui
+from addon.ui import panels as ui
 
 
 def test_texts():

@@ -4,20 +4,23 @@ import bpy
 import numpy as np
 import pytest
 from drawings import bean, check_body, circle, fingerprint, world_vertices
+from mathutils import Matrix
 
+from addon.data import frames
 from addon.draw.gesture import Gesture, pack, unpack
 from addon.live import engine
 
 pytestmark = pytest.mark.usefixtures("awake")
 
 
-def draw(points, pressure=None, **options):
-    """Draw a stroke in the plane z = 0."""
+def draw(points, pressure=None, matrix=None, **options):
+    """Draw a stroke in the plane z = 0, or that of a matrix."""
     flat = np.asarray(points, float)[:, :2]
     pressure = np.ones(len(flat)) if pressure is None else pressure
     options = {"triangles": 600, **options}
+    place = np.eye(4) if matrix is None else matrix
     return bpy.ops.object.gridmesh_draw(
-        "EXEC_DEFAULT", True, stroke=pack(flat, pressure), matrix=np.eye(4).ravel().tolist(), **options
+        "EXEC_DEFAULT", True, stroke=pack(flat, pressure), matrix=place.ravel().tolist(), **options
     )
 
 
@@ -80,6 +83,50 @@ def parted():
     draw(bar, subtract=True)
     engine.settle()
     return sorted(engine.bodies(), key=lambda ob: world_vertices(ob)[:, 0].mean())
+
+
+SHEARED = Matrix.Diagonal((1, 1, 2, 1)) @ Matrix.Rotation(0.6, 4, "Y") @ Matrix.Diagonal((1, 2, 1.5, 1))
+
+
+@pytest.mark.parametrize("how", ["parent", "applied", "both"])
+def test_parts_of_a_sheared_body_are_sheared_as_it_was(how):
+    draw(circle(100, 2))
+    body = only_body()
+    if how != "applied":
+        above = bpy.data.objects.new("above", None)
+        bpy.context.collection.objects.link(above)
+        above.matrix_world = SHEARED
+        body.parent = above
+        bpy.context.view_layer.update()
+    if how != "parent":
+        body.matrix_basis = Matrix.Rotation(0.4, 4, "Y") @ Matrix.Diagonal((1, 1, 1.5, 1))
+        bpy.context.view_layer.update()
+        bpy.ops.object.transform_apply()
+        body.rotation_euler, body.scale = (0.3, 0.2, 0.1), (1, 1.2, 1.8)
+    bpy.context.view_layer.update()
+    engine.settle()
+    world = frames.place(body)
+    inside = frames.moved(world_vertices(body), np.linalg.inv(world))
+    assert np.hypot(*inside[:, :2].T).max() == pytest.approx(2.0, abs=0.01)
+    bar = [(x, -3) for x in np.linspace(-0.3, 0.3, 10)] + [(x, 3) for x in np.linspace(0.3, -0.3, 10)]
+    # In the body's plane: the stroke falls on it where it was drawn without the shear.
+    flat = frames.moved(np.c_[bar, np.zeros(len(bar))], world)
+    axes = np.linalg.qr(world[:3, :2])[0]
+    plane = np.eye(4)
+    plane[:3, :3], plane[:3, 3] = np.c_[axes, np.cross(*axes.T)], world[:3, 3]
+    assert draw(frames.moved(flat, np.linalg.inv(plane))[:, :2], matrix=plane, action="TRIM") == {"FINISHED"}
+    bodies = engine.bodies()
+    assert len(bodies) == 2
+    for part in bodies:
+        check_body(part)
+        assert part.gridmesh_live.problem == ""
+        inside = frames.moved(world_vertices(part), np.linalg.inv(world))
+        assert np.hypot(*inside[:, :2].T).max() == pytest.approx(2.0, abs=0.01), "not sheared as the body was"
+        assert np.abs(frames.place(part)[:3, :3] - world[:3, :3]).max() < 1e-5
+    after = np.concatenate([world_vertices(part) for part in bodies])
+    engine.settle()
+    again = np.concatenate([world_vertices(part) for part in bodies])
+    assert np.abs(again - after).max() < 1e-5
 
 
 @pytest.mark.parametrize("start", [np.pi, 0])

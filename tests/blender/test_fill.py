@@ -22,7 +22,7 @@ from holes import (
     without_faces,
 )
 
-from addon import ui
+from addon.ui import panels as ui
 
 
 @pytest.mark.smoke

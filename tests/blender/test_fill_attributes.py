@@ -18,7 +18,7 @@ from holes import (
     without_faces,
 )
 
-from addon.attributes import settle
+from addon.data.attributes import settle
 
 
 def pierced(n=8, size=2.0):

@@ -10,7 +10,9 @@ import pytest
 from drawings import activate, grease_pencil, linked, vertices
 from holes import Before, ball_with_hole, cylinder, edit, faces_of, fill, grid, leave, rim, select, suzanne
 
-from addon import api, editmesh, progress
+from addon import api
+from addon.fill import editmesh
+from addon.ui import progress
 
 
 def mesh(points, edges=(), faces=(), name="Mesh"):

@@ -18,7 +18,7 @@ from drawings import (
     world_vertices,
 )
 
-from addon import frames
+from addon.data import frames
 from addon.live import engine
 
 pytestmark = pytest.mark.usefixtures("awake")

@@ -7,7 +7,7 @@ from drawings import activate, check_body, circle, triangles, vertices, world_ve
 from mathutils import Matrix
 from test_live_together import by_strokes, by_tool, draw, edit, outline_points, settle
 
-from addon import frames, written
+from addon.data import frames, written
 from addon.live import engine
 
 pytestmark = pytest.mark.usefixtures("awake")
@@ -377,3 +377,49 @@ def test_an_affine_map_is_found_and_nothing_else():
     assert np.allclose(written.affine(sheet, frames.moved(sheet, turn)), turn, atol=1e-5)
     assert written.affine(points, points * [1, 1, 0]) is None
     assert written.affine(points[:1], points[:1]) is None
+
+
+@pytest.mark.parametrize("which", ["body", "outline", "both"])
+@pytest.mark.parametrize("what", ["scale", "all"])
+@pytest.mark.parametrize("place", ["scaled", "stretched", "mirrored"])
+def test_applied_while_it_does_not_follow(pair, place, what, which):
+    body, source = pair
+    body.gridmesh_live.enabled = False
+    carrier(body, source).matrix_world = PLACES[place]
+    before = shape(body, source)
+    choose(body, source, which)
+    bpy.ops.object.transform_apply(**APPLIED[what])
+    after = shape(body, source)
+    assert np.abs(after - before).max() < 1e-5 * max(1, np.abs(before).max())
+    body.gridmesh_live.enabled = True
+    check_live(body, before)
+
+
+@pytest.mark.parametrize("what", ["scale", "all"])
+@pytest.mark.parametrize("place", ["scaled", "stretched"])
+@pytest.mark.parametrize("undone", [False, True])
+def test_applied_to_a_body_that_was_changed_by_hand(pair, place, what, undone):
+    body, source = pair
+    body.matrix_world = PLACES[place] @ body.matrix_world
+    before = shape(body, source)
+    name = body.name
+    bpy.ops.ed.undo_push(message="placed")
+    body.data.vertices[5].co.z += 0.1
+    body.data.update()
+    settle()
+    assert body.gridmesh_live.problem == engine.BY_HAND
+    bpy.ops.ed.undo_push(message="by hand")
+    changed = world_vertices(body)
+    choose(body, source, "body")
+    bpy.ops.object.transform_apply("EXEC_DEFAULT", True, **APPLIED[what])
+    settle()
+    if undone:
+        for step in ("undo", "redo"):
+            getattr(bpy.ops.ed, step)()
+            settle()
+        body = bpy.data.objects[name]
+    assert body.gridmesh_live.problem == engine.BY_HAND
+    assert np.abs(world_vertices(body) - changed).max() < 1e-5 * np.abs(changed).max(), "handwork has moved"
+    choose(body, body.gridmesh_live.source, "body")
+    assert bpy.ops.object.gridmesh_rebuild() == {"FINISHED"}
+    check_live(body, before)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from drawings import activate, bean, check_body, circle, grease_pencil, run_one, vertices
 
-from addon import profilecurve
+from addon.bodies import profilecurve
 from addon.live import engine
 
 pytestmark = pytest.mark.usefixtures("awake")

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from drawings import activate, bean, check_body, grease_pencil, run_one, triangles, vertices
 
-from addon import frames, written
+from addon.data import frames, written
 from addon.live import engine
 
 pytestmark = pytest.mark.usefixtures("awake")
@@ -202,7 +202,7 @@ def test_the_panel_offers_both_ways_out(drawn):
 
 
 def test_lines_of_messages_fit():
-    from addon.wrapping import lines
+    from addon.ui.wrapping import lines
 
     text = "it has shape keys, which fit no new Donaudampfschifffahrtsgesellschaftskapitän mesh"
     for width in (5, 12, 30, 200):

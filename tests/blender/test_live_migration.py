@@ -6,7 +6,7 @@ import pytest
 from drawings import at, bean, check_body, circle, grease_pencil, run, vertices, world_vertices
 from mathutils import Matrix
 
-from addon import frames
+from addon.data import frames
 from addon.live import engine, migration
 from addon.live.reading import sketch_of
 

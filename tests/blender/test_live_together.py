@@ -18,7 +18,7 @@ from drawings import (
 )
 from mathutils import Matrix
 
-from addon import frames
+from addon.data import frames
 from addon.draw.gesture import pack
 from addon.live import engine, family
 from addon.live.reading import sketch_of
@@ -365,6 +365,60 @@ def test_a_linked_duplicate_shares_mesh_and_outline(pair):
     assert copy.gridmesh_live.source == source
     edit(source, 0.7)
     check_fresh(copy)
+
+
+@pytest.mark.parametrize("which", ["the body", "the copy"])
+def test_options_of_either_of_two_that_share_a_mesh_act(pair, which):
+    body, source = pair
+    (copy,) = duplicate(body, linked=True)
+    one, other = (body, copy) if which == "the body" else (copy, body)
+    high = np.ptp(vertices(body.data)[:, 2])
+    one.gridmesh_live.depth = 0.5
+    settle()
+    assert np.ptp(vertices(body.data)[:, 2]) == pytest.approx(0.5 * high, rel=0.05)
+    assert other.gridmesh_live.depth == 0.5
+    before = vertices(body.data)
+    activate(one)
+    assert bpy.ops.object.gridmesh_curve(shape="RING") == {"FINISHED"}
+    settle()
+    assert np.abs(vertices(body.data) - before).max() > 0.05
+    edit(source)
+    check_fresh(body)
+
+
+def test_two_that_share_a_mesh_part_when_an_outline_is_moved_in_one_of_them():
+    body, source = by_tool()
+    copy, line = sorted(duplicate(body, source, linked=True), key=lambda ob: ob.type, reverse=True)
+    assert copy.data == body.data
+    before = world_vertices(body)
+    line.location.x += 0.5
+    bpy.context.view_layer.update()
+    settle()
+    assert copy.data != body.data
+    assert np.abs(world_vertices(body) - before).max() < 1e-6
+    check_fresh(body)
+    check_fresh(copy)
+    body.data.vertices[3].co.z += 0.1
+    body.data.update()
+    settle()
+    assert body.gridmesh_live.problem == engine.BY_HAND
+    activate(body)
+    assert bpy.ops.object.gridmesh_rebuild() == {"FINISHED"}
+    check_fresh(body)
+
+
+def test_rebuild_of_a_copy_that_shares_the_mesh_is_that_of_the_body(pair):
+    body, _source = pair
+    (copy,) = duplicate(body, linked=True)
+    body.data.vertices[3].co.z += 0.1
+    body.data.update()
+    settle()
+    assert copy.gridmesh_live.problem == body.gridmesh_live.problem == engine.BY_HAND
+    activate(copy)
+    assert bpy.ops.object.gridmesh_rebuild() == {"FINISHED"}
+    settle()
+    assert copy.gridmesh_live.problem == body.gridmesh_live.problem == ""
+    check_fresh(body)
 
 
 def test_an_outline_duplicated_alone_is_a_drawing():

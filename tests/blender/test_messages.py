@@ -7,9 +7,8 @@ import bpy
 import pytest
 from conftest import ROOT
 
-from addon import translations
-from addon.operators import messages
-from addon.telling import told, translate
+from addon.text import messages, translations
+from addon.text.telling import told, translate
 
 ADDON, LIBRARY = ROOT / "addon", ROOT / "rust" / "gridmesh" / "src"
 
@@ -17,7 +16,10 @@ TABLES = {"translations.py", "german_messages.py"}
 
 # Literals with a space that no user reads.
 NOT_SHOWN = {
-    "Base Color",  # a socket of Blender's
+    "Base Color",  # sockets of Blender's
+    "Emission Color",
+    "Emission Strength",
+    "Specular IOR Level",
     "GridMesh Profile",  # names of data
     "{} Bodies",
     "{} Outline",

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from drawings import at, bean, circle, on_plane
 
-from addon import api, outlines, sampling
+from addon import api
+from addon.bodies import outlines, sampling
 
 
 def stroke(points, *, cyclic=True, index=0, layer="Lines", source="Drawing"):
@@ -17,7 +18,7 @@ def stroke(points, *, cyclic=True, index=0, layer="Lines", source="Drawing"):
 
 def test_no_bpy_is_needed():
     """A plain Python can import what is promised to work without Blender."""
-    code = "import sys; sys.modules['bpy'] = None; import addon.api, addon.attributes, addon.creases, addon.holes, addon.outlines, addon.sampling"
+    code = "import sys; sys.modules['bpy'] = None; import addon.api, addon.data.attributes, addon.fill.creases, addon.fill.holes, addon.bodies.outlines, addon.bodies.sampling"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 

@@ -204,7 +204,7 @@ def test_selection_unknown_after_modifiers():
 
 
 def test_failure_while_objects_are_made_leaves_nothing(monkeypatch):
-    from addon import meshes
+    from addon.data import meshes
 
     grease_pencil([circle(), at(bean(), 4, 0, 0)])
     before = fingerprint()
@@ -255,7 +255,7 @@ def test_register_and_unregister_again():
 
 def test_register_that_fails_leaves_nothing(monkeypatch):
     addon.unregister()
-    monkeypatch.setattr("addon.ui.register", lambda: 1 / 0)
+    monkeypatch.setattr("addon.ui.panels.register", lambda: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         addon.register()
     assert not hasattr(bpy.types, "VIEW3D_PT_gridmesh")

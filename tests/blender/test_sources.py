@@ -19,7 +19,7 @@ from drawings import (
     world_vertices,
 )
 
-from addon import sampling
+from addon.bodies import sampling
 
 
 @pytest.mark.smoke

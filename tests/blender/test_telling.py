@@ -19,7 +19,8 @@ from drawings import (
     run_one,
 )
 
-from addon import api, progress
+from addon import api
+from addon.ui import progress
 
 
 def bezier(ob, keep_handles):

@@ -8,7 +8,8 @@ from conftest import ROOT
 from test_messages import all_messages
 
 import addon
-from addon import keys, preset_files, translations
+from addon.text import translations
+from addon.ui import keys, preset_files
 
 ADDON = ROOT / "addon"
 

@@ -7,10 +7,10 @@ import pytest
 from drawings import activate, circle, grease_pencil, run_one
 from holes import cylinder, edit
 
-from addon import ui
+from addon.bodies.operator import OBJECT_OT_gridmesh_from_strokes
+from addon.fill.operator import MESH_OT_gridmesh_fill
 from addon.live import ui as live_ui
-from addon.operators.fill import MESH_OT_gridmesh_fill
-from addon.operators.strokes import OBJECT_OT_gridmesh_from_strokes
+from addon.ui import panels as ui
 
 
 class Settings:

@@ -9,7 +9,7 @@ import pytest
 from drawings import bean, grease_pencil, mesh_objects
 
 from addon import api
-from addon.operators import waiting
+from addon.ui import waiting
 
 
 class Manager:
@@ -98,7 +98,7 @@ def test_scripts_do_not_wait():
 
 @pytest.mark.parametrize("options", [{"triangles": 1000}, {"edge_length": 0.08}])
 def test_expected_triangles_are_about_right(options):
-    from addon.outlines import Stroke
+    from addon.bodies.outlines import Stroke
 
     stroke = Stroke(points=bean(), cyclic=True, source="", layer="", index=0, count=1)
     sketches, _, _ = api.sketches_of([stroke], close_gaps=0.2, holes=True)

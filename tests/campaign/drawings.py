@@ -1,14 +1,16 @@
 """Random drawings of many kinds with random options, meshed and checked without the library's own code.
 
-    python tests/campaign/drawings.py CASES [--seed S]
+    python tests/campaign/drawings.py CASES [--seed S] [--journal FILE]
 
-prints one line for each finding, the counts by outcome, and the ten slowest cases. A case is its seed: it can be
-run again alone with `CASES` 1 and its seed. Ctrl-C ends the run with its summary.
+prints one line for each finding, the counts by outcome, and the ten slowest calls. A case is its seed: it can be
+run again alone with `CASES` 1 and its seed. Ctrl-C ends the run with its summary; with a journal, a line of JSON
+for each case, the same command goes on where it ended.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import time
 from collections import Counter
@@ -36,6 +38,10 @@ EXPECTED = {
     "too_few_points",
 }
 """Kinds of refusal that a random drawing may meet."""
+
+LONGEST = 10.0
+"""Seconds of processor time that a call for at most `LARGE` triangles may take."""
+LARGE = 20_000
 
 
 def circle(n: int, radius: float = 1.0, centre: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
@@ -227,58 +233,82 @@ def deviation(patch: Any, contours: list[np.ndarray], at_most: int = 20_000) -> 
     return far / patch.edge_length
 
 
-def check(case: Case) -> tuple[str, str | None]:
-    """Outcome of a case, and what is wrong with it, if anything."""
+def check(case: Case) -> tuple[str, str | None, float]:
+    """Outcome of a case, what is wrong with it, if anything, and the call's seconds of processor time."""
     fractions: list[float] = []
+    since = time.process_time()
     try:
         patch = gridmesh.mesh_sketch(case.outline, case.holes, progress=fractions.append, **case.options)
     except gridmesh.GridMeshError as refused:
+        seconds = time.process_time() - since
         wrong = None if refused.kind in EXPECTED else str(refused)
-        return refused.kind, wrong
+        return refused.kind, wrong or too_long(case, seconds), seconds
+    seconds = time.process_time() - since
     if fractions != sorted(fractions):
-        return "patch", "progress runs backwards"
+        return "patch", "progress runs backwards", seconds
+    return "patch", fault(case, patch) or too_long(case, seconds), seconds
+
+
+def too_long(case: Case, seconds: float) -> str | None:
+    """What is wrong with the time of a call."""
+    if seconds <= LONGEST or case.options["triangles"] > LARGE:
+        return None
+    return f"{seconds:.1f} s CPU"
+
+
+def fault(case: Case, patch: Any) -> str | None:
+    """What is wrong with a patch, if anything."""
     contours = [case.outline, *case.holes]
     try:
         check_patch(patch, contours)
     except AssertionError as error:
-        return "patch", f"check_patch: {error}"
+        return f"check_patch: {error}"
     far, told = deviation(patch, contours), patch.report["max_deviation"]
     if far > 2 + 1e-6:
-        return "patch", f"the drawing lies {far:.2f} edges from the boundary"
+        return f"the drawing lies {far:.2f} edges from the boundary"
     if far > told + 0.01:
-        return "patch", f"max_deviation is {told:.3f}, measured {far:.3f}"
+        return f"max_deviation is {told:.3f}, measured {far:.3f}"
     wanted, made = case.options["triangles"], len(patch.triangles)
     if abs(made - wanted) > max(0.1 * wanted, 6):
-        return "patch", f"{wanted} triangles asked for, {made} made"
-    return "patch", None
+        return f"{wanted} triangles asked for, {made} made"
+    return None
 
 
 def main() -> int:
     """Run cases; 1 if something is wrong."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("cases", type=int)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--journal", type=Path)
     arguments = parser.parse_args()
-    outcomes: Counter[str] = Counter()
-    slowest: list[tuple[float, int, str]] = []
-    findings = 0
+    done: dict[int, dict[str, Any]] = {}
+    if arguments.journal is not None and arguments.journal.exists():
+        lines = arguments.journal.read_text().splitlines(keepends=True)
+        done = {one["seed"]: one for one in map(json.loads, (line for line in lines if line.endswith("\n")))}
     try:
         for seed in range(arguments.seed, arguments.seed + arguments.cases):
+            if seed in done:
+                continue
             one = case(seed)
-            since = time.process_time()
-            outcome, wrong = check(one)
-            slowest = sorted(
-                [*slowest, (time.process_time() - since, seed, f"{one.kind} {outcome} {one.options}")]
-            )[-10:]
-            outcomes[outcome] += 1
+            outcome, wrong, seconds = check(one)
+            done[seed] = {
+                "seed": seed,
+                "outcome": outcome,
+                "wrong": wrong,
+                "seconds": round(seconds, 3),
+                "what": f"{one.kind} of {len(one.outline)} points {one.options}",
+            }
             if wrong is not None:
-                findings += 1
-                print(f"seed {seed}: {one.kind} {one.options}: {wrong}", flush=True)
+                print(f"seed {seed}: {done[seed]['what']}: {outcome}: {wrong}", flush=True)
+            if arguments.journal is not None:
+                with arguments.journal.open("a") as journal:
+                    journal.write(json.dumps(done[seed]) + "\n")
     except KeyboardInterrupt:
-        print(f"stopped after {sum(outcomes.values())} cases")
-    print(dict(outcomes.most_common()), f"{findings} findings")
-    for seconds, seed, what in reversed(slowest):
-        print(f"{seconds:8.2f} s CPU, seed {seed}: {what}")
+        print(f"stopped after {len(done)} cases")
+    findings = sum(one["wrong"] is not None for one in done.values())
+    print(dict(Counter(one["outcome"] for one in done.values()).most_common()), f"{findings} findings")
+    for one in sorted(done.values(), key=lambda one: -one["seconds"])[:10]:
+        print(f"{one['seconds']:8.2f} s CPU, seed {one['seed']}: {one['what']}: {one['outcome']}")
     return int(findings > 0)
 
 

@@ -1,11 +1,11 @@
-"""addon/creases.py: which edges are shaded sharp."""
+"""addon/fill/creases.py: which edges are shaded sharp."""
 
 import gridmesh
 import numpy as np
 import pytest
 from sketches import DRAWINGS, circle
 
-from addon.creases import face_angles, rim_creases
+from addon.fill.creases import face_angles, rim_creases
 
 
 def edges_of(triangles):

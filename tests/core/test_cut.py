@@ -272,6 +272,34 @@ def test_progress_rises_and_cancels():
         gridmesh.cut(vertices, faces, ACROSS, direction=DOWN, progress=lambda f: f < 0.3)
 
 
+def test_several_large_caps_go_on_asking():
+    """While caps are planned side by side there is somebody to ask as well."""
+    n, columns = 240, 6
+    t = np.arange(n) * 2 * np.pi / n
+    ring = (1 + 0.1 * np.cos(31 * t))[:, None] * np.column_stack([np.cos(t), np.sin(t)])
+    column = np.vstack([np.column_stack([ring, np.full(n, z)]) for z in (0.0, 1.0)])
+    sides = [[k, (k + 1) % n, (k + 1) % n + n, k + n] for k in range(n)]
+    own = [list(range(n - 1, -1, -1)), list(range(n, 2 * n)), *sides]
+    vertices = np.vstack([column + [3 * k, 0, 0] for k in range(columns)])
+    faces = [[v + 2 * n * k for v in face] for k in range(columns) for face in own]
+    mesh = (np.concatenate(faces), np.concatenate([[0], np.cumsum([len(face) for face in faces])]))
+    stroke = [[-2, 0, 0.5], [3 * columns - 1, 0, 0.5]]
+    seen = []
+    whole = gridmesh.cut(vertices, mesh, stroke, direction=(0, 1, 0), progress=seen.append)
+    assert whole.report["caps"] == columns
+    assert sum(0.37 < fraction < 0.8 for fraction in seen) > 100
+    left = iter(range(50))
+    with pytest.raises(gridmesh.GridMeshError) as stopped:
+        gridmesh.cut(
+            vertices,
+            mesh,
+            stroke,
+            direction=(0, 1, 0),
+            progress=lambda fraction: fraction < 0.37 or next(left, None) is not None,
+        )
+    assert stopped.value.kind == "cancelled"
+
+
 def test_documentation():
     example = doctest.DocTestParser().get_doctest(gridmesh.cut.__doc__, {}, "cut", None, 0)
     failures: list[str] = []

@@ -10,7 +10,14 @@ from pathlib import Path
 import gridmesh
 import pytest
 
-FUNCTIONS = [gridmesh.mesh_sketch, gridmesh.stitch, gridmesh.flat, gridmesh.inflate, gridmesh.map_sketches]
+FUNCTIONS = [
+    gridmesh.mesh_sketch,
+    gridmesh.stitch,
+    gridmesh.flat,
+    gridmesh.inflate,
+    gridmesh.map_sketches,
+    gridmesh.trace_image,
+]
 
 README = Path(__file__).parents[2] / "README.md"
 

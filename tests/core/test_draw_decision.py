@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from addon.bodies.outlines import Plane
 from addon.draw import memory
 from addon.draw.decision import DecisionError, Shape, Wanted, decide, inside, relation
 from addon.draw.fewer import simplified
 from addon.draw.gesture import Gesture
 from addon.draw.trace import Mirror, Trace, closed, flat, pack, unpack
-from addon.outlines import Plane
 
 FLOOR = Plane(np.zeros(3), np.eye(3))
 

@@ -1,11 +1,11 @@
-"""addon/holes.py: which holes a selection means."""
+"""addon/fill/holes.py: which holes a selection means."""
 
 import itertools
 
 import numpy as np
 import pytest
 
-from addon.holes import OpenEdge, all_of, of_selection
+from addon.fill.holes import OpenEdge, all_of, of_selection
 
 
 def grid(columns, rows, without=()):

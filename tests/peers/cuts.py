@@ -88,7 +88,7 @@ def with_gridmesh(ob, stroke, suggested=True):
     points = [{"name": "", "location": tuple(point)} for point in stroke.tolist()]
     length = 0.0
     if suggested:
-        from addon.cutobject import Target
+        from addon.cut.cutobject import Target
 
         length = Target(ob).model.edge_length()
     since = perf_counter()

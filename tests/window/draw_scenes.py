@@ -9,6 +9,7 @@ from setting import (
     bodies,
     extent,
     fresh,
+    limb,
     modules,
     numbers_of,
     outlines,
@@ -165,7 +166,8 @@ def draw_planes():
         assert abs(body.matrix_world.translation.z - 1) < 1e-3
         yield from stage.picture("draw_surface_2")
     finally:
-        options.plane, options.triangles = "VIEW", 2000
+        options.plane = "VIEW"
+        options.property_unset("triangles")
 
 
 def words():
@@ -410,6 +412,36 @@ def draw_idle():
     yield from stage.picture("draw_idle_2")
 
 
+def draw_automatic():
+    """Automatic: the grid that is seen while a limb grows is about as fine as that of the body; a limb gets five across."""
+    yield from begin()
+    x, y = stage.middle()
+    with stage.override():
+        options = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT").operator_properties(
+            "object.gridmesh_draw"
+        )
+    assert options.resolution == "AUTO", "Automatic is not the default"
+    fish = limb((x - 200, y), 0.0, 380, 22)
+    seen, kind = [], modules("draw.preview").Preview
+    show = kind.show
+
+    def shown(self, *arguments):
+        show(self, *arguments)
+        seen.append(sum(len(triangles) for _, triangles in self._grids))
+
+    kind.show = shown
+    try:
+        yield from stroke(fish, picture="draw_automatic_1", at=0.95)
+    finally:
+        kind.show = show
+    (body,) = bodies()
+    sides = len(body.data.polygons) // 2
+    print(f"NUMBERS automatic: preview {seen[-1]} triangles, body {sides} of a side")
+    assert 0.5 * sides < seen[-1] < 2 * sides, "the preview is not as fine as the body"
+    assert modules("live.refine").of_body(body, bpy.context.evaluated_depsgraph_get()).across > 4.5
+    yield from stage.picture("draw_automatic_2")
+
+
 class Tablet:
     """An event as a pen makes it: simulated ones have no pressure."""
 
@@ -482,5 +514,5 @@ SCENES = (
         draw_click,
         draw_turned,
     ),
-    *(draw_bridge, draw_eye, draw_mirrored, draw_idle, draw_planes, draw_pressed, pen),
+    *(draw_bridge, draw_eye, draw_mirrored, draw_idle, draw_planes, draw_automatic, draw_pressed, pen),
 )

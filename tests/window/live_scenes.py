@@ -178,7 +178,7 @@ def live_curve():
     yield from stage.open_sidebar()
     body = bodies()[0]
     yield from stage.press_button("UI", "gridmesh_curve")
-    curves = modules("profilecurve")
+    curves = modules("bodies.profilecurve")
     assert curves.points(body) == curves.SHAPES["ROUND"], "the button adds no curve"
     yield from press_shape("RING")
     assert len(curves.points(body)) == len(curves.SHAPES["RING"]), "the button of the ring does nothing"

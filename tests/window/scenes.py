@@ -8,6 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import bpy
+import cut_scenes
 import draw_scenes
 import first_scenes
 import live_scenes
@@ -18,6 +19,7 @@ from stage import perform
 SCENES = (
     *first_scenes.SCENES,
     *mesh_scenes.SCENES,
+    *cut_scenes.SCENES,
     *draw_scenes.SCENES,
     *live_scenes.SCENES,
     *together_scenes.SCENES,

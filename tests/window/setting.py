@@ -144,6 +144,19 @@ def ring(centre, radius, n=36, start=0.0, wobble=0.0):
     return [(centre[0] + a * np.cos(b), centre[1] + a * np.sin(b)) for a, b in zip(r, t, strict=True)]
 
 
+def limb(start, angle, length, half):
+    """Points in the window around a limb with a round end, which begins within a body."""
+    along = np.array([np.cos(angle), np.sin(angle)])
+    aside = np.array([-along[1], along[0]])
+    there = [start + along * d + aside * half for d in np.linspace(0, length, 12)]
+    turn = [
+        start + along * (length + half * np.sin(a)) + aside * half * np.cos(a)
+        for a in np.linspace(0.2, np.pi - 0.2, 8)
+    ]
+    back = [start + along * d - aside * half for d in np.linspace(length, 0, 12)]
+    return [tuple(map(float, point)) for point in (*there, *turn, *back)]
+
+
 def tool(name):
     """Take a tool of the toolbar."""
     with stage.override():

@@ -54,6 +54,11 @@ pub fn triangles(py: Python<'_>, triangles: &[[u32; 3]]) -> PyResult<Py<PyArray2
     table(py, triangles.iter().map(|t| t.map(index)).collect())
 }
 
+/// (n, 4) int32.
+pub fn quads(py: Python<'_>, quads: &[[u32; 4]]) -> PyResult<Py<PyArray2<i32>>> {
+    table(py, quads.iter().map(|q| q.map(index)).collect())
+}
+
 /// (n, 2) int32.
 pub fn edges(py: Python<'_>, edges: &[[u32; 2]]) -> PyResult<Py<PyArray2<i32>>> {
     table(py, edges.iter().map(|edge| edge.map(index)).collect())

@@ -5,13 +5,13 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 
 use glam::DVec2;
+use gridmesh::body::inflate::{InflateOptions, inflate};
+use gridmesh::body::stitch::stitch;
+use gridmesh::body::surface::Surface;
 use gridmesh::error::{Error, Result};
-use gridmesh::inflate::{InflateOptions, inflate};
 use gridmesh::options::SketchOptions;
 use gridmesh::progress::Progress;
 use gridmesh::sketch::mesh_sketch;
-use gridmesh::stitch::stitch;
-use gridmesh::surface::Surface;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 

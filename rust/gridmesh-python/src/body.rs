@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use gridmesh::inflate::InflateOptions;
+use gridmesh::body::inflate::InflateOptions;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -43,7 +43,7 @@ use crate::{error, options};
 #[pyo3(text_signature = "(patch)")]
 pub fn stitch(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
     let core = core_patch(patch)?;
-    let surface = error::detached(py, || Ok(gridmesh::stitch::stitch(&core)));
+    let surface = error::detached(py, || Ok(gridmesh::body::stitch::stitch(&core)));
     Surface::new(py, &surface.map_err(|failure| failure.into_py(py))?)
 }
 
@@ -74,7 +74,7 @@ pub fn stitch(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 #[pyo3(text_signature = "(patch)")]
 pub fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
     let core = core_patch(patch)?;
-    let surface = error::detached(py, || Ok(gridmesh::stitch::flat(&core)));
+    let surface = error::detached(py, || Ok(gridmesh::body::stitch::flat(&core)));
     Surface::new(py, &surface.map_err(|failure| failure.into_py(py))?)
 }
 
@@ -142,8 +142,8 @@ pub fn inflate(
     let core = core_patch(patch)?;
     let mut chosen = InflateOptions::default();
     options::read("inflate", options, |name, value| options::set_inflate(&mut chosen, name, value))?;
-    let surface =
-        Watch::new(progress)?.run(py, |progress| gridmesh::inflate::inflate(&core, &chosen, progress))?;
+    let surface = Watch::new(progress)?
+        .run(py, |progress| gridmesh::body::inflate::inflate(&core, &chosen, progress))?;
     Surface::new(py, &surface)
 }
 

@@ -1,6 +1,6 @@
 //! `combine`: outlines united, or cut from each other.
 
-use gridmesh::combine::{Combination, Part, combine as core_combine};
+use gridmesh::drawing::combine::{Combination, Part, combine as core_combine};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 

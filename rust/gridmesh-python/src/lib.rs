@@ -2,7 +2,8 @@
 //!
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `process` finds threads after a fork, `arrays`
 //! and `reports` hand results back, `patch`, `surface`, `fill` and `cut` are the classes, `sketch`, `body` and `map` make them
-//! of drawings, `batch` is the parallel map, `combine` unites drawings, `thickness` measures them.
+//! of drawings, `batch` is the parallel map, `combine` unites drawings, `thickness` measures them, `picture`
+//! traces them, `harmonic` carries values on.
 #![forbid(unsafe_code)]
 
 mod arrays;
@@ -12,11 +13,13 @@ mod combine;
 mod cut;
 mod error;
 mod fill;
+mod harmonic;
 mod input;
 mod map;
 mod mesh;
 mod options;
 mod patch;
+mod picture;
 mod process;
 mod regrid;
 mod reports;
@@ -48,6 +51,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(map::map_sketches, module)?)?;
     module.add_function(wrap_pyfunction!(combine::combine, module)?)?;
     module.add_function(wrap_pyfunction!(thickness::thickness, module)?)?;
+    module.add_function(wrap_pyfunction!(harmonic::harmonic, module)?)?;
+    module.add_function(wrap_pyfunction!(picture::trace_image, module)?)?;
     module.add_class::<fill::Fill>()?;
     module.add_function(wrap_pyfunction!(fill::fill_hole, module)?)?;
     module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;

@@ -1,6 +1,6 @@
 //! Many drawings at once.
 
-use gridmesh::inflate::InflateOptions;
+use gridmesh::body::inflate::InflateOptions;
 use gridmesh::options::SketchOptions;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -9,6 +9,7 @@ use pyo3::types::{PyDict, PyList, PyTuple};
 use crate::batch::{Drawing, Job};
 use crate::error::{GridMeshError, error};
 use crate::input::Argument;
+use crate::options::Shape;
 use crate::sketch::drawing;
 use crate::surface::Surface;
 use crate::watch::Watch;
@@ -77,7 +78,7 @@ pub fn map_sketches(
             .cast_into::<PyList>()?
             .unbind());
     }
-    let job = job(inflate, threads, options)?;
+    let job = job(py, inflate, threads, options)?;
     let watch = Watch::new(progress)?;
     let mut drawings = Vec::new();
     let mut unreadable = Vec::new();
@@ -104,6 +105,7 @@ pub fn map_sketches(
 }
 
 fn job(
+    py: Python<'_>,
     inflate: Option<&Bound<'_, PyAny>>,
     threads: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
@@ -111,11 +113,13 @@ fn job(
     let mut job =
         Job { sketch: SketchOptions::default(), inflate: Some(InflateOptions::default()), threads: None };
     let mut shape = InflateOptions::default();
+    let mut cells = Shape::default();
     options::read("map_sketches", options, |name, value| {
-        let in_sketch = options::set_sketch(&mut job.sketch, name, value)?;
+        let in_sketch = cells.set(&mut job.sketch, name, value)?;
         let in_shape = options::set_inflate(&mut shape, name, value)?;
         Ok(in_sketch || in_shape)
     })?;
+    cells.settle(py, &mut job.sketch)?;
     let wanted = inflate
         .map_or(Ok(true), |value| Argument { name: "inflate", value, allowed: "True or False" }.bool())?;
     job.inflate = wanted.then_some(shape);

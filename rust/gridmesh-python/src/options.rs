@@ -1,12 +1,13 @@
 //! Options by name: one table for `mesh_sketch`, `inflate` and `map_sketches`.
 
-use gridmesh::inflate::{InflateOptions, Profile, Side};
-use gridmesh::options::{BoundaryMethod, Density, Mirror, SelfCrossing, SketchOptions};
-use gridmesh::surface::UvLayout;
+use gridmesh::body::inflate::{InflateOptions, Profile, Side};
+use gridmesh::body::surface::UvLayout;
+use gridmesh::options::{BoundaryMethod, CellShape, Density, Mirror, SelfCrossing, SketchOptions};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt, PyString};
 
+use crate::error::error;
 use crate::input::Argument;
 
 /// Reads every option of `given` with `set`, which says whether it knows the name.
@@ -26,8 +27,73 @@ pub fn read<'py>(
     Ok(())
 }
 
+/// What the number of cells and their shape were given as; settled when all options are read.
+#[derive(Default)]
+pub struct Shape {
+    cells: Option<CellShape>,
+    /// The option that gave a number.
+    number: Option<CellShape>,
+    has_bend: bool,
+}
+
+impl Shape {
+    /// Sets an option of `mesh_sketch` or notes it; false if it has none of this name.
+    pub fn set(
+        &mut self,
+        options: &mut SketchOptions,
+        name: &str,
+        value: &Bound<'_, PyAny>,
+    ) -> PyResult<bool> {
+        let argument = |allowed| Argument { name, value, allowed };
+        match name {
+            "cells" => {
+                let words = [("triangles", CellShape::Triangle), ("quads", CellShape::Quad)];
+                let it = argument("'triangles', 'quads', or None: quads if their number is given");
+                self.cells = it.optional(|it| it.word(&words))?;
+            }
+            "quads" if value.is_none() => {}
+            "quads" => {
+                if self.number == Some(CellShape::Triangle) {
+                    return Err(argument("a number of quads or of triangles, not both").wrong_value());
+                }
+                self.number = Some(CellShape::Quad);
+                set_sketch(options, "triangles", value)?;
+            }
+            "triangles" if value.is_none() => {}
+            "triangles" => {
+                if self.number == Some(CellShape::Quad) {
+                    return Err(argument("a number of quads or of triangles, not both").wrong_value());
+                }
+                self.number = Some(CellShape::Triangle);
+                set_sketch(options, name, value)?;
+            }
+            "bend" if value.is_none() => {}
+            "bend" => {
+                self.has_bend = true;
+                set_sketch(options, name, value)?;
+            }
+            _ => return set_sketch(options, name, value),
+        }
+        Ok(true)
+    }
+
+    /// Settles what follows from other options: a number of quads asks for quads, and these bend.
+    pub fn settle(&self, py: Python<'_>, options: &mut SketchOptions) -> PyResult<()> {
+        options.cells = self.cells.or(self.number).unwrap_or_default();
+        let of = |shape| self.number == Some(shape) && options.cells != shape;
+        if of(CellShape::Triangle) || of(CellShape::Quad) {
+            let message = "cells is of one kind and the number of the other; allowed: cells='quads' with quads, cells='triangles' with triangles";
+            return Err(error(py, "invalid_option", message));
+        }
+        if options.cells == CellShape::Quad && !self.has_bend {
+            options.bend = SketchOptions::quads().bend;
+        }
+        Ok(())
+    }
+}
+
 /// Sets an option of `mesh_sketch`; false if it has none of this name.
-pub fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
+fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
     let argument = |allowed| Argument { name, value, allowed };
     match name {
         "edge_length" => {

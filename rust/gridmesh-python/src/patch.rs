@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use glam::DVec2;
-use gridmesh::lattice::Lattice;
 use gridmesh::patch::{Loop, Patch as CorePatch};
+use gridmesh::path::placement::Lattice;
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -13,7 +13,7 @@ use pyo3::types::{PyDict, PyList};
 use crate::arrays;
 use crate::error::error;
 
-/// The flat triangle mesh of a drawing; made by `mesh_sketch`.
+/// The flat mesh of a drawing, of triangles or of quads; made by `mesh_sketch`.
 ///
 /// All arrays are read-only and C-contiguous; copy them to change them. A patch can be pickled.
 ///
@@ -24,7 +24,10 @@ use crate::error::error;
 ///     the drawn contours; no interior edge joins two of them.
 /// triangles : (t, 3) int32
 ///     Vertex numbers, counter-clockwise. Every interior vertex has six triangles; none is inverted,
-///     also after rounding to float32 relative to `origin`.
+///     also after rounding to float32 relative to `origin`. (0, 3) in a patch of quads.
+/// quads : (q, 4) int32
+///     Vertex numbers, counter-clockwise; (0, 4) in a patch of triangles. None is concave or folded, also after rounding
+///     to float32 relative to `origin`. Boundary vertices have two; interior ones four, or three or five at poles.
 /// loops : list of (k,) int32
 ///     The vertices of each contour in order: the outer one first and counter-clockwise, holes clockwise.
 /// arc : list of (k,) float64
@@ -39,7 +42,7 @@ use crate::error::error;
 /// edge_length : float
 ///     Edge length of the lattice, in the units of the outline.
 /// angle : float
-///     Angle of the lattice in radians, at least 0 and below pi / 3.
+///     Angle of the lattice in radians, at least 0 and below pi / 3 (quads: pi / 2).
 /// origin : (2,) float64
 ///     Position of the lattice point (0, 0).
 /// report : dict
@@ -50,11 +53,14 @@ pub struct Patch {
     report: Py<PyDict>,
     vertices: PyOnceLock<Py<PyArray2<f64>>>,
     triangles: PyOnceLock<Py<PyArray2<i32>>>,
+    quads: PyOnceLock<Py<PyArray2<i32>>>,
 }
 
 impl Patch {
     pub fn new(inner: CorePatch, report: Py<PyDict>) -> Self {
-        Self { inner: Arc::new(inner), report, vertices: PyOnceLock::new(), triangles: PyOnceLock::new() }
+        let inner = Arc::new(inner);
+        let (vertices, triangles, quads) = (PyOnceLock::new(), PyOnceLock::new(), PyOnceLock::new());
+        Self { inner, report, vertices, triangles, quads }
     }
 }
 
@@ -69,6 +75,12 @@ impl Patch {
     #[getter]
     fn triangles(&self, py: Python<'_>) -> PyResult<Py<PyArray2<i32>>> {
         let made = self.triangles.get_or_try_init(py, || arrays::triangles(py, &self.inner.triangles))?;
+        Ok(made.clone_ref(py))
+    }
+
+    #[getter]
+    fn quads(&self, py: Python<'_>) -> PyResult<Py<PyArray2<i32>>> {
+        let made = self.quads.get_or_try_init(py, || arrays::quads(py, &self.inner.quads))?;
         Ok(made.clone_ref(py))
     }
 
@@ -113,11 +125,10 @@ impl Patch {
     }
 
     fn __repr__(&self) -> String {
-        let (triangles, loops) = (self.inner.triangles.len(), self.inner.loops.len());
-        format!(
-            "<gridmesh.Patch: {triangles} triangles, {} vertices, {loops} loops>",
-            self.inner.vertices.len()
-        )
+        let (triangles, quads, loops) =
+            (self.inner.triangles.len(), self.inner.quads.len(), self.inner.loops.len());
+        let cells = if quads > 0 { format!("{quads} quads") } else { format!("{triangles} triangles") };
+        format!("<gridmesh.Patch: {cells}, {} vertices, {loops} loops>", self.inner.vertices.len())
     }
 
     // A patch cannot change: a copy is the patch itself.
@@ -142,6 +153,7 @@ impl Patch {
             inlets,
             (this.inner.lattice.origin.to_array(), this.angle(), this.edge_length()),
             this.report(py),
+            this.quads(py)?,
         );
         Ok((py.import("gridmesh._native")?.getattr("_patch")?, fields.into_pyobject(py)?.into_any()))
     }
@@ -156,6 +168,7 @@ type Contours<'py> = (
 
 /// Makes a patch from what `Patch.__reduce__` returned.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the fields of the class")]
 pub fn _patch(
     py: Python<'_>,
     vertices: PyReadonlyArray2<'_, f64>,
@@ -164,6 +177,7 @@ pub fn _patch(
     inlets: Vec<Vec<[f64; 2]>>,
     lattice: ([f64; 2], f64, f64),
     report: Py<PyDict>,
+    quads: PyReadonlyArray2<'_, i32>,
 ) -> PyResult<Patch> {
     let broken = || error(py, "invalid_shape", "the pickled patch is damaged");
     let vertices: Vec<DVec2> = vertices
@@ -178,6 +192,13 @@ pub fn _patch(
     for row in triangles.as_array().rows() {
         match row.to_slice() {
             Some(&[a, b, c]) => corners.push([index(a)?, index(b)?, index(c)?]),
+            _ => return Err(broken()),
+        }
+    }
+    let mut fours = Vec::new();
+    for row in quads.as_array().rows() {
+        match row.to_slice() {
+            Some(&[a, b, c, d]) => fours.push([index(a)?, index(b)?, index(c)?, index(d)?]),
             _ => return Err(broken()),
         }
     }
@@ -198,5 +219,5 @@ pub fn _patch(
     let ([x, y], angle, edge_length) = lattice;
     let lattice = Lattice { origin: DVec2::new(x, y), angle, edge_length };
     let inlets = inlets.into_iter().map(|inlet| inlet.into_iter().map(DVec2::from_array).collect()).collect();
-    Ok(Patch::new(CorePatch { vertices, triangles: corners, loops, inlets, lattice }, report))
+    Ok(Patch::new(CorePatch { vertices, triangles: corners, quads: fours, loops, inlets, lattice }, report))
 }

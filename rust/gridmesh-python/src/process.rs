@@ -30,7 +30,13 @@ pub fn run<T: Send>(
     meanwhile: impl Fn(),
 ) -> Result<T> {
     let process = std::process::id();
-    if *FIRST.get_or_init(|| process) == process {
+    let first = *FIRST.get_or_init(|| {
+        // Every thread of the pool looks for work once: a fork while one of them still sets up what all threads share would
+        // leave that half done in the child.
+        rayon::broadcast(|_| rayon::yield_now());
+        process
+    });
+    if first == process {
         return work();
     }
     let pool = pool_of(process)?;

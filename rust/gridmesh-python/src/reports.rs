@@ -1,7 +1,7 @@
 //! Reports as dicts of plain numbers.
 
+use gridmesh::body::surface::SurfaceReport;
 use gridmesh::options::SketchReport;
-use gridmesh::surface::SurfaceReport;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -9,6 +9,9 @@ use pyo3::types::PyDict;
 pub fn sketch(py: Python<'_>, report: &SketchReport) -> PyResult<Py<PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("triangles", report.triangles)?;
+    dict.set_item("quads", report.quads)?;
+    dict.set_item("poles", report.poles)?;
+    dict.set_item("minimum_poles", report.minimum_poles)?;
     dict.set_item("irregular", report.irregular)?;
     dict.set_item("minimum_irregular", report.minimum_irregular)?;
     dict.set_item("turns", report.turns)?;
@@ -37,6 +40,7 @@ pub fn sketch(py: Python<'_>, report: &SketchReport) -> PyResult<Py<PyDict>> {
 pub fn surface(py: Python<'_>, report: &SurfaceReport) -> PyResult<Py<PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("triangles", report.triangles)?;
+    dict.set_item("quads", report.quads)?;
     dict.set_item("irregular", report.irregular)?;
     dict.set_item("watertight", report.watertight)?;
     dict.set_item("genus", report.genus)?;

@@ -7,11 +7,12 @@ use pyo3::types::PyDict;
 
 use crate::batch::Drawing;
 use crate::input::Argument;
+use crate::options::Shape;
 use crate::patch::Patch;
 use crate::watch::Watch;
 use crate::{options, reports};
 
-/// Mesh the inside of a closed planar drawing with a semi-regular triangle mesh.
+/// Mesh the inside of a closed planar drawing with a semi-regular mesh of triangles or quads.
 ///
 /// Parameters
 /// ----------
@@ -25,19 +26,26 @@ use crate::{options, reports};
 /// triangles : int or "auto", optional
 ///     Number of triangles of the flat patch, from 6 to 20 million; 2000 if neither is given. Reached within
 ///     10 %, below 60 within 6 triangles (a handful comes in few sizes): `report["triangles"]` says how many.
-///     "auto": four across the thinnest limb (see `thickness`), but at least 1000 and at most `max_triangles`;
+///     "auto": five across the thinnest limb (see `thickness`), but at least 1000 and at most `max_triangles`;
 ///     where those cannot follow the outline, the least number that can.
+/// cells : {"triangles", "quads"}, optional
+///     What the mesh is made of; None: triangles, unless `quads` is given. Quads keep a row along the whole
+///     boundary, all of whose boundary vertices have two; interior vertices have four, but for one pole of three or
+///     five for each turn of the lattice. Not with boundary="grown", nor with `mirror`.
+/// quads : int or "auto", optional
+///     Number of quads of the flat patch, in place of `triangles`; 1000 if none is given with cells="quads".
 /// max_triangles : int
-///     The largest number that "auto" chooses.
+///     The largest number, of either, that "auto" chooses.
 /// boundary : {"optimal", "grown"}
 ///     "optimal": the boundary of least cost for this lattice and `max_distance`, where cost = turns +
 ///     `closeness` x squared distance in edge lengths. "grown": the growth of the paper's sections
 ///     IV-B to IV-D.
 /// max_distance : float
 ///     Largest distance of the lattice boundary from the outline before it is moved onto it, in edge
-///     lengths; 0.5 to 4.
+///     lengths; 0.5 to 4; with quads first a third farther, from the outline drawn in by a row.
 /// closeness : float
-///     Price of a squared distance of one edge length against a turn of 60 degrees; at least 0.
+///     Price of a squared distance of one edge length against a turn of 60 degrees (a tenth of it against a
+///     turn of 90 degrees, with quads); at least 0.
 /// angle : float, optional
 ///     Angle of the lattice in radians, in [0, pi / 3). None: the best of several.
 /// origin : (2,) array, optional
@@ -55,9 +63,9 @@ use crate::{options, reports};
 ///     "error": an outline that crosses itself is refused. "union": its outer outline is taken.
 /// proof_nodes : int
 ///     Bounds the search that proves optimality where the first solution had conflicts: so many parts of the search
-///     space at most, and for each lattice angle tried 30 million states of it, some seconds; 0 beside `mirror`.
-/// bend : float
-///     How far the lattice may bend with the outline, from 0 (straight) to 1: a conformal map takes the
+///     space at most, and for each lattice angle tried 15 million states of it, a second or two; 0 beside `mirror`.
+/// bend : float, optional
+///     How far the lattice may bend with the outline, from 0 (straight) to 1; None: 0 for triangles, 1 for quads. A conformal map takes the
 ///     outline to where it runs along lattice directions, which leaves far fewer irregular vertices and lets the
 ///     size of the triangles vary a little. Several bends are tried, and straight lattices where they do not serve. The least
 ///     angles can be smaller than on a straight lattice, and some thin parts coarser.
@@ -82,7 +90,9 @@ use crate::{options, reports};
 ///     Every boundary vertex lies on its contour, no interior edge joins two boundary vertices, every
 ///     interior vertex has six triangles, no triangle is inverted (also in float32), and the topology
 ///     is that of the outline minus its holes. The same input gives the same bytes, for any number of
-///     threads. `report` has "triangles", "irregular" (irregular vertices after stitching),
+///     threads. Of quads none is concave or folded (also in float32), and interior edges may join two vertices of a
+///     row beside the boundary, but not of the boundary. `report` has "triangles", "quads", "poles" (vertices of
+///     three or five quads after stitching) and "minimum_poles" (the least that any such body has), both 0 for triangles, "irregular" (irregular vertices after stitching),
 ///     "minimum_irregular" (the least that any such body has), "turns", "turns_before" (a grown
 ///     boundary's, before it is straightened), "turns_bound", "cost", "cost_bound" (None where none
 ///     was computed), "optimal" (all three about the lattice that was taken, bent or straight), "bend" (how far it is bent, 0 if it is straight), "scale_range" (largest over smallest edge length of the bent lattice), "max_distance_used", "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
@@ -114,7 +124,7 @@ use crate::{options, reports};
 #[pyfunction]
 #[pyo3(
     signature = (outline, holes = None, *, progress = None, **options),
-    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, max_triangles=20000, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, bend=0.0, density=None, relax=True, least=True, progress=None)"
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, cells=None, quads=None, max_triangles=20000, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, bend=None, density=None, relax=True, least=True, progress=None)"
 )]
 pub fn mesh_sketch(
     py: Python<'_>,
@@ -125,7 +135,9 @@ pub fn mesh_sketch(
 ) -> PyResult<Patch> {
     let drawing = drawing(outline, holes)?;
     let mut chosen = SketchOptions::default();
-    options::read("mesh_sketch", options, |name, value| options::set_sketch(&mut chosen, name, value))?;
+    let mut shape = Shape::default();
+    options::read("mesh_sketch", options, |name, value| shape.set(&mut chosen, name, value))?;
+    shape.settle(py, &mut chosen)?;
     let sketch = Watch::new(progress)?.run(py, |progress| {
         gridmesh::sketch::mesh_sketch(&drawing.outline, &drawing.holes, &chosen, progress)
     })?;

@@ -1,13 +1,13 @@
 //! The Python class `Surface`.
 
-use gridmesh::surface::Surface as CoreSurface;
+use gridmesh::body::surface::Surface as CoreSurface;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::{arrays, reports};
 
-/// A triangle mesh in space; made by `stitch`, `inflate`, `flat` and `map_sketches`.
+/// A mesh in space, of triangles or of quads; made by `stitch`, `inflate`, `flat` and `map_sketches`.
 ///
 /// All arrays are read-only and C-contiguous; copy them to change them. A surface can be pickled.
 ///
@@ -16,15 +16,18 @@ use crate::{arrays, reports};
 /// vertices : (v, 3) float64
 ///     Positions; x and y in the plane of the drawing, z its normal. Units of the outline.
 /// triangles : (t, 3) int32
-///     Vertex numbers, counter-clockwise seen from outside (`flat`: from above).
+///     Vertex numbers, counter-clockwise seen from outside (`flat`: from above). (0, 3) if made of quads.
+/// quads : (q, 4) int32
+///     The same of quads; (0, 4) if made of triangles. Every vertex has four, or three or five at poles; in
+///     projection to the drawing all are convex.
 /// silhouette : list of (k,) int32
 ///     The vertices of the drawn contours, loop by loop, in the order of the patch's loops. Their x
 ///     and y are those of the patch, bit for bit; their z is 0.
-/// uv : (3 t, 2) float64
-///     Texture coordinates in 0 to 1 of each triangle's three corners, in the order of `triangles`: the
+/// uv : (3 t, 2) or (4 q, 2) float64
+///     Texture coordinates in 0 to 1 of each face's corners, in the order of `triangles` or `quads`: the
 ///     front as drawn, the back beside it as seen from behind.
 /// report : dict
-///     Plain numbers: "triangles", "irregular" (vertices whose valence is not 6), "watertight", "genus",
+///     Plain numbers: "triangles", "quads", "irregular" (vertices whose valence is not 6, or 4 of quads), "watertight", "genus",
 ///     "volume", "min_angle" (radians), "self_intersections" (pairs of triangles), "embedded" (True if
 ///     their absence is proved), "shortened" and "repaired" (fallbacks taken), and "seconds", a dict of
 ///     times per stage.
@@ -34,6 +37,8 @@ pub struct Surface {
     vertices: Py<PyArray2<f64>>,
     #[pyo3(get)]
     triangles: Py<PyArray2<i32>>,
+    #[pyo3(get)]
+    quads: Py<PyArray2<i32>>,
     #[pyo3(get)]
     silhouette: Py<PyList>,
     #[pyo3(get)]
@@ -47,6 +52,7 @@ impl Surface {
         Ok(Self {
             vertices: arrays::space_points(py, &core.vertices)?,
             triangles: arrays::triangles(py, &core.triangles)?,
+            quads: arrays::quads(py, &core.quads)?,
             silhouette: arrays::list(py, &core.silhouette, |contour| {
                 Ok(arrays::indices(py, contour.iter().copied()))
             })?,
@@ -59,8 +65,9 @@ impl Surface {
 #[pymethods]
 impl Surface {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let (triangles, vertices) = (self.triangles.bind(py).len()?, self.vertices.bind(py).len()?);
-        Ok(format!("<gridmesh.Surface: {triangles} triangles, {vertices} vertices>"))
+        let (triangles, quads) = (self.triangles.bind(py).len()?, self.quads.bind(py).len()?);
+        let cells = if quads > 0 { format!("{quads} quads") } else { format!("{triangles} triangles") };
+        Ok(format!("<gridmesh.Surface: {cells}, {} vertices>", self.vertices.bind(py).len()?))
     }
 
     // A surface cannot change: a copy is the surface itself.
@@ -75,7 +82,7 @@ impl Surface {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let py = slf.py();
         let this = slf.get();
-        let fields = (&this.vertices, &this.triangles, &this.silhouette, &this.uv, &this.report);
+        let fields = (&this.vertices, &this.triangles, &this.silhouette, &this.uv, &this.report, &this.quads);
         Ok((py.import("gridmesh._native")?.getattr("_surface")?, fields.into_pyobject(py)?.into_any()))
     }
 }
@@ -88,6 +95,7 @@ pub fn _surface(
     silhouette: Py<PyList>,
     uv: Py<PyArray2<f64>>,
     report: Py<PyDict>,
+    quads: Py<PyArray2<i32>>,
 ) -> Surface {
-    Surface { vertices, triangles, silhouette, uv, report }
+    Surface { vertices, triangles, quads, silhouette, uv, report }
 }

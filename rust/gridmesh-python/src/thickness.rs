@@ -1,6 +1,6 @@
 //! `thickness`: the limbs of a drawing.
 
-use gridmesh::thickness::limbs;
+use gridmesh::drawing::thickness::limbs;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
@@ -50,6 +50,6 @@ pub fn thickness(
     let drawing = crate::sketch::drawing(outline, holes)?;
     let found = error::detached(py, || limbs(&drawing.outline, &drawing.holes));
     let found = found.map_err(|failure| failure.into_py(py))?;
-    let row = |limb: &gridmesh::thickness::Limb| [limb.at.x, limb.at.y, limb.width, limb.length];
+    let row = |limb: &gridmesh::drawing::thickness::Limb| [limb.at.x, limb.at.y, limb.width, limb.length];
     arrays::rows(py, found.iter().map(row).collect())
 }

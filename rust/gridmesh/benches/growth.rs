@@ -3,13 +3,13 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec2;
-use gridmesh::boundary::{Boundary, Expansion};
-use gridmesh::curve::{ClosedCurve, Winding};
-use gridmesh::growth::{Watch, grow};
-use gridmesh::lattice::Lattice;
+use gridmesh::drawing::curve::{ClosedCurve, Winding};
+use gridmesh::lattice::boundary::{Boundary, Expansion};
+use gridmesh::path::growth::{Watch, grow};
+use gridmesh::path::placement::Lattice;
+use gridmesh::path::raster::Raster;
+use gridmesh::path::target::Target;
 use gridmesh::progress::Progress;
-use gridmesh::raster::Raster;
-use gridmesh::target::Target;
 
 /// A smooth outline with five bays.
 fn flower() -> Vec<DVec2> {

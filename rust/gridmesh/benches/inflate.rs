@@ -4,13 +4,13 @@ use std::f64::consts::TAU;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec2;
-use gridmesh::embed::count_self_intersections;
-use gridmesh::inflate::{InflateOptions, inflate};
+use gridmesh::body::inflate::{InflateOptions, inflate};
+use gridmesh::body::stitch::stitch;
+use gridmesh::geometry::embed::count_self_intersections;
 use gridmesh::options::{BoundaryMethod, SketchOptions};
 use gridmesh::patch::Patch;
 use gridmesh::progress::Progress;
 use gridmesh::sketch::mesh_sketch;
-use gridmesh::stitch::stitch;
 
 fn patch(radius: impl Fn(f64) -> f64, triangles: usize) -> Option<Patch> {
     let outline = (0..1000)

@@ -2,12 +2,12 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec2;
-use gridmesh::band::Band;
-use gridmesh::curve::{ClosedCurve, Winding};
-use gridmesh::lattice::Lattice;
+use gridmesh::drawing::curve::{ClosedCurve, Winding};
+use gridmesh::path::band::Band;
+use gridmesh::path::placement::Lattice;
+use gridmesh::path::target::Target;
+use gridmesh::path::trace::{TraceOptions, trace};
 use gridmesh::progress::Progress;
-use gridmesh::target::Target;
-use gridmesh::trace::{TraceOptions, trace};
 
 fn stages(criterion: &mut Criterion) {
     let outline: Vec<DVec2> = (0..2000)

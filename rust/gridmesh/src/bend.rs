@@ -4,7 +4,7 @@
 //! The lattice is laid in that bent plane and its vertices are pulled back: inside, triangles stay
 //! equilateral but for their size; outside, the steps are gone in which a straight lattice follows a
 //! limb that runs askew. The map has derivative exp(u + i v). The rotation v is harmonic and turns
-//! the outline's tangents into multiples of 60 degrees, found by dynamic programming; u, the log of the
+//! the outline's tangents into multiples of 60 degrees (of 90 for a lattice of squares), found by dynamic programming; u, the log of the
 //! scale, is its harmonic conjugate; the map itself is the one whose gradient is nearest. All solves
 //! are on a coarse triangulation of the drawing, the carrier.
 //!
@@ -27,11 +27,11 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::axial::Axial;
-use crate::curve::ClosedCurve;
-use crate::lattice::Lattice;
-use crate::options::Density;
-use crate::outline::Outline;
+use crate::drawing::curve::ClosedCurve;
+use crate::lattice::axial::Axial;
+use crate::options::{CellShape, Density};
+use crate::path::outline::Outline;
+use crate::path::placement::{Laid, Lattice};
 use carrier::{Carrier, Line};
 use image::{BentContours, Image, WayBack};
 
@@ -49,16 +49,19 @@ pub(crate) struct Ground {
     asks_width: bool,
     /// The first axis of the frame is an axis of symmetry.
     is_symmetric: bool,
+    /// What lattice the plane is bent for.
+    shape: CellShape,
 }
 
 impl Ground {
-    /// `frame`: a point and a direction that move with the drawing, and the edge length. None where
-    /// the contours are too near to each other.
+    /// `frame`: a point and a direction that move with the drawing, and the edge length. The lattice of
+    /// the bent plane will be one of `shape`. None where the contours are too near to each other.
     pub(crate) fn new(
         contours: &[ClosedCurve],
         frame: Lattice,
         density: Option<&Density>,
         is_symmetric: bool,
+        shape: CellShape,
     ) -> Option<Self> {
         let rounded = |p: &DVec2| (frame.to_units(*p) / GRAIN).round() * GRAIN;
         let line = |c: &ClosedCurve| Line::new(c.points().iter().map(rounded).collect());
@@ -69,7 +72,7 @@ impl Ground {
             _ => None,
         };
         let asks_width = density == Some(&Density::Width);
-        Some(Self { frame, lines, carrier, densities, asks_width, is_symmetric })
+        Some(Self { frame, lines, carrier, densities, asks_width, is_symmetric, shape })
     }
 }
 
@@ -145,7 +148,12 @@ impl Bent {
 
     /// Where lattice points lie in the drawing, in units of [`Bent::lattice`]; those of the outline's
     /// paths come first, and are taken back beside where they belong.
-    pub(crate) fn positions(&self, outline: &Outline, bent: &Lattice, points: &[Axial]) -> Vec<DVec2> {
+    pub(crate) fn positions<G: Laid>(
+        &self,
+        outline: &Outline,
+        bent: &Lattice,
+        points: &[Axial],
+    ) -> Vec<DVec2> {
         let way = WayBack::new(&self.ground.carrier, &self.image);
         let lattice = self.lattice(bent);
         let known = outline.arcs.iter().enumerate().flat_map(|(k, arcs)| arcs.iter().map(move |&s| (k, s)));
@@ -153,7 +161,7 @@ impl Bent {
         points
             .iter()
             .map(|&point| {
-                let x = bent.from_units(Lattice::units(point));
+                let x = bent.from_units(G::units(point));
                 let at = match known.next().flatten() {
                     Some((contour, s)) => way.beside(contour, s * bent.edge_length, x),
                     None => way.at(x),
@@ -171,14 +179,14 @@ mod tests {
     use super::conformal::{Operators, keep_area};
     use super::tangents::Tangents;
     use super::*;
-    use crate::contours::read_contours;
+    use crate::drawing::contours::read_contours;
     use crate::error::Result;
     use crate::progress::Progress;
 
     fn ground(outline: &[DVec2], holes: &[Vec<DVec2>]) -> Result<Arc<Ground>> {
         let contours = read_contours(outline, holes)?;
         let frame = Lattice { origin: DVec2::ZERO, angle: 0.0, edge_length: 1.0 };
-        let found = Ground::new(&contours, frame, None, false);
+        let found = Ground::new(&contours, frame, None, false, CellShape::Triangle);
         found
             .map(Arc::new)
             .ok_or(crate::error::Error::Solver { stage: "test", reason: "no carrier".to_owned() })
@@ -198,7 +206,7 @@ mod tests {
     fn rotation(ground: &Ground, start: f64, beta: f64) -> Result<(Vec<f64>, usize)> {
         let tangents: Vec<Tangents> =
             ground.lines.iter().map(|line| Tangents::new(&line.points, &line.arcs)).collect();
-        let operators = Operators::new(&ground.carrier, &tangents)?;
+        let operators = Operators::new(&ground.carrier, &tangents, ground.shape)?;
         let robin = operators.robin(beta)?;
         let mut found = operators.rotations(&[start], beta, &robin, 1.0)?;
         let found = found.remove(0);
@@ -209,8 +217,11 @@ mod tests {
     fn a_map_of_no_rotation_is_the_drawing() -> Result<()> {
         let ground = ground(&circle(12.0, DVec2::ZERO), &[])?;
         let carrier = &ground.carrier;
-        let operators =
-            Operators::new(carrier, &[Tangents::new(&ground.lines[0].points, &ground.lines[0].arcs)])?;
+        let operators = Operators::new(
+            carrier,
+            &[Tangents::new(&ground.lines[0].points, &ground.lines[0].arcs)],
+            ground.shape,
+        )?;
         let solver = operators.solver()?;
         let v = vec![0.4; carrier.vertices.len()];
         let mut u = solver.scale(&v)?;

@@ -5,39 +5,15 @@
 //! the cut even, `loops` and `regions` find what is to be capped, `cap` and `bridge` cap it, `pieces` puts the pieces
 //! together.
 
-mod beside;
 mod bounds;
-mod bridge;
-mod bulge;
-mod cap;
-mod chains;
-mod cross;
-mod defect;
-mod ground;
+pub(crate) mod caps;
+pub(crate) mod divide;
 mod input;
-mod line;
-mod locate;
-mod loops;
-mod mirrored;
-mod nearness;
-mod offset;
 mod options;
-mod parted;
 mod pieces;
-mod reach;
-mod regions;
 mod report;
-mod reshape;
 mod rim;
-mod roll;
 mod sheet;
-mod simplify;
-mod slide;
-mod sources;
-mod spacing;
-mod split;
-mod strip;
-mod thin;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -48,13 +24,17 @@ use rustc_hash::FxHashSet;
 pub use self::input::Polygons;
 use self::input::check;
 pub use self::options::{CutOptions, Keep, Mirror, Sweep};
-use self::parted::Parted;
 pub use self::pieces::{Piece, Side};
-use self::reach::Alone;
 pub use self::report::CutReport;
 use self::report::Tally;
 use self::sheet::Sheet;
-use self::split::Tolerance;
+use crate::cut::caps::capper::Caps;
+use crate::cut::caps::{cap, loops};
+use crate::cut::divide::node::Tolerance;
+use crate::cut::divide::parted::Parted;
+use crate::cut::divide::{cross, locate, split};
+use crate::cut::sheet::reach::Alone;
+use crate::cut::sheet::{offset, reach, simplify};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 
@@ -275,7 +255,7 @@ fn divide_with(
         tally.stage("caps");
         caps
     } else {
-        cap::Caps::default()
+        Caps::default()
     };
     progress.report(0.9)?;
     let pieces = pieces::assemble(vertices, faces, &parted, &loops, &caps, options.keep, &mut tally);

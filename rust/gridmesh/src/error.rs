@@ -82,8 +82,10 @@ pub enum Error {
     },
     /// No chord-free lattice patch of about this size follows the drawing.
     TooCoarse {
-        /// The number of triangles that was asked for.
+        /// The number of triangles, or of quads, that was asked for.
         triangles: usize,
+        /// What it is the number of: "triangles" or "quads".
+        cells: &'static str,
         /// What is known of the number that would do.
         needed: Needed,
     },
@@ -236,6 +238,22 @@ pub enum Error {
         /// Where.
         at: [f64; 3],
     },
+    /// A picture has no pixels, or too many.
+    PictureSize {
+        /// Pixels in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// The most pixels allowed.
+        limit: usize,
+    },
+    /// A value of a picture is NaN or infinite.
+    PixelNotFinite {
+        /// Its row, from the top.
+        row: usize,
+        /// Its column, from the left.
+        column: usize,
+    },
 }
 
 /// What is known of the number of triangles that a drawing needs.
@@ -287,6 +305,8 @@ impl Error {
             Error::BehindEye { .. } => "behind_eye",
             Error::CutFailed { .. } => "cut_failed",
             Error::StillJoined { .. } => "still_joined",
+            Error::PictureSize { .. } => "picture_size",
+            Error::PixelNotFinite { .. } => "not_finite",
         }
     }
 }
@@ -344,8 +364,11 @@ impl fmt::Display for Error {
             Error::InvalidOption { name, value, allowed } => {
                 write!(f, "{name} is {value}; allowed: {allowed}")
             }
-            Error::TooCoarse { triangles, needed } => {
-                write!(f, "{triangles} triangles are too few to follow this drawing; ")?;
+            Error::TooCoarse { triangles, cells, needed } => {
+                match *cells {
+                    "quads" => write!(f, "{triangles} quads are too few to follow this drawing; ")?,
+                    _ => write!(f, "{triangles} triangles are too few to follow this drawing; ")?,
+                }
                 match needed {
                     Needed::Least(least) => write!(f, "{least} work (or a smaller edge length)"),
                     Needed::MoreThan(tried) => write!(
@@ -460,6 +483,14 @@ impl fmt::Display for Error {
                 f,
                 "what the stroke crosses still hangs together around the cut, near ({x:.6}, {y:.6}, {z:.6}); \
                  draw it across all that must come apart, or let its ends be extended"
+            ),
+            Error::PictureSize { width, height, limit } => write!(
+                f,
+                "the picture is {width} by {height} pixels; allowed: 1 to {limit} pixels in all, scale it"
+            ),
+            Error::PixelNotFinite { row, column } => write!(
+                f,
+                "the pixel in row {row}, column {column} of the picture is NaN or infinite; all values must be finite"
             ),
         }
     }

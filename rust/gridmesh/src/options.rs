@@ -9,6 +9,8 @@ pub const MAX_TRIANGLES: f64 = 20e6;
 
 /// Triangles of the flat patch when nothing is asked for.
 pub const DEFAULT_TRIANGLES: usize = 2000;
+/// The same of quads: about as many vertices.
+pub const DEFAULT_QUADS: usize = 1000;
 
 /// The least number of triangles of the flat patch that is chosen.
 pub const LEAST_CHOSEN: usize = 1000;
@@ -61,15 +63,37 @@ pub enum Density {
     PerPoint(Vec<Vec<f64>>),
 }
 
+/// What the faces of a patch are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CellShape {
+    /// Triangles of the triangular lattice.
+    #[default]
+    Triangle,
+    /// Quadrilaterals of the square lattice.
+    Quad,
+}
+
+impl CellShape {
+    /// What several of them are called.
+    pub const fn plural(self) -> &'static str {
+        match self {
+            CellShape::Triangle => "triangles",
+            CellShape::Quad => "quads",
+        }
+    }
+}
+
 /// Options of [`mesh_sketch`](crate::sketch::mesh_sketch).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SketchOptions {
     /// Edge length of the lattice in the units of the drawing; exclusive with `triangles`.
     pub edge_length: Option<f64>,
-    /// Triangles of the flat patch, 6 or more; 2000 if neither is given. Reached within 10 %, below 60 within 6
-    /// triangles: the report says how many there are.
+    /// Triangles, or quads, of the flat patch, 6 or more; 2000 triangles or 1000 quads if neither is given. Reached
+    /// within 10 %, below 60 within 6: the report says how many there are.
     pub triangles: Option<usize>,
-    /// Choose the number of triangles: four across the thinnest limb, but at least 1000 and at most
+    /// What the patch is made of; `triangles` and `max_triangles` count these cells.
+    pub cells: CellShape,
+    /// Choose the number of triangles: five across the thinnest limb, but at least 1000 and at most
     /// `max_triangles`; where those cannot follow the drawing, the least number that can. Exclusive with
     /// `edge_length` and `triangles`.
     pub automatic: bool,
@@ -94,7 +118,7 @@ pub struct SketchOptions {
     /// What to do with an outline that crosses itself.
     pub self_crossing: SelfCrossing,
     /// Search nodes spent on proving a boundary optimal whose first solution had conflicts, at most; a proof ends
-    /// after 30 million states too, some seconds, whatever this number. Not beside `mirror`.
+    /// after 15 million states too, a second or two, whatever this number. Not beside `mirror`.
     pub proof_nodes: usize,
     /// How far the lattice may bend with the drawing, 0 to 1; 0 is a straight lattice. Without effect
     /// beside a given `angle` or `origin` and with `boundary` grown.
@@ -114,6 +138,7 @@ impl Default for SketchOptions {
         Self {
             edge_length: None,
             triangles: None,
+            cells: CellShape::Triangle,
             automatic: false,
             max_triangles: MOST_CHOSEN,
             boundary: BoundaryMethod::Optimal,
@@ -134,6 +159,11 @@ impl Default for SketchOptions {
 }
 
 impl SketchOptions {
+    /// The defaults for quads: the lattice bends.
+    pub fn quads() -> Self {
+        Self { cells: CellShape::Quad, bend: 1.0, ..Self::default() }
+    }
+
     /// Checks every value by itself.
     ///
     /// # Errors
@@ -223,6 +253,9 @@ impl SketchOptions {
         if !(0.0..=std::f64::consts::PI).contains(&self.corner_angle) {
             return refuse("corner_angle", self.corner_angle, "0 to pi radians");
         }
+        if self.cells == CellShape::Quad {
+            self.check_quads()?;
+        }
         if self.mirror.is_some() && self.boundary == BoundaryMethod::Grown {
             return Err(Error::InvalidOption {
                 name: "mirror",
@@ -239,6 +272,26 @@ impl SketchOptions {
         }
         Ok(())
     }
+
+    /// # Errors
+    /// [`Error::InvalidOption`] for what quads cannot do.
+    fn check_quads(&self) -> Result<()> {
+        if self.boundary == BoundaryMethod::Grown {
+            return Err(Error::InvalidOption {
+                name: "boundary",
+                value: "grown, with quads".to_owned(),
+                allowed: "optimal, or triangles: growth is that of a triangular lattice",
+            });
+        }
+        if self.mirror.is_some() {
+            return Err(Error::InvalidOption {
+                name: "mirror",
+                value: "given, with quads".to_owned(),
+                allowed: "none, or triangles",
+            });
+        }
+        Ok(())
+    }
 }
 
 /// What was done, in plain numbers.
@@ -246,6 +299,12 @@ impl SketchOptions {
 pub struct SketchReport {
     /// Triangles of the flat patch.
     pub triangles: usize,
+    /// Quads of the flat patch.
+    pub quads: usize,
+    /// Vertices of the stitched body inside its two sheets whose valence is not four; 0 for triangles.
+    pub poles: usize,
+    /// The least number of them that a body of belted quads has; 0 for triangles.
+    pub minimum_poles: usize,
     /// Vertices of the stitched body whose valence is not six.
     pub irregular: usize,
     /// The least number of them that any lattice body of this genus has.
@@ -270,7 +329,7 @@ pub struct SketchReport {
     /// Boundary edges that bridge an inlet of the drawing with mesh vertices in it: zero, or the
     /// drawing is refused, unless `relax` is off.
     pub bridged_inlets: usize,
-    /// Smallest angle of the flat patch, in radians.
+    /// Smallest angle of the flat patch, in radians; of quads the smallest corner.
     pub min_angle: f64,
     /// Drawn corners sharper than `corner_angle`.
     pub corners: usize,

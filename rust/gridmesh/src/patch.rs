@@ -1,10 +1,18 @@
 //! A flat patch: the planar mesh of a drawing.
 
+pub(crate) mod deviation;
+pub(crate) mod expel;
+pub(crate) mod mirror;
+pub(crate) mod place;
+pub(crate) mod pockets;
+
+use std::borrow::Cow;
 use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::lattice::Lattice;
+use crate::options::CellShape;
+use crate::path::placement::Lattice;
 
 /// One contour of a [`Patch`] as a cycle of boundary vertices.
 ///
@@ -43,17 +51,21 @@ impl Loop {
     }
 }
 
-/// A planar triangle mesh whose interior vertices all have valence six.
+/// A planar mesh: of triangles whose interior vertices all have valence six, or of quads whose boundary
+/// vertices all have two of them and whose interior ones have valence four but for one of three or five for each
+/// turn.
 ///
 /// Boundary vertices are numbered first, loop by loop; they lie on the drawn contours. No interior
 /// edge joins two boundary vertices, so that two copies glued along the boundary are a manifold.
-/// No triangle is inverted, also after rounding to `f32` relative to `lattice.origin`.
+/// No triangle is inverted and no quad is concave, also after rounding to `f32` relative to `lattice.origin`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patch {
     /// Positions in the units of the drawing, boundary first.
     pub vertices: Vec<DVec2>,
-    /// Vertex numbers, counter-clockwise.
+    /// Vertex numbers, counter-clockwise; none in a patch of quads.
     pub triangles: Vec<[u32; 3]>,
+    /// Vertex numbers, counter-clockwise; none in a patch of triangles.
+    pub quads: Vec<[u32; 4]>,
     /// The contours, outer first.
     pub loops: Vec<Loop>,
     /// Inlets of the drawing that boundary edges bridge by more than a twentieth of an edge: each
@@ -70,10 +82,46 @@ impl Patch {
         self.loops.iter().map(Loop::len).sum()
     }
 
+    /// What its cells are.
+    pub fn cells(&self) -> CellShape {
+        if self.quads.is_empty() { CellShape::Triangle } else { CellShape::Quad }
+    }
+
+    /// The triangles, or the quads each cut in two along its shorter diagonal.
+    pub fn triangulated(&self) -> Cow<'_, [[u32; 3]]> {
+        if self.quads.is_empty() {
+            return Cow::Borrowed(&self.triangles);
+        }
+        let cut = |&[a, b, c, d]: &[u32; 4]| {
+            let length =
+                |v: u32, w: u32| self.vertices[v as usize].distance_squared(self.vertices[w as usize]);
+            if length(a, c) <= length(b, d) { [[a, b, c], [a, c, d]] } else { [[b, c, d], [b, d, a]] }
+        };
+        self.quads.iter().flat_map(cut).collect()
+    }
+
+    /// The triangles that must all be positive for the patch to be valid: its own, or those at the four corners of
+    /// each quad, which are the triangles of both its triangulations.
+    pub fn corners(&self) -> Cow<'_, [[u32; 3]]> {
+        if self.quads.is_empty() {
+            return Cow::Borrowed(&self.triangles);
+        }
+        self.quads.iter().flat_map(|&[a, b, c, d]| [[d, a, b], [a, b, c], [b, c, d], [c, d, a]]).collect()
+    }
+
+    /// The patch itself, or with its quads cut in two.
+    pub(crate) fn of_triangles(&self) -> Cow<'_, Patch> {
+        if self.quads.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let triangles = self.triangulated().into_owned();
+        Cow::Owned(Patch { triangles, quads: Vec::new(), ..self.clone() })
+    }
+
     /// Signed area of the meshed region.
     pub fn area(&self) -> f64 {
         let doubled: f64 = self
-            .triangles
+            .triangulated()
             .iter()
             .map(|t| {
                 let [a, b, c] = t.map(|v| self.vertices[v as usize]);

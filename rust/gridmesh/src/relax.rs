@@ -21,6 +21,7 @@ pub mod check;
 mod contour;
 mod corners;
 mod energy;
+mod quads;
 mod slide;
 mod stages;
 mod sweep;
@@ -33,7 +34,7 @@ pub use corners::settle_corners;
 
 use crate::error::{Error, Result};
 use crate::progress::Progress;
-use band::Band;
+pub use band::{Band, Stars};
 use slide::Slide;
 use sweep::Motion;
 
@@ -101,7 +102,7 @@ pub fn relax(
     options: &RelaxOptions,
     progress: Progress<'_>,
 ) -> Result<RelaxReport> {
-    let mut relaxation = Relaxation::new(triangles, positions, contours, rims, options)?;
+    let mut relaxation = Relaxation::<3>::new(triangles, positions, contours, rims, options)?;
     relaxation.run(progress)?;
     positions.copy_from_slice(&relaxation.positions);
     relaxation.store(rims);
@@ -110,10 +111,10 @@ pub fn relax(
 
 /// A placement that can be continued: see [`relax`], which makes one and runs it.
 #[derive(Debug)]
-pub struct Relaxation<'a> {
-    triangles: &'a [[u32; 3]],
+pub struct Relaxation<'a, const N: usize = 3> {
+    cells: &'a [[u32; N]],
     options: RelaxOptions,
-    motion: Motion<'a>,
+    motion: Motion<'a, N>,
     rings: usize,
     /// What was done so far, not judged.
     done: RelaxReport,
@@ -121,28 +122,31 @@ pub struct Relaxation<'a> {
     pub positions: Vec<DVec2>,
 }
 
-impl<'a> Relaxation<'a> {
+impl<'a, const N: usize> Relaxation<'a, N>
+where
+    Band<N>: Stars,
+{
     /// Prepares the placement of a patch; nothing is moved yet.
     ///
     /// # Errors
     /// [`Error::InvalidOption`] if `rims` or `triangles` are not as described at [`relax`].
     pub fn new(
-        triangles: &'a [[u32; 3]],
+        cells: &'a [[u32; N]],
         lattice_positions: &[DVec2],
         contours: &'a [Contour<'a>],
         rims: &[Rim],
         options: &RelaxOptions,
-    ) -> Result<Relaxation<'a>> {
+    ) -> Result<Self> {
         check_rims(lattice_positions.len(), contours, rims)?;
         let mut slide = Slide::new(contours, rims);
         if options.slide {
             slide.even_out();
         }
-        let band = movable(triangles, lattice_positions, slide.len(), options.rings)?;
+        let band = movable(cells, lattice_positions, slide.len(), options.rings)?;
         let motion = Motion { band, slide, sliding: options.slide, stiffness: options.stiffness };
         let positions = lattice_positions.to_vec();
         let done = RelaxReport::default();
-        Ok(Relaxation { triangles, options: options.clone(), motion, rings: options.rings, done, positions })
+        Ok(Relaxation { cells, options: options.clone(), motion, rings: options.rings, done, positions })
     }
 
     /// Places all vertices, from the lattice on.
@@ -199,7 +203,7 @@ impl<'a> Relaxation<'a> {
         // The rest of the patch is the lattice itself, whose triangles are as they should be.
         let inverted = first_inverted(&self.motion.band.positions, &self.motion.band.triangles, DVec2::ZERO);
         if inverted.is_some() {
-            report.inverted = first_inverted(&self.positions, self.triangles, DVec2::ZERO);
+            report.inverted = first_inverted(&self.positions, &Band::<N>::corners(self.cells), DVec2::ZERO);
         }
         report
     }
@@ -232,8 +236,7 @@ impl<'a> Relaxation<'a> {
         for (i, step) in steps.iter().enumerate() {
             if step.rings > self.rings {
                 self.write();
-                self.motion.band =
-                    movable(self.triangles, &self.positions, self.motion.band.n_rim, step.rings)?;
+                self.motion.band = movable(self.cells, &self.positions, self.motion.band.n_rim, step.rings)?;
                 self.rings = step.rings;
             }
             if self.motion.sliding && step.spread > 0 {
@@ -254,8 +257,16 @@ impl<'a> Relaxation<'a> {
     }
 }
 
-fn movable(triangles: &[[u32; 3]], positions: &[DVec2], n_rim: usize, rings: usize) -> Result<Band> {
-    Band::new(triangles, positions, n_rim, rings).map_err(|vertex| Error::InvalidOption {
+fn movable<const N: usize>(
+    cells: &[[u32; N]],
+    positions: &[DVec2],
+    n_rim: usize,
+    rings: usize,
+) -> Result<Band<N>>
+where
+    Band<N>: Stars,
+{
+    Band::new(cells, positions, n_rim, rings).map_err(|vertex| Error::InvalidOption {
         name: "triangles",
         value: format!("not a patch at vertex {vertex}"),
         allowed: "one counter-clockwise fan of triangles around each vertex",

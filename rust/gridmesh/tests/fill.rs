@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use gridmesh::error::Result;
 use gridmesh::fill::{Fill, FillOptions, Smooth, fill_hole, fill_holes};
-use gridmesh::metrics::check_mesh;
+use gridmesh::geometry::metrics::check_mesh;
 use gridmesh::progress::Progress;
 
 /// A torus of `n` by `m` quads, each two triangles, without those of the quads for which `gone`.

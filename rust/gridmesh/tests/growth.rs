@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
-use gridmesh::assemble::assemble;
-use gridmesh::axial::Axial;
-use gridmesh::boundary::{Boundary, Cell};
-use gridmesh::cells::Layout;
-use gridmesh::growth::{Watch, clear_chords, grow, straighten};
+use gridmesh::lattice::assemble::assemble;
+use gridmesh::lattice::axial::Axial;
+use gridmesh::lattice::boundary::{Boundary, Cell};
+use gridmesh::lattice::cells::Layout;
+use gridmesh::path::growth::{Watch, clear_chords, grow, straighten};
 use gridmesh::progress::Progress;
 use proptest::prelude::*;
 

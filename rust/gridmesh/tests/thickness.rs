@@ -4,10 +4,10 @@
 use std::f64::consts::PI;
 
 use glam::DVec2;
+use gridmesh::drawing::thickness::{Limb, limbs};
 use gridmesh::options::SketchOptions;
 use gridmesh::progress::Progress;
 use gridmesh::sketch::mesh_sketch;
-use gridmesh::thickness::{Limb, limbs};
 
 /// A bar with round ends around the origin, counter-clockwise.
 fn bar(length: f64, width: f64) -> Vec<DVec2> {
@@ -114,12 +114,12 @@ fn widths_do_not_depend_on_where_and_which_way_the_drawing_begins() {
 }
 
 #[test]
-fn the_automatic_number_puts_four_triangles_across_the_thinnest_limb() {
+fn the_automatic_number_puts_five_triangles_across_the_thinnest_limb() {
     let points = hand(&[0.2, 0.16, 0.2]);
     let options = SketchOptions { automatic: true, ..SketchOptions::default() };
     let report = mesh_sketch(&points, &[], &options, Progress::NONE).unwrap().report;
     let across = report.across.unwrap();
-    assert!((3.6..4.6).contains(&across), "{across}");
+    assert!((4.5..5.6).contains(&across), "{across}");
     let given = SketchOptions { triangles: Some(2000), ..SketchOptions::default() };
     assert_eq!(mesh_sketch(&points, &[], &given, Progress::NONE).unwrap().report.across, None);
 }

@@ -4,13 +4,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
-use gridmesh::axial::Axial;
-use gridmesh::band::{Band, SLACK};
-use gridmesh::curve::{ClosedCurve, Winding};
-use gridmesh::lattice::Lattice;
+use gridmesh::drawing::curve::{ClosedCurve, Winding};
+use gridmesh::lattice::axial::Axial;
+use gridmesh::path::band::{Band, SLACK};
+use gridmesh::path::placement::Lattice;
+use gridmesh::path::target::Target;
+use gridmesh::path::trace::{Path, TraceFailure, TraceOptions, Traced, fewest_turns, trace};
 use gridmesh::progress::Progress;
-use gridmesh::target::Target;
-use gridmesh::trace::{Path, TraceFailure, TraceOptions, Traced, fewest_turns, trace};
 use proptest::prelude::*;
 
 struct Drawing {

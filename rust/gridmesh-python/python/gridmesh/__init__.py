@@ -2,9 +2,11 @@
 
 ``mesh_sketch`` meshes the inside of a drawing, ``inflate`` makes a smooth watertight body of it, ``stitch``
 a flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. ``combine`` unites drawings or
-cuts one from another, ``thickness`` measures their limbs. ``fill_hole`` and ``fill_holes`` close holes of a
+cuts one from another, ``thickness`` measures their limbs; ``trace_image`` finds
+the outlines in a picture. ``fill_hole`` and ``fill_holes`` close holes of a
 mesh with patches that fit their boundaries vertex for vertex, ``regrid`` replaces a region by one. ``cut``
-divides a mesh along a stroke and caps it; ``cut_reach`` tells how far a stroke's ends go.
+divides a mesh along a stroke and caps it; ``cut_reach`` tells how far a stroke's ends go. ``harmonic``
+carries values on over a mesh.
 Positions are float64, indices int32, angles radians, options keyword-only. The same input gives the same
 bytes. The one exception for what cannot be done is ``GridMeshError``.
 """
@@ -24,13 +26,16 @@ from gridmesh._native import (
     fill_hole,
     fill_holes,
     flat,
+    harmonic,
     inflate,
     map_sketches,
     mesh_sketch,
     regrid,
     stitch,
     thickness,
+    trace_image,
 )
+from gridmesh._traced import Traced
 
 __all__ = [
     "Cut",
@@ -40,6 +45,7 @@ __all__ = [
     "Piece",
     "Regrid",
     "Surface",
+    "Traced",
     "__version__",
     "combine",
     "cut",
@@ -47,10 +53,12 @@ __all__ = [
     "fill_hole",
     "fill_holes",
     "flat",
+    "harmonic",
     "inflate",
     "map_sketches",
     "mesh_sketch",
     "regrid",
     "stitch",
     "thickness",
+    "trace_image",
 ]

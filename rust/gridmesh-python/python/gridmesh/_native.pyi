@@ -5,6 +5,8 @@ from typing import Any, Literal, TypedDict, Unpack, final
 import numpy as np
 import numpy.typing as npt
 
+from gridmesh._traced import Traced
+
 __all__ = [
     "Cut",
     "Fill",
@@ -26,12 +28,14 @@ __all__ = [
     "fill_hole",
     "fill_holes",
     "flat",
+    "harmonic",
     "inflate",
     "map_sketches",
     "mesh_sketch",
     "regrid",
     "stitch",
     "thickness",
+    "trace_image",
 ]
 
 __version__: str
@@ -44,6 +48,8 @@ _Progress = Callable[[float], object]
 class _Options(TypedDict, total=False):
     edge_length: float | None
     triangles: int | Literal["auto"] | None
+    cells: Literal["triangles", "quads"] | None
+    quads: int | Literal["auto"] | None
     max_triangles: int
     boundary: Literal["optimal", "grown"]
     max_distance: float
@@ -53,7 +59,7 @@ class _Options(TypedDict, total=False):
     mirror: _Axis | Literal["auto"] | None
     self_crossing: Literal["error", "union"]
     proof_nodes: int
-    bend: float
+    bend: float | None
     density: Literal["width"] | npt.ArrayLike | Sequence[npt.ArrayLike] | None
     relax: bool
     least: bool
@@ -73,6 +79,8 @@ class Patch:
     def vertices(self) -> npt.NDArray[np.float64]: ...
     @property
     def triangles(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def quads(self) -> npt.NDArray[np.int32]: ...
     @property
     def loops(self) -> list[npt.NDArray[np.int32]]: ...
     @property
@@ -98,6 +106,8 @@ class Surface:
     def vertices(self) -> npt.NDArray[np.float64]: ...
     @property
     def triangles(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def quads(self) -> npt.NDArray[np.int32]: ...
     @property
     def silhouette(self) -> list[npt.NDArray[np.int32]]: ...
     @property
@@ -130,6 +140,8 @@ def mesh_sketch(
     *,
     edge_length: float | None = None,
     triangles: int | Literal["auto"] | None = None,
+    cells: Literal["triangles", "quads"] | None = None,
+    quads: int | Literal["auto"] | None = None,
     max_triangles: int = 20000,
     boundary: Literal["optimal", "grown"] = "optimal",
     max_distance: float = 1.5,
@@ -140,7 +152,7 @@ def mesh_sketch(
     mirror: _Axis | Literal["auto"] | None = None,
     self_crossing: Literal["error", "union"] = "error",
     proof_nodes: int = 0,
-    bend: float = 0.0,
+    bend: float | None = None,
     density: Literal["width"] | npt.ArrayLike | Sequence[npt.ArrayLike] | None = None,
     relax: bool = True,
     least: bool = True,
@@ -154,6 +166,19 @@ def combine(
     how: Literal["union", "difference"] = "union",
 ) -> list[tuple[npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]]: ...
 def thickness(outline: _Points, holes: Sequence[_Points] = ()) -> npt.NDArray[np.float64]: ...
+def harmonic(
+    vertices: npt.ArrayLike, triangles: npt.ArrayLike, free: npt.ArrayLike, values: npt.ArrayLike
+) -> npt.NDArray[np.float64]: ...
+def trace_image(
+    image: npt.ArrayLike,
+    *,
+    threshold: float | Literal["auto"] = 0.5,
+    smooth: float = 1.0,
+    min_area: float = 16,
+    margin: float = 0.0,
+    background: Literal["transparent", "paper"] = "transparent",
+    progress: _Progress | None = None,
+) -> Traced: ...
 def stitch(patch: Patch) -> Surface: ...
 def flat(patch: Patch) -> Surface: ...
 def inflate(
@@ -288,8 +313,10 @@ def map_sketches(
     progress: _Progress | None = None,
     **options: Unpack[_Options],
 ) -> list[Surface | GridMeshError]: ...
-def _patch(vertices: Any, triangles: Any, contours: Any, inlets: Any, lattice: Any, report: Any) -> Patch: ...
-def _surface(vertices: Any, triangles: Any, silhouette: Any, uv: Any, report: Any) -> Surface: ...
+def _patch(
+    vertices: Any, triangles: Any, contours: Any, inlets: Any, lattice: Any, report: Any, quads: Any
+) -> Patch: ...
+def _surface(vertices: Any, triangles: Any, silhouette: Any, uv: Any, report: Any, quads: Any) -> Surface: ...
 def _fill(
     loop: Any,
     backwards: Any,

@@ -1,17 +1,17 @@
 //! Panels of a finished sketch and of what lies on its lattice.
 
 use glam::{DVec2, DVec3};
-use gridmesh::assemble::assemble;
-use gridmesh::axial::Axial;
-use gridmesh::contours::read_contours;
-use gridmesh::curve::ClosedCurve;
-use gridmesh::inflate::{InflateOptions, inflate};
-use gridmesh::lattice::Lattice;
+use gridmesh::body::inflate::{InflateOptions, inflate};
+use gridmesh::drawing::contours::read_contours;
+use gridmesh::drawing::curve::ClosedCurve;
+use gridmesh::lattice::assemble::assemble;
+use gridmesh::lattice::axial::Axial;
 use gridmesh::options::{BoundaryMethod, SketchOptions};
+use gridmesh::path::placement::Lattice;
+use gridmesh::path::target::Target;
 use gridmesh::progress::Progress;
 use gridmesh::sketch::{Sketch, mesh_sketch};
 use gridmesh::svg::{Ink, Picture};
-use gridmesh::target::Target;
 
 use crate::{Anything, Drawing};
 

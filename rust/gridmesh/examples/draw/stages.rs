@@ -3,17 +3,17 @@
 use std::collections::BTreeSet;
 
 use glam::DVec2;
-use gridmesh::axial::Axial;
-use gridmesh::band::Band;
-use gridmesh::boundary::Boundary;
-use gridmesh::growth::{clear_chords, grow_inside, straighten};
-use gridmesh::mapping::{complete, project};
+use gridmesh::lattice::axial::Axial;
+use gridmesh::lattice::boundary::Boundary;
 use gridmesh::options::{BoundaryMethod, SketchOptions};
+use gridmesh::path::band::Band;
+use gridmesh::path::growth::{clear_chords, grow_inside, straighten};
+use gridmesh::path::mapping::{complete, project};
+use gridmesh::path::raster::Raster;
+use gridmesh::path::target::Target;
+use gridmesh::path::trace::{TraceOptions, trace};
 use gridmesh::progress::Progress;
-use gridmesh::raster::Raster;
 use gridmesh::svg::{Ink, Picture};
-use gridmesh::target::Target;
-use gridmesh::trace::{TraceOptions, trace};
 use rustc_hash::FxHashMap;
 
 use crate::scene::{Region, Scene};

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
-use crate::segments::{SegmentGrid, nearest_on_segment, orientation, segments_meet};
+use crate::geometry::segments::{SegmentGrid, nearest_on_segment, orientation, segments_meet};
 
 /// Spacing of the samples along the contours, in edges.
 const SPACING: f64 = 1.0;

@@ -1,6 +1,5 @@
 //! Which bends are worth a lattice: start angles and strengths, judged before anything is traced.
 
-use std::f64::consts::FRAC_PI_3;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -18,7 +17,7 @@ use crate::progress::Progress;
 const TURN: f64 = 1.0;
 /// A squared radian along one edge costs so many turns in the end.
 const MISFIT: f64 = 2.0;
-/// Start angles tried over 60 degrees.
+/// Start angles tried between two lattice directions.
 const STARTS: usize = 8;
 /// Pull of the directions, per edge length of contour: how hard the drawing is bent.
 const STRENGTH: f64 = 3.0;
@@ -45,14 +44,15 @@ pub(crate) fn candidates(
 ) -> Result<Vec<Bent>> {
     let tangents: Vec<Tangents> =
         ground.lines.iter().map(|line| Tangents::new(&line.points, &line.arcs)).collect();
-    let operators = Operators::new(&ground.carrier, &tangents)?;
+    let operators = Operators::new(&ground.carrier, &tangents, ground.shape)?;
     let solver = operators.solver()?;
     let beta = STRENGTH * bend;
     let robin = operators.robin(beta)?;
     progress.report(0.1)?;
     // On a mirror axis the lattice can only lie in two ways.
     let n = if ground.is_symmetric { 2 } else { STARTS };
-    let starts: Vec<f64> = (0..n).map(|k| FRAC_PI_3 * k as f64 / n as f64).collect();
+    let step = ground.shape.step();
+    let starts: Vec<f64> = (0..n).map(|k| step * k as f64 / n as f64).collect();
     let mut found = operators.rotations(&starts, beta, &robin, TURN)?;
     let cost = |r: &Rotation| r.turns as f64 + MISFIT * r.misfit;
     found.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
@@ -61,7 +61,7 @@ pub(crate) fn candidates(
         if chosen.len() == count {
             break;
         }
-        if chosen.iter().all(|other| !is_same(&candidate.v, &other.v)) {
+        if chosen.iter().all(|other| !is_same(&candidate.v, &other.v, step)) {
             chosen.push(candidate);
         }
     }
@@ -92,7 +92,7 @@ fn bent(
 ) -> Result<Option<Bent>> {
     let mut turn = v.iter().sum::<f64>() / v.len() as f64;
     if let Some(mirrored) = mirrored {
-        let Some(allowed) = Mirrored::turn(&v) else { return Ok(None) };
+        let Some(allowed) = Mirrored::turn(&v, 0.5 * ground.shape.step()) else { return Ok(None) };
         turn = allowed;
         v = mirrored.antisymmetric(&v, turn);
     }
@@ -118,10 +118,10 @@ fn bent(
     Ok(None)
 }
 
-/// True if two rotations differ by one multiple of 60 degrees and little else.
-fn is_same(a: &[f64], b: &[f64]) -> bool {
-    let step = ((a[0] - b[0]) / FRAC_PI_3).round() * FRAC_PI_3;
-    a.iter().zip(b).all(|(a, b)| (a - b - step).abs() < SAME)
+/// True if two rotations differ by one multiple of a lattice direction's `step` and little else.
+fn is_same(a: &[f64], b: &[f64], step: f64) -> bool {
+    let shift = ((a[0] - b[0]) / step).round() * step;
+    a.iter().zip(b).all(|(a, b)| (a - b - shift).abs() < SAME)
 }
 
 /// What unequal sizes cost, in turns: nothing while the longest edges are less than half longer than

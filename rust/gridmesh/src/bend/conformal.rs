@@ -1,16 +1,15 @@
 //! Conformal maps of the drawing by their derivative exp(u + i v): rotation v, log scale u, map f.
 
-use std::f64::consts::FRAC_PI_3;
-
 use glam::DVec2;
 
-use super::carrier::Carrier;
+use super::carrier::{Carrier, Rim};
 use super::directions::{Directions, directions};
 use super::tangents::Tangents;
 use super::width::room;
 use crate::error::Result;
-use crate::inflate::laplace::{Factor, Pattern, cotangent_weights};
-use crate::inflate::topology::Topology;
+use crate::geometry::laplace::{Factor, Pattern, cotangent_weights};
+use crate::geometry::topology::Topology;
+use crate::options::CellShape;
 
 /// What keeps the operators definite whose constants are free.
 const FLOOR: f64 = 1e-9;
@@ -28,8 +27,10 @@ pub struct Operators {
     pulls: Vec<f64>,
     /// Smoothed tangent angle at each boundary vertex.
     tangents: Vec<f64>,
-    /// Per contour: first vertex, number of vertices, sixths of a circle that the tangent turns.
+    /// Per contour: first vertex, number of vertices, lattice directions that the tangent turns through.
     contours: Vec<(usize, usize, i32)>,
+    /// Angle between two lattice directions.
+    step: f64,
 }
 
 /// A rotation and the directions that it was made for.
@@ -49,7 +50,7 @@ pub struct Solver<'a> {
 }
 
 impl Operators {
-    pub fn new(carrier: &Carrier, tangents: &[Tangents]) -> Result<Self> {
+    pub fn new(carrier: &Carrier, tangents: &[Tangents], shape: CellShape) -> Result<Self> {
         let topology = Topology::new(carrier.vertices.len(), &carrier.triangles);
         let weights = cotangent_weights(&topology, &carrier.vertices, &carrier.triangles)?;
         let pattern = Pattern::new(&topology, 0)?;
@@ -57,11 +58,12 @@ impl Operators {
         for (rim, tangents) in carrier.rims.iter().zip(tangents) {
             at_rim.extend(rim.arcs.iter().map(|&s| tangents.at(s)));
         }
-        let contours =
-            carrier.rims.iter().zip(tangents).map(|(rim, t)| (rim.start, rim.len(), t.total())).collect();
+        let step = shape.step();
+        let contour = |(rim, t): (&Rim, &Tangents)| (rim.start, rim.len(), t.total(step));
+        let contours = carrier.rims.iter().zip(tangents).map(contour).collect();
         let lengths = carrier.lengths();
         let pulls = lengths.iter().zip(room(carrier)).map(|(length, room)| length * room).collect();
-        Ok(Self { topology, weights, pattern, lengths, pulls, tangents: at_rim, contours })
+        Ok(Self { topology, weights, pattern, lengths, pulls, tangents: at_rim, contours, step })
     }
 
     /// The Laplacian with `beta` times the length of contour that wants a direction on its diagonal.
@@ -83,7 +85,7 @@ impl Operators {
             let range = start..start + n;
             let turned: Vec<f64> =
                 self.tangents[range.clone()].iter().zip(&v[range.clone()]).map(|(t, v)| t + v).collect();
-            directions(&turned, &self.pulls[range], total, price)
+            directions(&turned, &self.pulls[range], (total, self.step), price)
         };
         self.contours.iter().map(of).collect()
     }
@@ -120,7 +122,7 @@ impl Operators {
     }
 
     /// Rotations that turn tangents into lattice directions, each of least
-    /// `1/2 |grad v|^2 + beta/2 |v - (60 m - tangent)|^2` with `m` the directions of least cost for it,
+    /// `1/2 |grad v|^2 + beta/2 |v - (step m - tangent)|^2` with `m` the directions of least cost for it,
     /// in turns, from even rotations by `starts` on. `robin` is the factor for `beta`. One solve a
     /// round for all.
     pub fn rotations(
@@ -146,7 +148,7 @@ impl Operators {
             for (&k, side) in open.iter().zip(sides.chunks_exact_mut(n)) {
                 for (&(start, ..), found) in self.contours.iter().zip(&found[k].1) {
                     for (i, &m) in found.steps.iter().enumerate() {
-                        let wish = FRAC_PI_3 * f64::from(m) - self.tangents[start + i];
+                        let wish = self.step * f64::from(m) - self.tangents[start + i];
                         side[start + i] = beta * self.pulls[start + i] * wish;
                     }
                 }

@@ -1,15 +1,13 @@
 //! Which lattice direction each stretch of a contour should follow: cyclic dynamic programming.
 
-use std::f64::consts::FRAC_PI_3;
-
-/// A direction may be this many multiples of 60 degrees from the nearest one.
+/// A direction may be so many steps from the nearest one.
 const REACH: i32 = 2;
 const STATES: usize = 2 * REACH as usize + 1;
 
 /// Directions along a closed contour and what they cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Directions {
-    /// For each sample the multiple of 60 degrees that the tangent should have.
+    /// For each sample the multiple of the step that the tangent should have.
     pub steps: Vec<i32>,
     /// Sum of the absolute changes from sample to sample, once around.
     pub turns: usize,
@@ -17,21 +15,22 @@ pub struct Directions {
     pub misfit: f64,
 }
 
-/// The integers `m` along a closed contour for which `sum of length (tangent - 60 m)^2 + price x sum of
-/// |change of m|` is least, where `m` gains `total` in one turn.
+/// The integers `m` along a closed contour for which `sum of length (tangent - step m)^2 + price x sum of
+/// |change of m|` is least, where `m` gains `total` in one turn and `step` is the angle between lattice
+/// directions.
 ///
 /// `tangents` are unwrapped angles in radians at the samples, `lengths` how much of the contour each
 /// sample stands for. The contour is cut where its tangents agree best with a direction for some
 /// samples; there `m` is the nearest integer. O(samples).
-pub fn directions(tangents: &[f64], lengths: &[f64], total: i32, price: f64) -> Directions {
+pub fn directions(tangents: &[f64], lengths: &[f64], (total, step): (i32, f64), price: f64) -> Directions {
     let n = tangents.len();
-    let nearest = |angle: f64| (angle / FRAC_PI_3).round() as i32;
-    let misfit = |angle: f64, m: i32| (angle - FRAC_PI_3 * f64::from(m)).powi(2);
+    let nearest = |angle: f64| (angle / step).round() as i32;
+    let misfit = |angle: f64, m: i32| (angle - step * f64::from(m)).powi(2);
     let start = quietest(&tangents.iter().map(|&a| misfit(a, nearest(a))).collect::<Vec<f64>>());
     // From the start on, a turn further beyond the seam.
     let at = |k: usize| {
         let i = (start + k) % n;
-        (tangents[i] + if start + k >= n { FRAC_PI_3 * f64::from(total) } else { 0.0 }, lengths[i])
+        (tangents[i] + if start + k >= n { step * f64::from(total) } else { 0.0 }, lengths[i])
     };
     let mut costs = [f64::INFINITY; STATES];
     let (first, first_length) = at(0);
@@ -88,6 +87,8 @@ fn quietest(misfits: &[f64]) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_3;
+
     use super::*;
 
     #[test]
@@ -96,7 +97,7 @@ mod tests {
             for shift in [0.0, 0.3, 1.0] {
                 let tangents: Vec<f64> =
                     (0..120).map(|i| shift + f64::from(total) * FRAC_PI_3 * f64::from(i) / 120.0).collect();
-                let found = directions(&tangents, &[1.0; 120], total, 0.2);
+                let found = directions(&tangents, &[1.0; 120], (total, FRAC_PI_3), 0.2);
                 assert_eq!(found.turns, 6);
                 assert!(found.misfit < 120.0 * (0.5 * FRAC_PI_3).powi(2));
             }
@@ -107,7 +108,7 @@ mod tests {
     fn small_wiggles_do_not_turn() {
         let tangents: Vec<f64> =
             (0..60).map(|i| FRAC_PI_3 * f64::from(i / 10) + if i % 2 == 0 { 0.45 } else { -0.45 }).collect();
-        let found = directions(&tangents, &[1.0; 60], 6, 1.0);
+        let found = directions(&tangents, &[1.0; 60], (6, FRAC_PI_3), 1.0);
         assert_eq!(found.turns, 6);
     }
 
@@ -119,9 +120,10 @@ mod tests {
         };
         let whole: Vec<f64> = (0..180).map(wavy).collect();
         let lengths: Vec<f64> = (0..180).map(|i| 1.0 + 0.3 * f64::from(i % 90).sin()).collect();
-        let first = directions(&whole[..90], &lengths[..90], 6, 0.2);
+        let first = directions(&whole[..90], &lengths[..90], (6, FRAC_PI_3), 0.2);
         for shift in [1, 17, 60] {
-            let found = directions(&whole[shift..shift + 90], &lengths[shift..shift + 90], 6, 0.2);
+            let found =
+                directions(&whole[shift..shift + 90], &lengths[shift..shift + 90], (6, FRAC_PI_3), 0.2);
             assert_eq!(found.turns, first.turns);
             for i in 0..90 {
                 let j = (i + shift) % 90;

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::curve::bounds;
+use crate::drawing::curve::bounds;
 
 /// Triangles sorted into square cells that their boxes meet.
 pub struct TriangleGrid {

@@ -4,9 +4,9 @@ use glam::DVec2;
 
 use super::carrier::{Carrier, Line, Rim};
 use super::grid::TriangleGrid;
-use crate::contours::read_contours;
-use crate::curve::ClosedCurve;
-use crate::segments::{nearest_on_segment, orientation};
+use crate::drawing::contours::read_contours;
+use crate::drawing::curve::ClosedCurve;
+use crate::geometry::segments::{nearest_on_segment, orientation};
 
 /// A carrier with its image under a conformal map: log scale and rotation at the vertices.
 pub struct Image {

@@ -1,7 +1,5 @@
 //! Symmetric bends: a rotation made antisymmetric under the mirror, a map made symmetric.
 
-use std::f64::consts::FRAC_PI_6;
-
 use glam::DVec2;
 
 use super::carrier::Carrier;
@@ -34,10 +32,11 @@ impl Mirrored {
         Self { images: carrier.vertices.iter().map(image).collect() }
     }
 
-    /// The angle by which the axis is turned, a multiple of 30 degrees, if a rotation is near to it.
-    pub fn turn(v: &[f64]) -> Option<f64> {
+    /// The angle by which the axis is turned, a multiple of `step`, half the angle between
+    /// lattice directions, if a rotation is near to it.
+    pub fn turn(v: &[f64], step: f64) -> Option<f64> {
         let mean = v.iter().sum::<f64>() / v.len() as f64;
-        let turn = (mean / FRAC_PI_6).round() * FRAC_PI_6;
+        let turn = (mean / step).round() * step;
         ((mean - turn).abs() <= NEAR).then_some(turn)
     }
 

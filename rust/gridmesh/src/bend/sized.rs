@@ -3,7 +3,7 @@
 use super::conformal::{Rotation, Solver};
 use super::width::Wish;
 use crate::error::Result;
-use crate::inflate::laplace::Factor;
+use crate::geometry::laplace::Factor;
 
 impl Solver<'_> {
     /// The rotation of least `1/2 |grad v|^2 + beta/2 |v - directions|^2 + gamma/2 share |u - wish|^2`, where u is

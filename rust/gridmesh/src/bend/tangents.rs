@@ -43,9 +43,10 @@ impl Tangents {
         Self { angles, step, gain }
     }
 
-    /// Sixths of a circle that the tangent turns in one round: 6 or -6.
-    pub fn total(&self) -> i32 {
-        (self.gain / std::f64::consts::FRAC_PI_3).round() as i32
+    /// Lattice directions `step` apart that the tangent turns through in one round: a full circle, one way or
+    /// the other.
+    pub fn total(&self, step: f64) -> i32 {
+        (self.gain / step).round() as i32
     }
 
     /// The smoothed angle at an arc length from zero to the length of the contour.
@@ -80,7 +81,9 @@ mod tests {
                 arcs.push(arcs[i] + points[i].distance(points[(i + 1) % 400]));
             }
             let tangents = Tangents::new(&points, &arcs);
-            assert_eq!(tangents.total(), if sign > 0.0 { 6 } else { -6 });
+            let step = std::f64::consts::FRAC_PI_3;
+            assert_eq!(tangents.total(step), if sign > 0.0 { 6 } else { -6 });
+            assert_eq!(tangents.total(1.5 * step), if sign > 0.0 { 4 } else { -4 });
             let at = |t: f64| tangents.at(t * arcs[400]);
             for k in 0..10 {
                 let t = 0.1 * f64::from(k);

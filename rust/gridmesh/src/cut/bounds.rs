@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::input::Polygons;
-use super::loops;
-use super::parted::Parted;
 use super::sheet::Sheet;
+use crate::cut::caps::loops;
+use crate::cut::divide::parted::Parted;
 use crate::error::{Error, Result};
 
 /// Triangles that caps may have.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::error::{Error, Result};
-use crate::fill::Smooth;
+use crate::fill::options::Smooth;
 
 /// Which pieces to return.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -4,13 +4,14 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::cap::{Caps, shape};
-use super::cross::Node;
 use super::input::{Polygons, volume};
-use super::loops::Loops;
 use super::options::Keep;
-use super::parted::Parted;
 use super::report::Tally;
+use crate::cut::caps::capper::{Caps, shape};
+use crate::cut::caps::loops::Loops;
+use crate::cut::divide::node::Node;
+use crate::cut::divide::parted::Parted;
+use crate::geometry::disjoint::Disjoint;
 
 /// Which piece it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -204,17 +205,16 @@ fn double(corners: &mut [u32], offsets: &[u32], watched: &[bool], nodes: &mut Ve
         let fan = &at[from..end];
         from = end;
         // Faces that share an edge at the vertex are of one fan.
-        let mut fan_of = (0..fan.len()).collect::<Vec<_>>();
+        let mut fans = Disjoint::new(fan.len());
         let mut by_neighbour =
             fan.iter().enumerate().flat_map(|(i, c)| [(c.2, i), (c.3, i)]).collect::<Vec<_>>();
         by_neighbour.sort_unstable();
         for pair in by_neighbour.windows(2).filter(|p| p[0].0 == p[1].0) {
-            let [a, b] = [root(&fan_of, pair[0].1), root(&fan_of, pair[1].1)];
-            fan_of[a.max(b)] = a.min(b);
+            fans.join(pair[0].1 as u32, pair[1].1 as u32);
         }
-        let mut named: Vec<(usize, u32)> = vec![(0, v)];
+        let mut named: Vec<(u32, u32)> = vec![(0, v)];
         for i in 1..fan.len() {
-            let fan_root = root(&fan_of, i);
+            let fan_root = fans.root(i as u32);
             let name = match named.iter().find(|f| f.0 == fan_root) {
                 Some(&(_, name)) => name,
                 None => {
@@ -229,13 +229,6 @@ fn double(corners: &mut [u32], offsets: &[u32], watched: &[bool], nodes: &mut Ve
         }
     }
     copies
-}
-
-fn root(parents: &[usize], mut i: usize) -> usize {
-    while parents[i] != i {
-        i = parents[i];
-    }
-    i
 }
 
 /// For edges of faces, caps aside, that begin at a doubled vertex: from the names before to the copy.

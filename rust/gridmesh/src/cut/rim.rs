@@ -3,20 +3,30 @@
 //! The line gets vertices at even distances, more where it bends; the others are collapsed into them. Then triangles
 //! with small angles near the line are flipped, collapsed or split while that helps.
 
+pub(crate) mod beside;
+pub(crate) mod defect;
+pub(crate) mod ground;
+pub(crate) mod line;
+pub(crate) mod nearness;
+pub(crate) mod reshape;
+pub(crate) mod slide;
+pub(crate) mod spacing;
+pub(crate) mod strip;
+pub(crate) mod thin;
+
 use std::collections::BTreeSet;
 
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
-use super::beside;
-use super::defect::defect;
 use super::input::{Polygons, triangles};
-use super::nearness::closest;
-use super::parted::{Part, Parted, SEAM};
 use super::report::Tally;
-use super::slide::Course;
-use super::spacing::resample;
-use super::strip::{Strip, Trial};
+use crate::cut::divide::parted::{Part, Parted, SEAM};
+use crate::cut::rim::defect::defect;
+use crate::cut::rim::nearness::closest;
+use crate::cut::rim::slide::Course;
+use crate::cut::rim::spacing::resample;
+use crate::cut::rim::strip::{Strip, Trial};
 use crate::error::Result;
 use crate::progress::Progress;
 
@@ -60,8 +70,8 @@ const BATCH: usize = 32;
 /// ones are between walls, and no better in halves.
 const WIDE: f64 = 0.1;
 
-/// Evens out the line and the faces along it. `again` is shown the old vertices beside the line that stay
-/// at thin triangles, in order; if it wants the line drawn anew, it is not brought to an end: false.
+/// Evens out the line and the faces along it. Returns false if the cut must be repeated: `again` gets the old vertices
+/// beside the line whose triangles stay thin, in order, and says whether to snap the line to them.
 #[expect(clippy::too_many_arguments, reason = "a stage of the whole")]
 pub(super) fn even_out(
     vertices: &[DVec3],

@@ -4,6 +4,11 @@
 //! they say "on the line", the stroke counts as moved by (-e^2, e) for an e less than any number: then
 //! nothing is on the line, and all answers fit together.
 
+pub(crate) mod offset;
+pub(crate) mod reach;
+pub(crate) mod roll;
+pub(crate) mod simplify;
+
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -12,7 +17,7 @@ use robust::{Coord, orient2d};
 
 use super::options::Sweep;
 use crate::error::{Error, Result};
-use crate::segments::{SegmentGrid, segments_meet};
+use crate::geometry::segments::{SegmentGrid, segments_meet};
 
 /// How space is seen along the sweep.
 #[derive(Clone, Debug)]

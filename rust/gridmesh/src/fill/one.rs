@@ -5,16 +5,19 @@ use std::sync::Arc;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
-use super::check::Checked;
-use super::fit::{Faults, Solved};
-use super::flat::{FlatFill, FlatOptions, fill_flat};
-use super::mesh::Rim;
-use super::patchwork::Patchwork;
-use super::reserve::{Taken, wanted};
-use super::unroll::{Unrolled, unroll, unroll_least_bent};
-use super::{Clock, Fill, FillReport, Grid, Job, Shape, Smooth};
 use crate::error::{Error, Result};
-use crate::metrics::min_angle;
+use crate::fill::filled::{Clock, Fill, Shape};
+use crate::fill::job::Job;
+use crate::fill::layout::unroll::{Unrolled, unroll, unroll_least_bent};
+use crate::fill::loops::check::Checked;
+use crate::fill::loops::mesh::Rim;
+use crate::fill::loops::reserve::{Taken, wanted};
+use crate::fill::options::Smooth;
+use crate::fill::planar::flat::{FlatFill, FlatOptions, fill_flat};
+use crate::fill::report::{FillReport, Grid};
+use crate::fill::surface::fit::{Faults, Solved};
+use crate::fill::surface::patchwork::Patchwork;
+use crate::geometry::metrics::min_angle;
 use crate::progress::Progress;
 
 /// A patch in space.

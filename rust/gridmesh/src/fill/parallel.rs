@@ -33,7 +33,7 @@ pub(super) fn steady<T>(progress: Progress<'_>, work: impl FnOnce(Progress<'_>) 
 ///
 /// # Errors
 /// [`Error::Cancelled`], within the time that `each` takes between two reports of its own.
-pub(super) fn in_parallel<I: Sync, T: Send>(
+pub(crate) fn in_parallel<I: Sync, T: Send>(
     items: &[I],
     weight: impl Fn(&I) -> usize + Sync,
     progress: Progress<'_>,

@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::patchwork::Patchwork;
-use super::{Fill, FillReport, Shape, Smooth};
 use crate::error::{Error, Result};
+use crate::fill::filled::{Fill, Shape};
+use crate::fill::options::Smooth;
+use crate::fill::report::FillReport;
+use crate::fill::surface::patchwork::Patchwork;
 
 /// All that a [`Fill`] knows but its report.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +107,8 @@ impl Fill {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fill::{FillOptions, fill_hole};
+    use crate::fill::fill_hole;
+    use crate::fill::options::FillOptions;
     use crate::progress::Progress;
 
     fn filled() -> (Vec<DVec3>, Fill) {

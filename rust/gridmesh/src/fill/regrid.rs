@@ -3,21 +3,26 @@
 use glam::{DVec2, DVec3};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
-use super::check::check_size;
-use super::fair::Membrane;
-use super::fit::{LEAST_WEIGHT, folds};
-use super::holes::boundary_loops;
-use super::mesh::{Rim, place, repeats};
 use super::parallel::steady;
-use super::patchwork::Patchwork;
-use super::sweep::sweep;
-use super::{Fill, FillOptions, Job, NO_ITEM, Smooth};
 use crate::error::{Error, Result};
-use crate::metrics::min_angle;
+use crate::fill::filled::{Fill, NO_ITEM};
+use crate::fill::job::Job;
+use crate::fill::loops::check::check_size;
+use crate::fill::loops::holes::boundary_loops;
+use crate::fill::loops::mesh::{Rim, place, repeats};
+use crate::fill::options::{FillOptions, Smooth};
+use crate::fill::surface::fair::Membrane;
+use crate::fill::surface::fit::{LEAST_WEIGHT, folds};
+use crate::fill::surface::patchwork::Patchwork;
+use crate::fill::surface::sweep::sweep;
+use crate::geometry::metrics::min_angle;
 use crate::progress::Progress;
 
 /// Rounds of sweeps and projections.
 const ROUNDS: usize = 6;
+
+/// Vertices between two questions whether to go on.
+const ASK_EVERY: usize = 1 << 10;
 
 /// A region that was replaced.
 #[derive(Clone, Debug)]
@@ -118,12 +123,15 @@ fn replaced(
         fill = item?;
     }
     let mut off = 0.0f64;
-    let sources = fill.vertices.iter().map(|&p| {
+    let sources = fill.vertices.iter().enumerate().map(|(k, &p)| {
+        if k % ASK_EVERY == 0 {
+            progress.report(1.0)?;
+        }
         let (face, weights, foot) = surface.nearest(p);
         off = off.max(foot.distance(p));
-        (face, weights)
+        Ok((face, weights))
     });
-    let sources = sources.collect();
+    let sources = sources.collect::<Result<_>>()?;
     let mut elsewhere = vec![false; vertices.len()];
     rest.iter().flatten().chain(&border).for_each(|&v| elsewhere[v as usize] = true);
     used.retain(|&v| !elsewhere[v as usize]);
@@ -142,13 +150,17 @@ fn lay_back(
     let shape = fill.shape.as_ref();
     let work = &shape.work;
     let mut positions = shape.positions.clone();
-    for (v, p) in work.inner().zip(through_the_plane(shape.loop_.as_slice(), &shape.flat, vertices, region)?)
+    for (v, p) in
+        work.inner().zip(through_the_plane(shape.loop_.as_slice(), &shape.flat, vertices, region, progress)?)
     {
         positions[v] = p.unwrap_or(positions[v]);
     }
     for round in 0..ROUNDS {
         sweep(work, &mut positions);
         for v in work.inner() {
+            if v % ASK_EVERY == 0 {
+                progress.report(round as f64 / ROUNDS as f64)?;
+            }
             positions[v] = surface.nearest(positions[v]).2;
         }
         progress.report((round + 1) as f64 / ROUNDS as f64)?;
@@ -168,6 +180,7 @@ fn through_the_plane(
     flat: &[DVec2],
     vertices: &[DVec3],
     region: &[[u32; 3]],
+    progress: Progress<'_>,
 ) -> Result<Vec<Option<DVec3>>> {
     let n = loop_.len();
     let mut on_loop = loop_.iter().enumerate().map(|(k, &v)| (v, k as u32)).collect::<Vec<_>>();
@@ -189,9 +202,13 @@ fn through_the_plane(
     if !inner.is_empty() {
         let weights =
             work.cotangents(&positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-        let inside = Membrane::new(&work)?.harmonic(&weights, |v| flat[v].to_array())?;
+        progress.report(0.0)?;
+        let membrane = Membrane::new(&work)?;
+        progress.report(0.0)?;
+        let inside = membrane.harmonic(&weights, |v| flat[v].to_array())?;
         laid.extend(inside.into_iter().map(DVec2::from));
     }
+    progress.report(0.0)?;
     let boxes = old.iter().enumerate().map(|(i, t)| {
         let [a, b, c] = t.map(|v| laid[v as usize]);
         let rectangle = rstar::primitives::Rectangle::from_corners(
@@ -201,8 +218,11 @@ fn through_the_plane(
         rstar::primitives::GeomWithData::new(rectangle, i)
     });
     let tree = RTree::bulk_load(boxes.collect());
-    let find = |p: &DVec2| {
-        let near = tree.locate_in_envelope_intersecting(&AABB::from_point(p.to_array()));
+    let find = |(k, p): (usize, &DVec2)| -> Result<Option<DVec3>> {
+        if k % ASK_EVERY == 0 {
+            progress.report(0.0)?;
+        }
+        let near = tree.locate_in_envelope_intersecting(AABB::from_point(p.to_array()));
         // Where the map folds, the triangle in which the point lies deepest; equal ones by number.
         let depth = |i: usize| {
             let [a, b, c] = old[i].map(|v| laid[v as usize] - *p);
@@ -212,11 +232,13 @@ fn through_the_plane(
             (weights[0].min(weights[1]).min(weights[2]), weights)
         };
         let hits = near.map(|b| (b.data, depth(b.data))).filter(|(_, (least, _))| *least >= -1e-9);
-        let best = hits.min_by(|a, b| b.1.0.total_cmp(&a.1.0).then(a.0.cmp(&b.0)))?;
-        let corners = old[best.0].map(|v| positions[v as usize]);
-        Some((0..3).map(|k| best.1.1[k] * corners[k]).sum())
+        let best = hits.min_by(|a, b| b.1.0.total_cmp(&a.1.0).then(a.0.cmp(&b.0)));
+        Ok(best.map(|(face, (_, weights))| {
+            let corners = old[face].map(|v| positions[v as usize]);
+            (0..3).map(|k| weights[k] * corners[k]).sum()
+        }))
     };
-    Ok(flat[n..].iter().map(find).collect())
+    flat[n..].iter().enumerate().map(find).collect()
 }
 
 /// The region as a set of triangles to project to.
@@ -237,7 +259,7 @@ impl Surface {
 
     /// The nearest face, weights of its corners, and the point itself.
     fn nearest(&self, p: DVec3) -> (u32, [f64; 3], DVec3) {
-        match self.tree.nearest_neighbor(&p.to_array()) {
+        match self.tree.nearest_neighbor(p.to_array()) {
             Some(facet) => {
                 let weights = facet.closest(p);
                 (facet.face, weights, (0..3).map(|k| weights[k] * facet.corners[k]).sum())
@@ -296,7 +318,7 @@ impl PointDistance for Facet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::check_mesh;
+    use crate::geometry::metrics::check_mesh;
 
     /// A bumpy sheet of n x n quads.
     fn sheet(n: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {

@@ -1,7 +1,7 @@
 //! What is told about a fill.
 
-use super::flat::Method;
-use super::unroll::Unrolling;
+use crate::fill::layout::unroll::Unrolling;
+use crate::fill::planar::flat::Method;
 
 /// Numbers about a [`super::Fill`].
 #[derive(Clone, Debug, Default, PartialEq)]

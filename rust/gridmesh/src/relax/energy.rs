@@ -9,16 +9,16 @@
 use std::ops::Mul;
 
 use glam::DVec2;
-use wide::{CmpGt, f64x2};
+use wide::f64x2;
 
-use crate::lattice::ROW_HEIGHT;
+use crate::path::placement::ROW_HEIGHT;
 
 /// Second derivative of `stretch` in one vertex, times the identity.
 const STRETCH_HESSIAN: f64 = 8.0 / 3.0;
 
 /// Value and derivatives of an energy by `stretch` (u) and `det` (d), for two triangles.
 #[derive(Clone, Copy)]
-pub(super) struct Derivatives {
+pub struct Derivatives {
     pub value: f64x2,
     pub u: f64x2,
     pub d: f64x2,
@@ -28,7 +28,7 @@ pub(super) struct Derivatives {
 }
 
 /// An energy of a triangle: a function of `stretch` and `det`.
-pub(super) trait Energy {
+pub trait Energy {
     /// True if the energy is infinite where `det` is not positive, and convex elsewhere.
     const BARRIER: bool;
     fn value(&self, stretch: f64, det: f64) -> f64;
@@ -79,7 +79,7 @@ impl<const SQUARINGS: usize> Energy for Power<SQUARINGS> {
         let (second, power) = Self::powers(low);
         let first = power * Self::EXPONENT;
         let curved = second * (Self::EXPONENT * (Self::EXPONENT - 1.0));
-        let second = e.cmp_gt(low).blend(f64x2::ZERO, curved);
+        let second = e.simd_gt(low).select(f64x2::ZERO, curved);
         let (su, sd) = (second * eu, second * ed);
         Derivatives {
             value: power * low + first * (e - low),
@@ -136,7 +136,7 @@ pub(super) fn stretch(a: DVec2, b: DVec2) -> f64 {
 
 /// Sum over the triangles around a vertex, as a function of the vertex.
 #[derive(Clone, Copy)]
-pub(super) struct Local {
+pub struct Local {
     pub value: f64,
     pub gradient: DVec2,
     pub xx: f64,
@@ -187,7 +187,7 @@ pub(super) fn local<E: Energy>(energy: &E, x: DVec2, ring: &[u32], positions: &[
         let mut d = energy.derivatives(stretch, det);
         if single {
             for part in [&mut d.value, &mut d.u, &mut d.d, &mut d.uu, &mut d.ud, &mut d.dd] {
-                *part = *part * 0.5;
+                *part *= 0.5;
             }
         }
         let (ux, uy) = ((ax + bx) * (-4.0 / 3.0), (ay + by) * (-4.0 / 3.0));
@@ -241,7 +241,7 @@ impl Local {
 }
 
 #[cfg(test)]
-mod tests {
+pub(in crate::relax) mod tests {
     use super::*;
 
     fn ring() -> (Vec<u32>, Vec<DVec2>) {
@@ -252,20 +252,31 @@ mod tests {
         (vec![0, 1, 2, 3, 4, 5, 0], positions)
     }
 
-    fn derivatives_match_differences<E: Energy>(energy: &E, x: DVec2) {
-        let (ring, positions) = ring();
-        let at = |x: DVec2| local(energy, x, &ring, &positions);
+    /// Asserts that derivatives at a place are those of the values around it, to a relative tolerance.
+    pub(in crate::relax) fn match_differences(
+        at: impl Fn(DVec2) -> Local,
+        value: f64,
+        x: DVec2,
+        tolerance: f64,
+    ) {
         let l = at(x);
-        assert!((l.value - value(energy, x, &ring, &positions)).abs() < 1e-12 * l.value.abs());
+        assert!((l.value - value).abs() < 1e-12 * l.value.abs());
         let h = 1e-5;
         let (px, mx) = (at(x + DVec2::X * h), at(x - DVec2::X * h));
         let (py, my) = (at(x + DVec2::Y * h), at(x - DVec2::Y * h));
-        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-5 * (1.0 + a.abs().max(b.abs())), "{a} {b}");
+        let close =
+            |a: f64, b: f64| assert!((a - b).abs() < tolerance * (1.0 + a.abs().max(b.abs())), "{a} {b}");
         close(l.gradient.x, (px.value - mx.value) / (2.0 * h));
         close(l.gradient.y, (py.value - my.value) / (2.0 * h));
         close(l.xx, (px.gradient.x - mx.gradient.x) / (2.0 * h));
         close(l.xy, (py.gradient.x - my.gradient.x) / (2.0 * h));
         close(l.yy, (py.gradient.y - my.gradient.y) / (2.0 * h));
+    }
+
+    fn derivatives_match_differences<E: Energy>(energy: &E, x: DVec2) {
+        let (ring, positions) = ring();
+        let at = |x: DVec2| local(energy, x, &ring, &positions);
+        match_differences(at, value(energy, x, &ring, &positions), x, 1e-5);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::band::Band;
+use super::band::{Band, Stars};
 use super::check::first_inverted;
 use super::energy::{Energy, Power, Regularised, det};
 use super::sweep::{Active, Motion};
@@ -22,7 +22,7 @@ struct Tangled {
 }
 
 impl Tangled {
-    fn look_at(&mut self, band: &Band, triangle: [u32; 3]) {
+    fn look_at<const N: usize>(&mut self, band: &Band<N>, triangle: [u32; 3]) {
         // Seen from its first vertex, so that it is the same from whichever it is looked at.
         let first = (0..3).min_by_key(|&k| triangle[k]).unwrap_or(0);
         let [a, b, c] = [0, 1, 2].map(|k| band.positions[triangle[(first + k) % 3] as usize]);
@@ -35,7 +35,10 @@ impl Tangled {
     }
 }
 
-impl Motion<'_> {
+impl<const N: usize> Motion<'_, N>
+where
+    Band<N>: Stars,
+{
     /// The tangled ones of all triangles.
     fn tangled(&self) -> Tangled {
         let mut found = Tangled::default();
@@ -49,12 +52,12 @@ impl Motion<'_> {
     fn tangled_at(&self, vertices: &Active) -> Tangled {
         let mut found = Tangled::default();
         for v in vertices.iter() {
-            for pair in self.band.around(v as usize).windows(2) {
+            self.band.each_corner(v as usize, |triangle| {
                 // Once, from the first of its vertices that is among them.
-                if !pair.iter().any(|&w| w < v && vertices.has(w)) {
-                    found.look_at(&self.band, [v, pair[0], pair[1]]);
+                if !triangle[1..].iter().any(|&w| w < v && vertices.has(w)) {
+                    found.look_at(&self.band, triangle);
                 }
-            }
+            });
         }
         found
     }
@@ -204,8 +207,8 @@ impl Motion<'_> {
         let x = self.band.positions[v];
         let mut interior = 0.0;
         let mut sharpest = 0.0f64;
-        for pair in self.band.around(v).windows(2) {
-            let [a, b] = [pair[0], pair[1]].map(|w| self.band.positions[w as usize]);
+        for pair in self.band.own_corners(v) {
+            let [a, b] = pair.map(|w| self.band.positions[w as usize]);
             interior += (a - x).angle_to(b - x);
             sharpest = sharpest.max(sharpness([x, a, b]));
         }

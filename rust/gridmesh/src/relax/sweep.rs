@@ -2,16 +2,16 @@
 
 use glam::DVec2;
 
-use super::band::Band;
-use super::energy::{Energy, local, value};
+use super::band::{Band, Stars};
+use super::energy::Energy;
 use super::slide::Slide;
 use crate::error::Result;
 use crate::progress::Progress;
 
 /// What is moved, and how.
 #[derive(Debug)]
-pub(super) struct Motion<'a> {
-    pub band: Band,
+pub(super) struct Motion<'a, const N: usize> {
+    pub band: Band<N>,
     pub slide: Slide<'a>,
     /// Boundary vertices slide (the pinned ones never).
     pub sliding: bool,
@@ -48,7 +48,11 @@ impl Active {
     }
 
     /// The vertices of a list and `rings` rings of neighbours around them.
-    pub fn near(band: &Band, vertices: impl IntoIterator<Item = u32>, rings: usize) -> Active {
+    pub fn near<const N: usize>(
+        band: &Band<N>,
+        vertices: impl IntoIterator<Item = u32>,
+        rings: usize,
+    ) -> Active {
         let mut active = Active::none(band.n_free);
         let mut front: Vec<u32> = vertices.into_iter().collect();
         for ring in 0..=rings {
@@ -67,7 +71,10 @@ impl Active {
     }
 }
 
-impl Motion<'_> {
+impl<const N: usize> Motion<'_, N>
+where
+    Band<N>: Stars,
+{
     /// Moves every active vertex once. Returns the number of vertices that moved by more than
     /// `tolerance`; they and their neighbours are active afterwards.
     ///
@@ -110,9 +117,8 @@ impl Motion<'_> {
     /// One damped Newton step of an interior vertex; returns its length.
     fn move_inside<E: Energy>(&mut self, energy: &E, v: usize) -> f64 {
         let band = &mut self.band;
-        let ring = band.around(v);
         let x = band.positions[v];
-        let here = local(energy, x, ring, &band.positions);
+        let here = band.local(energy, v, x);
         let mut step = here.newton();
         let mut length = step.length();
         if !length.is_finite() || length < 1e-9 {
@@ -128,7 +134,7 @@ impl Motion<'_> {
         let far = length * here.edge.sqrt() < 0.4 * here.det;
         if !(E::BARRIER && far && gain < 0.02 * here.value) {
             let mut tries = 0;
-            while value(energy, x + step, ring, &band.positions) >= here.value {
+            while band.value(energy, v, x + step) >= here.value {
                 tries += 1;
                 if tries == 5 {
                     return 0.0;
@@ -148,8 +154,7 @@ impl Motion<'_> {
         let (back, ahead) = self.slide.room(v);
         let (s, home) = (self.slide.s[v], self.slide.home[v]);
         let (band, slide) = (&mut self.band, &mut self.slide);
-        let ring = band.around(v);
-        let here = local(energy, band.positions[v], ring, &band.positions);
+        let here = band.local(energy, v, band.positions[v]);
         let tangent = (slide.point(v, s + STRETCH) - slide.point(v, s - STRETCH)) * (0.5 / STRETCH);
         let gradient = here.gradient.dot(tangent) + 2.0 * self.stiffness * (s - home);
         let curvature = here.along(tangent) + 2.0 * self.stiffness;
@@ -163,8 +168,7 @@ impl Motion<'_> {
             }
             let moved = s + step;
             let x = slide.point(v, moved);
-            let then =
-                value(energy, x, ring, &band.positions) + self.stiffness * (moved - home) * (moved - home);
+            let then = band.value(energy, v, x) + self.stiffness * (moved - home) * (moved - home);
             if then < now {
                 band.positions[v] = x;
                 slide.s[v] = moved;
@@ -185,11 +189,8 @@ impl Motion<'_> {
         let (low, high) = (back.min(1.5), ahead.min(1.5));
         let (s, home) = (self.slide.s[v], self.slide.home[v]);
         let (band, slide) = (&mut self.band, &mut self.slide);
-        let ring = band.around(v);
         let x = band.positions[v];
-        let cost = |x: DVec2, s: f64| {
-            value(energy, x, ring, &band.positions) + self.stiffness * (s - home) * (s - home)
-        };
+        let cost = |x: DVec2, s: f64| band.value(energy, v, x) + self.stiffness * (s - home) * (s - home);
         let mut best = (cost(x, s), x, s);
         for i in 0..=SAMPLES {
             let s = s - low + (low + high) * f64::from(i) / f64::from(SAMPLES);

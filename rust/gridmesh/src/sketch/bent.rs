@@ -6,15 +6,16 @@ use std::time::Instant;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::{Asked, Effort, Found, Job, SLIGHT, centroid, faults};
+use super::centroid;
 use crate::bend::{Bent, Ground, choose};
-use crate::curve::ClosedCurve;
+use crate::drawing::curve::ClosedCurve;
+use crate::drawing::symmetry::Symmetry;
 use crate::error::{Error, Result};
-use crate::lattice::Lattice;
 use crate::options::{BoundaryMethod, Mirror, SketchOptions};
-use crate::outline::Outline;
+use crate::path::outline::Outline;
+use crate::path::placement::Lattice;
 use crate::progress::Progress;
-use crate::symmetry::Symmetry;
+use crate::sketch::job::{Asked, Effort, Found, Job, SLIGHT, faults};
 
 /// So many bends are traced.
 const TRACED: usize = 2;
@@ -75,12 +76,14 @@ impl Job<'_> {
     fn bent_outlines(&self, asked: Asked, progress: Progress<'_>) -> Result<Vec<(Bent, Lattice, Outline)>> {
         let edge_length = match asked {
             Asked::EdgeLength(h) => h,
-            Asked::Triangles(n) => self.first_guess(n),
+            Asked::Cells(n) => self.first_guess(n),
         };
         let ahead = self.symmetry.as_ref().map_or(self.farthest(), |symmetry| symmetry.axis.direction);
         let frame = Lattice { angle: ahead.to_angle(), origin: self.centre, edge_length };
         let density = self.options.density.as_ref();
-        let Some(ground) = Ground::new(&self.contours, frame, density, self.symmetry.is_some()) else {
+        let Some(ground) =
+            Ground::new(&self.contours, frame, density, self.symmetry.is_some(), self.options.cells)
+        else {
             return Ok(Vec::new());
         };
         let bends = choose::candidates(&Arc::new(ground), self.options.bend, TRACED, progress)?;
@@ -101,7 +104,7 @@ impl Job<'_> {
         let centre = centroid(contours[0].points());
         let asked = match asked {
             Asked::EdgeLength(_) => Asked::EdgeLength(1.0),
-            Asked::Triangles(n) => Asked::Triangles(n),
+            Asked::Cells(n) => Asked::Cells(n),
         };
         let symmetry = match &self.symmetry {
             None => None,

@@ -1,15 +1,14 @@
 //! Which lattices are tried for a drawing.
 
-use std::f64::consts::FRAC_PI_3;
-
 use glam::DVec2;
 
-use super::{Asked, Effort, Job};
-use crate::curve::ClosedCurve;
-use crate::lattice::{Lattice, ROW_HEIGHT};
-use crate::mirror;
-use crate::options::BoundaryMethod;
-use crate::orient::predicted_angles;
+use crate::drawing::curve::ClosedCurve;
+use crate::lattice::grid::{Square, Triangular};
+use crate::options::{BoundaryMethod, CellShape};
+use crate::patch::mirror;
+use crate::path::orient::predicted_angles;
+use crate::path::placement::{Laid, Lattice};
+use crate::sketch::job::{Asked, Effort, Job};
 
 /// Lattice placements tried before the drawing is called too coarse for its edge length: shifts of
 /// the origin in edges.
@@ -50,7 +49,7 @@ impl Job<'_> {
     fn angles(&self, asked: Asked, effort: Effort) -> Vec<f64> {
         const CANDIDATES: usize = 4;
         if let Some(angle) = self.options.angle {
-            return vec![angle.rem_euclid(FRAC_PI_3)];
+            return vec![angle.rem_euclid(self.options.cells.step())];
         }
         let count = match (self.options.boundary, effort) {
             (BoundaryMethod::Optimal, Effort::Full) => CANDIDATES,
@@ -58,18 +57,22 @@ impl Job<'_> {
         };
         let edge_length = match asked {
             Asked::EdgeLength(h) => h,
-            Asked::Triangles(n) => self.first_guess(n),
+            Asked::Cells(n) => self.first_guess(n),
         };
-        let angles = predicted_angles(&self.contours, edge_length, count);
+        let angles = predicted_angles(&self.contours, edge_length, count, self.options.cells);
         if angles.is_empty() { vec![0.0] } else { angles }
     }
 
-    /// The edge length at which a patch has about `n` triangles. The lattice path cuts off what it
+    /// The edge length at which a patch has about `n` cells. The lattice path cuts off what it
     /// cannot follow, and growth stops inside the curve: on average a patch is so many triangles for
-    /// each edge length of curve short of its area.
+    /// each edge length of curve short of its area. That of quads covers it.
     pub(super) fn first_guess(&self, n: usize) -> f64 {
-        let area = self.area / (0.5 * ROW_HEIGHT);
-        let short = if self.options.boundary == BoundaryMethod::Optimal { 0.09 } else { 0.28 };
+        let area = self.area / self.options.cells.area();
+        let short = match (self.options.cells, self.options.boundary) {
+            (CellShape::Quad, _) => 0.0,
+            (CellShape::Triangle, BoundaryMethod::Optimal) => 0.09,
+            (CellShape::Triangle, BoundaryMethod::Grown) => 0.28,
+        };
         let short = short * self.contours.iter().map(ClosedCurve::length).sum::<f64>();
         2.0 * area / (short + (short * short + 4.0 * area * n as f64).sqrt())
     }
@@ -82,7 +85,12 @@ impl Job<'_> {
         };
         // The point of the asked lattice that is nearest to the drawing: coordinates stay small.
         let asked = Lattice { origin: asked, angle, edge_length };
-        let nearest = asked.from_units(Lattice::units(Lattice::nearest(asked.to_units(self.centre))));
+        let centre = asked.to_units(self.centre);
+        let nearest = match self.options.cells {
+            CellShape::Triangle => Triangular::units(Triangular::nearest(centre)),
+            CellShape::Quad => Square::units(Square::nearest(centre)),
+        };
+        let nearest = asked.from_units(nearest);
         Lattice { origin: nearest, ..asked }
     }
 
@@ -98,10 +106,10 @@ impl Job<'_> {
         farthest
     }
 
-    /// Of the six angles of one lattice that which turns with the drawing: the search breaks ties by
-    /// lattice direction, and shifts are not the same in all six frames.
+    /// Of the angles of one lattice that which turns with the drawing: the search breaks ties by
+    /// lattice direction, and shifts are not the same in all those frames.
     fn turned_with_drawing(&self, angle: f64) -> f64 {
         let ahead = self.farthest().to_angle();
-        ahead + (angle - ahead).rem_euclid(FRAC_PI_3)
+        ahead + (angle - ahead).rem_euclid(self.options.cells.step())
     }
 }

@@ -2,15 +2,14 @@
 
 use glam::DVec2;
 
-use super::{Asked, Effort, Job};
-use crate::curve::ClosedCurve;
+use crate::drawing::curve::ClosedCurve;
+use crate::drawing::symmetry::Symmetry;
 use crate::error::{Error, Needed, Result};
-use crate::lattice::{Lattice, ROW_HEIGHT};
-use crate::options::MAX_TRIANGLES;
-use crate::outline::Obstacle;
+use crate::options::{CellShape, MAX_TRIANGLES};
+use crate::path::outline::Obstacle;
+use crate::path::target::Target;
 use crate::progress::Progress;
-use crate::symmetry::Symmetry;
-use crate::target::Target;
+use crate::sketch::job::{Asked, Effort, Job};
 
 /// Work that the search may take, in triangles; an edge of the boundary counts as `EDGE` of them. Some
 /// seconds, whatever the drawing.
@@ -47,7 +46,11 @@ impl Job<'_> {
             let step = (fails + 1 + (fails - first) / 3).min(last);
             work -= at(step) as f64 + EDGE * self.boundary_edges(at(step));
             if work < 0.0 {
-                return Ok(Error::TooCoarse { triangles, needed: Needed::MoreThan(at(fails)) });
+                return Ok(Error::TooCoarse {
+                    triangles,
+                    cells: self.options.cells.plural(),
+                    needed: Needed::MoreThan(at(fails)),
+                });
             }
             if self.works(at(step), progress)? {
                 works = Some(step);
@@ -69,7 +72,11 @@ impl Job<'_> {
                 fails = step;
             }
         }
-        Ok(Error::TooCoarse { triangles, needed: Needed::Least(at(works)) })
+        Ok(Error::TooCoarse {
+            triangles,
+            cells: self.options.cells.plural(),
+            needed: Needed::Least(at(works)),
+        })
     }
 
     /// The last of the first steps, up to `last`, at which the length of the boundary alone leaves no hope.
@@ -94,12 +101,12 @@ impl Job<'_> {
     /// The number of triangles up to which the drawing is symmetric enough for its edge length, if that is asked for.
     fn most_symmetric(&self) -> Option<f64> {
         let symmetry = self.symmetry.as_ref()?;
-        Some(self.area / (0.5 * ROW_HEIGHT * symmetry.least_edge_length().powi(2)))
+        Some(self.area / (self.options.cells.area() * symmetry.least_edge_length().powi(2)))
     }
 
     /// That a mesh of this many triangles would not be symmetric.
     fn asymmetry(&self, triangles: f64) -> Result<Error> {
-        let edge_length = Lattice::edge_length_for(self.area, triangles);
+        let edge_length = (self.area / (triangles * self.options.cells.area())).sqrt();
         let found = self.options.mirror.map(|mirror| Symmetry::find(&self.contours, mirror, edge_length));
         match found {
             Some(Err(error)) => Ok(error),
@@ -110,7 +117,7 @@ impl Job<'_> {
     /// Whether the first placement at `n` triangles gives a valid patch.
     fn works(&mut self, n: usize, progress: Progress<'_>) -> Result<bool> {
         progress.report(0.9)?;
-        Ok(self.attempt(Asked::Triangles(n), Effort::Quick, progress)?.is_ok())
+        Ok(self.attempt(Asked::Cells(n), Effort::Quick, progress)?.is_ok())
     }
 
     /// Length of the drawing in edges at about `n` triangles.
@@ -118,15 +125,19 @@ impl Job<'_> {
         self.contours.iter().map(ClosedCurve::length).sum::<f64>() / self.first_guess(n)
     }
 
-    /// True if `n` triangles cannot follow the drawing: a chord-free lattice patch with `b` boundary
-    /// vertices has at least `2 b - 6`, and a path beside the faired contours is not much shorter
+    /// True if `n` cells cannot follow the drawing: a chord-free lattice patch with `b` boundary
+    /// vertices has at least `2 b - 6` triangles, and one of quads more than `b`, and a path beside the faired contours is not much shorter
     /// than they are.
     pub(super) fn is_hopeless(&self, n: usize) -> bool {
         const SHORTER: f64 = 0.7;
         let lattice = self.lattice(self.first_guess(n), 0.0, DVec2::ZERO);
         // The number of samples alone shows the worst cases; no need to take them.
         let edges = self.boundary_edges(n);
-        let needed = |edges: f64| 2.0 * SHORTER * edges - 6.0 * self.contours.len() as f64;
+        let needed = |edges: f64| match self.options.cells {
+            CellShape::Triangle => 2.0 * SHORTER * edges - 6.0 * self.contours.len() as f64,
+            // One quad in the belt for each edge, and what a path of so many edges encloses at least.
+            CellShape::Quad => SHORTER * edges,
+        };
         if needed(edges) <= n as f64 {
             return false;
         }

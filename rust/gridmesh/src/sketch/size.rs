@@ -2,24 +2,17 @@
 
 use glam::DVec2;
 
-use super::{Asked, Effort, Job};
 use crate::error::Result;
-use crate::lattice::Lattice;
-use crate::mirror;
 use crate::options::{BoundaryMethod, SketchOptions};
-use crate::outline::{Obstacle, Outline, grown, traced};
+use crate::patch::mirror;
+use crate::path::outline::{Obstacle, Outline, grown, traced};
+use crate::path::placement::Lattice;
 use crate::progress::Progress;
-
-/// Why a lattice angle gives no boundary of the size asked for.
-pub(super) struct Miss {
-    pub(super) obstacle: Obstacle,
-    /// There is a boundary, but with too many or too few triangles: a shift of the lattice may help.
-    pub(super) is_of_count: bool,
-}
+use crate::sketch::job::{Asked, Effort, Job, Miss};
 
 impl Job<'_> {
     /// The outline for one placement; with a number of triangles asked for, the edge length is
-    /// corrected until the number is reached within 5 % (10 % are accepted in the end). Only then
+    /// corrected until the number of cells is reached within 5 % (10 % are accepted in the end). Only then
     /// is a proof worth its time.
     pub(super) fn outline(
         &self,
@@ -33,7 +26,7 @@ impl Job<'_> {
         let unproved = SketchOptions { proof_nodes: 0, ..self.options.clone() };
         let mut edge_length = match asked {
             Asked::EdgeLength(h) => h,
-            Asked::Triangles(n) => self.first_guess(n),
+            Asked::Cells(n) => self.first_guess(n),
         };
         let mut best: Option<(f64, Lattice, Outline)> = None;
         let mut obstacle =
@@ -48,11 +41,11 @@ impl Job<'_> {
                     break;
                 }
             };
-            let Asked::Triangles(n) = asked else {
+            let Asked::Cells(n) = asked else {
                 best = Some((0.0, lattice, outline));
                 break;
             };
-            let ratio = outline.triangles() as f64 / n as f64;
+            let ratio = outline.count(self.options.cells) as f64 / n as f64;
             let off = (ratio - 1.0).abs();
             if best.as_ref().is_none_or(|(least, ..)| off < *least) {
                 best = Some((off, lattice, outline));
@@ -65,11 +58,11 @@ impl Job<'_> {
         let allowed = match asked {
             Asked::EdgeLength(_) => 0.0,
             // A handful of triangles comes in few sizes: 6, 10, 13, 14, 16...
-            Asked::Triangles(n) => f64::max(0.1, 6.0 / n as f64),
+            Asked::Cells(n) => f64::max(0.1, 6.0 / n as f64),
         };
         let is_near = |outline: &Outline| match asked {
             Asked::EdgeLength(_) => true,
-            Asked::Triangles(n) => (outline.triangles() as f64 / n as f64 - 1.0).abs() <= allowed,
+            Asked::Cells(n) => (outline.count(self.options.cells) as f64 / n as f64 - 1.0).abs() <= allowed,
         };
         let Some((off, lattice, mut outline)) = best else {
             return Ok(Err(Miss { obstacle, is_of_count: false }));
@@ -87,6 +80,27 @@ impl Job<'_> {
             }
         }
         Ok(Ok((lattice, outline)))
+    }
+
+    /// The outline for a shift of the lattice: proved only if without a proof it gives a patch, for most that are
+    /// tried do not.
+    pub(super) fn shifted(
+        &self,
+        asked: Asked,
+        effort: Effort,
+        angle: f64,
+        shift: DVec2,
+        progress: Progress<'_>,
+    ) -> Result<Result<(Lattice, Outline), Miss>> {
+        if effort == Effort::Full && self.options.proof_nodes > 0 {
+            let unproved = self.outline(asked, Effort::Quick, angle, shift, progress)?;
+            let Ok((lattice, outline)) = &unproved else { return Ok(unproved) };
+            let placed = self.place(None, lattice, outline, progress)?;
+            if !placed.is_ok_and(|(placed, _)| placed.fault(self.options).is_none()) {
+                return Ok(unproved);
+            }
+        }
+        self.outline(asked, effort, angle, shift, progress)
     }
 
     fn path(

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use super::{Ink, Picture};
+use crate::svg::ink::Ink;
+use crate::svg::picture::Picture;
 
 /// An SVG file of panels in rows of `columns`. Below is a legend of those of the given inks that the
 /// panels use.

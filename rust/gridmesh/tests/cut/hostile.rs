@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use glam::DVec3;
 use gridmesh::cut::{CutOptions, Keep, Mirror, Sweep, cut, cut_reach};
 use gridmesh::fill::Smooth;
-use gridmesh::metrics::check_mesh;
+use gridmesh::geometry::metrics::check_mesh;
 use gridmesh::progress::Progress;
 
 use crate::models::*;

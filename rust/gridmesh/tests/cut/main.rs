@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use gridmesh::cut::{CutOptions, Keep, Sweep, cut};
 use gridmesh::fill::Smooth;
-use gridmesh::metrics::check_mesh;
+use gridmesh::geometry::metrics::check_mesh;
 use gridmesh::progress::Progress;
 
 use crate::models::*;

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use gridmesh::cut::{Cut, CutOptions, Piece, Polygons, Side, Sweep, cut};
 use gridmesh::error::Result;
-use gridmesh::metrics::check_mesh;
+use gridmesh::geometry::metrics::check_mesh;
 use gridmesh::progress::Progress;
 
 /// Vertices, corners, offsets.

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use glam::{DMat3, DVec3};
 use gridmesh::cut::{Cut, CutOptions, Keep, Polygons, Sweep};
 use gridmesh::fill::Smooth;
-use gridmesh::metrics::check_mesh;
+use gridmesh::geometry::metrics::check_mesh;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 

@@ -1,7 +1,7 @@
 //! The profile reshaped by a curve.
 
+use gridmesh::body::inflate::{InflateOptions, Profile, Side, inflate};
 use gridmesh::error::Error;
-use gridmesh::inflate::{InflateOptions, Profile, Side, inflate};
 use gridmesh::progress::Progress;
 
 use crate::shapes::{check_body, disk, drawings, inflated, is_mirrored, polar, seam_ratio, sketched};

@@ -8,12 +8,12 @@ mod shapes;
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use gridmesh::embed::count_self_intersections;
+use gridmesh::body::inflate::{InflateOptions, Profile, Side, inflate};
+use gridmesh::body::stitch::{flat, stitch};
+use gridmesh::body::surface::Surface;
 use gridmesh::error::Error;
-use gridmesh::inflate::{InflateOptions, Profile, Side, inflate};
+use gridmesh::geometry::embed::count_self_intersections;
 use gridmesh::progress::Progress;
-use gridmesh::stitch::{flat, stitch};
-use gridmesh::surface::Surface;
 use proptest::prelude::*;
 
 use crate::shapes::*;

@@ -3,17 +3,17 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec2, DVec3};
-use gridmesh::axial::Axial;
-use gridmesh::dir::Dir;
-use gridmesh::embed::count_self_intersections;
-use gridmesh::inflate::{InflateOptions, inflate};
-use gridmesh::lattice::Lattice;
-use gridmesh::metrics::{check_mesh, face_angles, min_angle};
+use gridmesh::body::inflate::{InflateOptions, inflate};
+use gridmesh::body::surface::Surface;
+use gridmesh::geometry::embed::count_self_intersections;
+use gridmesh::geometry::metrics::{check_mesh, face_angles, min_angle};
+use gridmesh::lattice::axial::Axial;
+use gridmesh::lattice::dir::Dir;
 use gridmesh::options::{BoundaryMethod, SketchOptions};
 use gridmesh::patch::{Loop, Patch};
+use gridmesh::path::placement::Lattice;
 use gridmesh::progress::Progress;
 use gridmesh::sketch::mesh_sketch;
-use gridmesh::surface::Surface;
 
 /// The lattice points of a hexagon of this radius, ring by ring, as (ring, place on the ring).
 pub fn hexagon(radius: i32) -> Vec<(i32, i32, Axial)> {
@@ -79,6 +79,7 @@ pub fn hex_patch(from: i32, radius: i32, place: impl Fn(f64, f64) -> DVec2) -> P
     let mut patch = Patch {
         vertices,
         triangles,
+        quads: vec![],
         loops,
         inlets: vec![],
         lattice: Lattice { origin: DVec2::ZERO, angle: 0.0, edge_length: 1.0 },

@@ -10,9 +10,9 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::f64::consts::TAU;
 
 use glam::DVec2;
-use gridmesh::axial::Axial;
-use gridmesh::dir::Dir;
-use gridmesh::lattice::Lattice;
+use gridmesh::lattice::axial::Axial;
+use gridmesh::lattice::dir::Dir;
+use gridmesh::path::placement::Lattice;
 use gridmesh::relax::{Contour, Rim};
 
 /// A patch ready to be placed, and the curve (lattice units) that it belongs to.

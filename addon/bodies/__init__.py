@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From drawn strokes to bodies: reading, outlines, the operator."""

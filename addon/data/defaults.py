@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What options are unless they are set: for operators, live bodies and the command line alike. No bpy."""
+
+from math import radians
+
+TRIANGLES = 2000
+"""Of each side of a body."""
+CORNER_ANGLE = radians(40.0)
+"""Turns sharper than this are corners."""
+CLOSE_GAPS = 0.2
+"""Largest gap between the ends of a drawn outline that is closed, relative to the stroke."""
+CUT_CLOSE_GAPS = 0.1
+"""The same of a stroke to cut along, which is more often meant to be open."""
+MAX_HOLE_EDGES = 100
+"""Where all holes of a mesh are filled, those with more edges are left open."""
+MAX_OPEN_EDGES = 200_000
+"""The command line refuses meshes with more open edges: they are not surfaces with holes."""

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`mesh.gridmesh_fill`: holes of the mesh being edited become grid patches."""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
+
+from .. import api
+from ..data import defaults
+from ..text.messages import counted, listed
+from ..text.telling import told
+from ..ui.progress import Pointer
+from .editmesh import EditMesh
+from .filling import Job, add_all, forgive_unselected, left_open, warnings_of
+
+
+class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
+    """Fill the selected hole with a regular triangle patch that fits its edges"""  # noqa: D400 (the tooltip)
+
+    bl_idname = "mesh.gridmesh_fill"
+    bl_label = "Grid Patch Fill"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    holes: EnumProperty(
+        name="Holes",
+        description="Which holes are filled",
+        items=[
+            (
+                "SELECTED",
+                "Selected",
+                "Selected loops of open edges, and the whole holes that single selected edges or vertices lie on",
+            ),
+            ("ALL", "All", "All holes that are not hidden, up to a number of edges"),
+        ],
+        default="SELECTED",
+        options={"SKIP_SAVE"},
+    )
+    max_edges: IntProperty(
+        name="Max Edges",
+        description="Holes with more edges are left open; 0 fills holes of any size, the outer border too",
+        default=defaults.MAX_HOLE_EDGES,
+        min=0,
+        soft_max=1000,
+    )
+    smooth: EnumProperty(
+        name="Smoothness",
+        description="How a patch continues the surface around it",
+        items=[
+            ("FLAT", "Flat", "Stretched into the hole like a soap film"),
+            ("TANGENT", "Tangent", "With the slope of the surface"),
+            ("CURVATURE", "Curvature", "With the slope and the curvature of the surface"),
+        ],
+        default="TANGENT",
+    )
+    close_chains: BoolProperty(
+        name="Close Chains",
+        description="Close selected chains of edges by a straight edge",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+    use_quads: BoolProperty(
+        name="Quads",
+        description="Join pairs of triangles to quads where that gives good ones",
+        default=False,
+    )
+    keep_hard: BoolProperty(
+        name="Keep Hard Edges",
+        description=(
+            "Continue hard edges of the surroundings (bent by more than 30 degrees, or marked sharp) to where they "
+            "meet, as at a corner of a cube"
+        ),
+        default=False,
+    )
+    result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Ask for a mesh in Edit Mode."""
+        if context.mode == "EDIT_MESH":
+            return True
+        cls.poll_message_set(told("Edit a mesh and select the edges of a hole", "tooltips"))
+        return False
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Find the holes, fill them as arrays, and only then change the meshes."""
+        started = perf_counter()
+        try:
+            api.native("fill_holes")
+        except api.NativeError as error:
+            self.report({"ERROR"}, told(str(error)))
+            return {"CANCELLED"}
+        jobs = [Job(EditMesh(ob)) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
+        several = len(jobs) > 1
+        for job in jobs:
+            if self.holes == "ALL":
+                job.find_all(self.max_edges)
+            else:
+                job.find_selected(close_chains=self.close_chains)
+        if self.holes == "SELECTED" and several:
+            forgive_unselected(jobs)
+        try:
+            with Pointer(context) as pointer:
+                for index, job in enumerate(jobs):
+                    part = pointer.part(index / len(jobs), (index + 1) / len(jobs))
+                    job.fill(self.smooth.lower(), part, keep_hard=self.keep_hard)
+        except api.CancelledError:
+            self.report({"WARNING"}, told("Cancelled; nothing was filled"))
+            return {"CANCELLED"}
+        problems = [job.name(problem, several) for job in jobs for problem in job.found.problems]
+        if not any(job.patches for job in jobs):
+            return self._refuse(jobs, problems)
+        add_all([job for job in jobs if job.patches], quads=self.use_quads)
+        self._tell(jobs, problems, perf_counter() - started)
+        return {"FINISHED"}
+
+    def _refuse(self, jobs: list[Job], problems: list[str]) -> set[str]:
+        """Say why nothing was filled, and select what stands in the way."""
+        for job in jobs:
+            job.edited.point_out(job.found.problems)
+        left = left_open(jobs, self.max_edges)
+        if problems:
+            self.report({"ERROR"}, told(listed(problems + left)))
+        elif left:
+            self.report({"WARNING"}, told(listed(left)))
+        else:
+            self.report({"WARNING"}, told("There are no holes"))
+        return {"CANCELLED"}
+
+    def _tell(self, jobs: list[Job], problems: list[str], seconds: float) -> None:
+        """Report numbers, and what the user should know."""
+        reports = [report for job in jobs for report in job.reports]
+        faces = [len(face.verts) for job in jobs for face in job.added.faces]
+        quads = sum(n == 4 for n in faces)
+        made = counted(len(faces) - quads, "triangle")
+        made = f"{counted(quads, 'quad')} and {made}" if quads else made
+        irregular = sum(report["irregular"] for report in reports)
+        self.result = (
+            f"Filled {counted(len(reports), 'hole')}: {made}, {counted(irregular, 'irregular vertex')}, "
+            f"{1000 * seconds:.0f} ms"
+        )
+        self.report({"INFO"}, told(self.result))
+        left = left_open(jobs, self.max_edges)
+        torn = sum(job.added.torn for job in jobs)
+        if torn:
+            left.append(
+                f"UVs or colours are torn at {counted(torn, 'hole')}: continued from the longest stretch of each"
+            )
+        broken = sum(job.added.broken for job in jobs)
+        if broken:
+            left.append(f"{counted(broken, 'layer')} of data not continued: a value at a hole is not finite")
+        if left:
+            self.report({"INFO"}, told(listed(left)))
+        for warning in warnings_of(reports):
+            self.report({"WARNING"}, told(warning))
+        if problems:
+            self.report(
+                {"WARNING"}, told(f"{counted(len(problems), 'selection')} left out:\n{listed(problems)}")
+            )
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw the redo panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        if self.result:
+            numbers = layout.column(align=True)
+            for part in self.result.split(", ", 1):  # on one line they would be cut off
+                numbers.label(text=told(part, "interface"))
+        layout.prop(self, "holes")
+        if self.holes == "ALL":
+            layout.prop(self, "max_edges")
+        else:
+            layout.prop(self, "close_chains")
+        layout.prop(self, "smooth")
+        layout.prop(self, "keep_hard")
+        layout.prop(self, "use_quads")
+
+
+classes = (MESH_OT_gridmesh_fill,)

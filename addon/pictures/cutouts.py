@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From the pixels of a picture to one mesh of all that it shows: the calls into `gridmesh`. numpy only, no bpy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..api import CancelledError, Progress
+from ..native import native
+
+PIXELS = 100_000_000
+"""The most pixels of a picture, as the module has it; asked for before they are read."""
+
+FINER = (1.0, 0.7, 0.5, 0.35, 0.25)
+"""Edge lengths tried for parts that are too thin, relative to that of the others."""
+
+_TRACING = 0.3
+"""Part of the time that tracing takes; the rest is meshing."""
+
+
+class PictureError(ValueError):
+    """Nothing can be made of a picture. The message says why and what to do, without naming the picture."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a picture is read, and what is made of it."""
+
+    paper: bool = False
+    """What is not paper counts, instead of what is not transparent."""
+    threshold: float | None = None
+    """None: the one that parts the pixels best."""
+    smooth: float = 1.0
+    min_area: float = 16.0
+    margin: float = 0.0
+    holes: bool = True
+    triangles: int = 1000
+    """Of one side, shared by the parts according to their area."""
+    body: dict[str, Any] | None = None
+    """Keyword arguments of `gridmesh.inflate`; None for a flat sheet."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cutout:
+    """Mesh of all parts of a picture, in pixels from its lower left corner, z towards the viewer."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    uv: np.ndarray
+    """(3t, 2) by corner, exactly over the picture."""
+    silhouette: list[np.ndarray]
+    parts: int
+    dropped: int
+    """Islands that were too small."""
+    refused: list[str]
+    """Why parts are missing."""
+
+
+def check_size(width: int, height: int) -> None:
+    """Raise PictureError for a picture that has no pixels or too many."""
+    if not 0 < width * height <= PIXELS:
+        raise PictureError(
+            f"it has {width} by {height} pixels; allowed: 1 to {PIXELS} pixels in all, scale it"
+        )
+
+
+def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = None) -> Cutout:
+    """Trace a picture (h, w, 4), rows from the top, colours and alpha from 0 to 1, and mesh what it shows.
+
+    Raises
+    ------
+    PictureError
+        If there is nothing to mesh.
+    CancelledError
+        If `progress` or Ctrl-C asked to stop.
+    NativeError
+        Without the module.
+    """
+    gridmesh = native("trace_image", "map_sketches", "mesh_sketch", "flat")
+    height, width = pixels.shape[:2]
+    check_size(width, height)
+    try:
+        traced = gridmesh.trace_image(
+            pixels,
+            background="paper" if options.paper else "transparent",
+            threshold="auto" if options.threshold is None else options.threshold,
+            smooth=options.smooth,
+            min_area=options.min_area,
+            margin=options.margin,
+            progress=_part(progress, 0.0, _TRACING),
+        )
+        parts = list(traced) if options.holes else _filled(traced)
+        if not parts:
+            raise PictureError(_nothing(traced.dropped))
+        surfaces = _meshed(gridmesh, parts, options, _part(progress, _TRACING, 1.0))
+    except KeyboardInterrupt as error:
+        raise CancelledError from error
+    except gridmesh.GridMeshError as error:
+        if error.kind == "cancelled":
+            raise CancelledError from error
+        raise PictureError(str(error)) from error
+    refused = [str(surface) for surface in surfaces if isinstance(surface, gridmesh.GridMeshError)]
+    meshed = [surface for surface in surfaces if not isinstance(surface, gridmesh.GridMeshError)]
+    if not meshed:
+        raise PictureError(refused[0])
+    starts = np.cumsum([0, *(len(surface.vertices) for surface in meshed)])
+    vertices = np.concatenate([surface.vertices for surface in meshed])
+    triangles = np.concatenate(
+        [surface.triangles + start for surface, start in zip(meshed, starts, strict=False)]
+    ).astype(np.int32)
+    return Cutout(
+        vertices=vertices,
+        triangles=triangles,
+        uv=vertices[triangles.ravel(), :2] / [width, height],
+        silhouette=[
+            loop + start
+            for surface, start in zip(meshed, starts, strict=False)
+            for loop in surface.silhouette
+        ],
+        parts=len(meshed),
+        dropped=traced.dropped,
+        refused=refused,
+    )
+
+
+def _nothing(dropped: int) -> str:
+    if dropped:
+        return f"all of its {dropped} islands are smaller than the least area; lower Least Area"
+    return "nothing in it is covered; choose another background or a lower threshold"
+
+
+def _part(progress: Progress | None, begin: float, end: float) -> Callable[[float], object] | None:
+    """Progress of a part of the work, from `begin` to `end`."""
+    return None if progress is None else lambda fraction: progress(begin + fraction * (end - begin))
+
+
+def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progress | None) -> list[Any]:
+    """Surface or GridMeshError for each part, all with edges of about the same length."""
+    total = sum(_area(outline) + sum(map(_area, holes)) for outline, holes in parts)
+    if options.triangles <= 0:
+        raise PictureError(f"Triangles of Each Side is {options.triangles}; allowed: 1 or more")
+    length = np.sqrt(total / options.triangles * 4 / np.sqrt(3))
+    results: list[Any] = [None] * len(parts)
+    left = list(range(len(parts)))
+    for step, finer in enumerate(FINER):
+        found = _surfaces(
+            gridmesh,
+            [parts[k] for k in left],
+            finer * length,
+            options.body,
+            _part(progress, step / len(FINER), (step + 1) / len(FINER)),
+        )
+        for k, surface in zip(left, found, strict=True):
+            results[k] = surface
+        kinds = {k: getattr(results[k], "kind", "") for k in left}
+        if "cancelled" in kinds.values():
+            raise CancelledError
+        left = [k for k in left if kinds[k] in {"too_coarse", "no_patch"}]
+        if not left:
+            break
+    return results
+
+
+def _surfaces(
+    gridmesh: Any,
+    parts: list[Any],
+    edge_length: float,
+    body: dict[str, Any] | None,
+    progress: Progress | None,
+) -> list[Any]:
+    """Surface or GridMeshError for each part."""
+    options = {"edge_length": edge_length, "least": False}
+    if body is not None:
+        return list(gridmesh.map_sketches(parts, progress=progress, **options, **body))
+
+    def sheet(at: int, outline: np.ndarray, holes: list[np.ndarray]) -> Any:
+        part = _part(progress, at / len(parts), (at + 1) / len(parts))
+        try:
+            return gridmesh.flat(gridmesh.mesh_sketch(outline, holes, progress=part, **options))
+        except gridmesh.GridMeshError as error:
+            return error
+
+    return [sheet(at, *part) for at, part in enumerate(parts)]
+
+
+def _filled(traced: list[tuple[np.ndarray, list[np.ndarray]]]) -> list[tuple[np.ndarray, list[np.ndarray]]]:
+    """Outlines without their holes, and without what lies in the holes; the largest come first."""
+    kept: list[np.ndarray] = []
+    for outline, _ in traced:
+        if not any(_inside(outline[0], other) for other in kept):
+            kept.append(outline)
+    return [(outline, []) for outline in kept]
+
+
+def _inside(point: np.ndarray, polygon: np.ndarray) -> bool:
+    """Whether a point lies inside a polygon (even-odd)."""
+    a, b = polygon, np.roll(polygon, -1, axis=0)
+    crossed = (a[:, 1] <= point[1]) != (b[:, 1] <= point[1])
+    a, b = a[crossed], b[crossed]
+    x = a[:, 0] + (point[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
+    return bool((x > point[0]).sum() % 2)
+
+
+def _area(contour: np.ndarray) -> float:
+    """Signed area; holes run clockwise."""
+    following = np.roll(contour, -1, axis=0)
+    return float((contour[:, 0] * following[:, 1] - contour[:, 1] * following[:, 0]).sum() / 2)

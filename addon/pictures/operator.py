@@ -1,0 +1,342 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`object.gridmesh_from_image`: pictures become sprites or bodies; `object.gridmesh_update_image`: made anew."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from ..api import CancelledError
+from ..bodies.strokes import selected
+from ..data.meshes import obstacle_of_mesh
+from ..data.placing import Transaction, home
+from ..native import NativeError
+from ..text.messages import counted, listed
+from ..text.telling import told
+from ..ui.progress import Pointer
+from ..ui.properties import ShapeOptions
+from . import images, placing
+from .cutouts import Cutout, Options, PictureError, cut_out
+
+READ = "*.png;*.jpg;*.jpeg;*.webp;*.tga;*.tif;*.tiff;*.bmp;*.exr"
+
+
+class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: N801
+    """Make a sprite or a body of what each picture shows, with the picture on it"""  # noqa: D400 (the tooltip)
+
+    bl_idname = "object.gridmesh_from_image"
+    bl_label = "Picture to Mesh"
+    bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012
+
+    filepath: StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    filter_glob: StringProperty(default=READ, options={"HIDDEN", "SKIP_SAVE"})
+    triangles: IntProperty(
+        name="Triangles of Each Side",
+        description="Number of triangles of one side of all that the picture shows; thin parts get more",
+        default=1000,
+        soft_min=50,
+        soft_max=100_000,
+    )
+    background: EnumProperty(
+        name="Background",
+        description="What of the picture is left out",
+        items=[
+            ("AUTO", "Automatic", "What is transparent; paper where nothing is"),
+            ("TRANSPARENT", "Transparent", "What is transparent"),
+            ("PAPER", "Paper", "The paper of a scan or photograph, also under uneven light"),
+        ],
+        default="AUTO",
+    )
+    use_threshold: BoolProperty(
+        name="Give a Threshold",
+        description="Give the threshold, instead of the one that parts the pixels best on paper, and 0.5 elsewhere",
+        default=False,
+    )
+    threshold: FloatProperty(
+        name="Threshold",
+        description="How far a pixel must be covered to lie inside the outline",
+        subtype="FACTOR",
+        default=0.5,
+        min=0.001,
+        max=0.999,
+    )
+    smooth: FloatProperty(
+        name="Smoothing",
+        description="How far along the outline is looked to remove what pixels put in; 0 keeps it as it is",
+        default=1.0,
+        min=0.0,
+        max=10.0,
+    )
+    min_area: FloatProperty(
+        name="Least Area",
+        description="Islands and holes of fewer pixels are left out",
+        default=16.0,
+        min=0.0,
+        soft_max=1000.0,
+    )
+    margin: FloatProperty(
+        name="Margin",
+        description="How far the outline is moved outward, in pixels; from 1 on the outline cuts no pixel, but edges of a coarse mesh may",
+        default=1.0,
+        min=0.0,
+        soft_max=20.0,
+        max=1000.0,
+    )
+    use_holes: BoolProperty(
+        name="Holes",
+        description="Leave holes open; without, closed lines are filled",
+        default=True,
+    )
+    lit: BoolProperty(
+        name="Lit",
+        description="Let lights and shadows fall on the picture; without, it shines in its own colors",
+        default=False,
+    )
+    hide_source: BoolProperty(
+        name="Hide Picture",
+        description="Hide the object that shows the picture, which is in the same place",
+        default=True,
+    )
+    result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def description(cls, _context: bpy.types.Context, _properties: Any) -> str:
+        """Say what it does in the user's language."""
+        return told("Make a sprite or a body of what each picture shows, with the picture on it", "tooltips")
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Ask for Object Mode."""
+        if context.mode == "OBJECT":
+            return True
+        cls.poll_message_set(told("Leave the mode to make meshes of pictures", "tooltips"))
+        return False
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Take the selected pictures; with none, ask for a file."""
+        if self.filepath or _chosen(context):
+            return self.execute(context)
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Read and mesh all pictures, and only then change the scene."""
+        started = perf_counter()
+        failures: list[str] = []
+        made: list[tuple[images.Picture, Options, bool, Cutout]] = []
+        try:
+            with Transaction() as transaction, Pointer(context) as pointer:
+                pictures = self._pictures(context, transaction, failures)
+                for at, picture in enumerate(pictures):
+                    part = pointer.part(at / len(pictures), (at + 1) / len(pictures))
+                    try:
+                        values = images.pixels(picture.image)
+                        transparent = images.is_transparent(values)
+                        options = self._options(transparent)
+                        made.append((picture, options, transparent, cut_out(values, options, part)))
+                    except PictureError as error:
+                        failures.append(f"{picture.label}: {error}")
+                if not made:
+                    raise PictureError(listed(failures))
+                objects = self._place(context, made, transaction)
+        except (PictureError, NativeError) as error:
+            self.report({"ERROR"}, told(str(error)))
+            return {"CANCELLED"}
+        except CancelledError:
+            self.report({"WARNING"}, told("Cancelled; nothing was made"))
+            return {"CANCELLED"}
+        _select(context, objects)
+        triangles = sum(len(cutout.triangles) for *_, cutout in made)
+        parts = sum(cutout.parts for *_, cutout in made)
+        self.result = (
+            f"{counted(len(made), 'picture')}: {counted(parts, 'part')}, {triangles} triangles, "
+            f"{1000 * (perf_counter() - started):.0f} ms"
+        )
+        self.report({"INFO"}, told(self.result))
+        for warning in failures + _left_out(made):
+            self.report({"WARNING"}, told(warning))
+        return {"FINISHED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw the redo panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        if self.result:
+            layout.label(text=told(self.result, "interface"))
+        self.draw_shape_options(layout)
+        layout.prop(self, "triangles")
+        column = layout.column()
+        column.prop(self, "background")
+        column.prop(self, "use_threshold")
+        if self.use_threshold:
+            column.prop(self, "threshold")
+        column.prop(self, "margin")
+        column.prop(self, "smooth")
+        column.prop(self, "min_area")
+        column.prop(self, "use_holes")
+        column = layout.column()
+        column.prop(self, "lit")
+        column.prop(self, "hide_source")
+
+    corner_angle = placing.CREASE
+    """What the profile asks for; the corners of pictures are found in them."""
+
+    def _pictures(
+        self, context: bpy.types.Context, transaction: Transaction, failures: list[str]
+    ) -> list[images.Picture]:
+        if self.filepath:
+            return [
+                images.of_file(_loaded(self.filepath, transaction), np.array(context.scene.cursor.location))
+            ]
+        found = []
+        for ob in _chosen(context):
+            try:
+                found.append(images.of_object(ob))
+            except PictureError as error:
+                failures.append(f"'{ob.name}': {error}")
+        if not found and not failures:
+            raise PictureError(
+                "no picture is selected; select an image empty or an image plane, or give a file"
+            )
+        return found
+
+    def _options(self, transparent: bool) -> Options:
+        paper = self.background == "PAPER" or (self.background == "AUTO" and not transparent)
+        given = self.threshold if self.use_threshold else None
+        return Options(
+            paper=paper,
+            threshold=given if given is not None or paper else 0.5,
+            smooth=self.smooth,
+            min_area=self.min_area,
+            margin=self.margin,
+            holes=self.use_holes,
+            triangles=self.triangles,
+            body=self.body_options(),
+        )
+
+    def _place(
+        self,
+        context: bpy.types.Context,
+        made: list[tuple[images.Picture, Options, bool, Cutout]],
+        transaction: Transaction,
+    ) -> list[bpy.types.Object]:
+        into = home(context, transaction)
+        objects = []
+        for picture, options, transparent, cutout in made:
+            material = placing.material_of(
+                picture.image,
+                lit=self.lit,
+                transparent=transparent and not options.paper and options.body is None,
+                transaction=transaction,
+            )
+            objects.append(placing.make(picture, cutout, options, material, into, transaction))
+        if self.hide_source:
+            for picture, *_ in made:
+                if picture.source is not None:
+                    picture.source.hide_set(True)
+        return objects
+
+
+class OBJECT_OT_gridmesh_update_image(bpy.types.Operator):  # noqa: N801
+    """Read the pictures of the selected sprites and bodies again, and make their meshes anew"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_update_image"
+    bl_label = "Update from Picture"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Ask for something made from a picture."""
+        if context.mode == "OBJECT" and _made(context):
+            return True
+        cls.poll_message_set(told("Select a sprite or a body made from a picture", "tooltips"))
+        return False
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Make all anew that can be, and only then change them."""
+        done: list[tuple[bpy.types.Object, Cutout, bpy.types.Image]] = []
+        failures: list[str] = []
+        try:
+            with Pointer(context) as pointer:
+                for ob in _made(context):
+                    try:
+                        done.append((ob, *_anew(ob, pointer)))
+                    except PictureError as error:
+                        failures.append(f"'{ob.name}': {error}")
+        except NativeError as error:
+            self.report({"ERROR"}, told(str(error)))
+            return {"CANCELLED"}
+        except CancelledError:
+            self.report({"WARNING"}, told("Cancelled; nothing was made"))
+            return {"CANCELLED"}
+        for ob, cutout, image in done:
+            placing.update(ob, cutout, image)
+        if not done:
+            self.report({"ERROR"}, told(listed(failures)))
+            return {"CANCELLED"}
+        self.report({"INFO"}, told(f"{counted(len(done), 'mesh')} updated"))
+        for failure in failures:
+            self.report({"WARNING"}, told(failure))
+        return {"FINISHED"}
+
+
+def _anew(ob: bpy.types.Object, pointer: Pointer) -> tuple[Cutout, bpy.types.Image]:
+    reason = obstacle_of_mesh(ob)
+    image = placing.picture_of(ob)
+    if reason:
+        raise PictureError(reason)
+    if image is None:
+        raise PictureError("its material has no picture any more; make it anew from the picture")
+    if image.source == "FILE" and not image.is_dirty and image.packed_file is None:
+        image.reload()
+    _, options = placing.recall(ob)
+    return cut_out(images.pixels(image), options, pointer), image
+
+
+def _loaded(path: str, transaction: Transaction) -> bpy.types.Image:
+    """Return the picture of a file, loaded or there already."""
+    try:
+        known = set(bpy.data.images)
+        image = bpy.data.images.load(bpy.path.abspath(path), check_existing=True)
+    except RuntimeError as error:
+        raise PictureError(f"'{Path(path).name}' cannot be read; save it as PNG, JPEG or WebP") from error
+    if image not in known:
+        transaction.remember(bpy.data.images, image)
+    return image
+
+
+def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
+    return [ob for ob in selected(context) if images.shows_picture(ob) and not placing.made_from_picture(ob)]
+
+
+def _made(context: bpy.types.Context) -> list[bpy.types.Object]:
+    return [ob for ob in selected(context) if placing.made_from_picture(ob)]
+
+
+def _select(context: bpy.types.Context, objects: list[bpy.types.Object]) -> None:
+    for ob in selected(context):
+        ob.select_set(False)
+    for ob in objects:
+        ob.select_set(True)
+    context.view_layer.objects.active = objects[0]
+
+
+def _left_out(made: list[tuple[images.Picture, Options, bool, Cutout]]) -> list[str]:
+    """Tell what of the pictures is missing."""
+    told_of = []
+    for picture, *_, cutout in made:
+        told_of += [f"{picture.label}: a part is left out: {reason}" for reason in cutout.refused[:3]]
+        if cutout.dropped:
+            told_of.append(
+                f"{picture.label}: {counted(cutout.dropped, 'island')} left out, smaller than Least Area"
+            )
+    return told_of
+
+
+classes = (OBJECT_OT_gridmesh_from_image, OBJECT_OT_gridmesh_update_image)

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How operators put numbers and lists of reasons."""
+
+from collections.abc import Iterable
+
+_NAMED = 3
+"""A message names this many things; the others are counted."""
+
+_PLURALS = {"body": "bodies", "irregular vertex": "irregular vertices", "patch": "patches", "mesh": "meshes"}
+
+
+def counted(number: int, what: str) -> str:
+    """Return the number with its noun."""
+    return f"{number} {what if number == 1 else _PLURALS.get(what, what + 's')}"
+
+
+def listed(reasons: Iterable[str]) -> str:
+    """Join reasons into a message of bounded length."""
+    reasons = list(reasons)
+    more = len(reasons) - _NAMED
+    text = "\n".join(reason[:1].upper() + reason[1:] for reason in reasons[:_NAMED])
+    return f"{text}\n... and {more} more" if more > 0 else text

@@ -1,0 +1,239 @@
+//! Improves the triangles of a front, vertex by vertex.
+
+use std::f64::consts::FRAC_PI_4;
+
+use glam::{DVec2, DVec3};
+
+use crate::body::inflate::front::{Front, Guide, project};
+use crate::error::Result;
+use crate::progress::Progress;
+
+/// Sum of the squared sides over twice the area of an equilateral triangle.
+const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
+
+/// Cotangent of the angle, 30 degrees, below which [`sharpen`] acts.
+const SHARP: f64 = 1.732_050_807_568_877_2;
+
+/// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
+const LEVEL: f64 = 0.7;
+
+/// Vertices between two questions whether to go on.
+pub(super) const ASK_EVERY: usize = 1 << 11;
+
+/// Rounds of [`sharpen`] at most.
+const ROUNDS: u32 = 32;
+
+/// Rounds that a vertex may fail in a row, see [`sharpen`].
+const PATIENCE: u8 = 6;
+
+/// One sweep over the vertices, each moved along the surface to where its triangles are best.
+///
+/// A triangle's badness is the sum of its squared sides over its area, both seen in the tangent
+/// plane of the vertex: convex in the vertex's position there. One Newton step, weighted by the
+/// badness itself so that the worst triangles count most, is taken and shortened until no triangle
+/// falls below `least_area` in projection.
+pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
+    let field = guide.field;
+    for v in front.first..front.flat.len() {
+        if v % ASK_EVERY == 0 {
+            progress.report(0.0)?;
+        }
+        let slot = v - front.first;
+        let (_, gradient) = field.at(front.flat[v], front.place[slot]);
+        let normal = surface_normal(gradient, front.height[v]);
+        let (e, f) = normal.any_orthonormal_pair();
+        let here = front.position(v);
+        let fan = guide.around.fan(v);
+        let mut slope = DVec2::ZERO;
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        let mut reach = 0.0;
+        for &[i, j] in fan {
+            let (a, b) = (front.position(i as usize) - here, front.position(j as usize) - here);
+            reach += a.length();
+            let mut sides = a.length_squared() + b.length_squared() + (b - a).length_squared();
+            let cross = a.cross(b);
+            let mut area = cross.length();
+            let mut facing = cross / area;
+            if cross.dot(normal) <= 0.0 {
+                // Folded: seen in the tangent plane, where it has to unfold.
+                facing = normal;
+                area = cross.dot(normal);
+            }
+            area = area.max(0.02 * sides);
+            let widen = (a - b).cross(facing);
+            let mut ds = -2.0 * (a + b);
+            let mut extra = DVec2::ZERO;
+            if (i as usize) < front.first && (j as usize) < front.first {
+                let flatter = 0.5 * (guide.flatness[i as usize] + guide.flatness[j as usize]);
+                let m = widen.normalize_or_zero();
+                let height = a.dot(m);
+                sides += flatter * height * height;
+                ds -= 2.0 * flatter * height * m;
+                extra = (2.0 * flatter).sqrt() * DVec2::new(m.dot(e), m.dot(f));
+            }
+            let ds = DVec2::new(ds.dot(e), ds.dot(f));
+            let da = DVec2::new(widen.dot(e), widen.dot(f));
+            let badness = sides / area / EQUILATERAL;
+            let weight = badness * badness * badness;
+            slope += weight * (ds - da * (sides / area)) / area;
+            let k = weight / area;
+            let (m, n) = (1.0 / area, 2.0 * sides / (area * area));
+            xx += k * (4.0 + extra.x * extra.x - 2.0 * m * ds.x * da.x + n * da.x * da.x);
+            yy += k * (4.0 + extra.y * extra.y - 2.0 * m * ds.y * da.y + n * da.y * da.y);
+            xy += k * (extra.x * extra.y - m * (ds.x * da.y + ds.y * da.x) + n * da.x * da.y);
+        }
+        let determinant = xx * yy - xy * xy;
+        if determinant.is_nan() || determinant <= 0.0 {
+            continue;
+        }
+        let u = -DVec2::new(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
+        let u = u.clamp_length_max(0.5 * reach / fan.len() as f64);
+        let Some((target, _)) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else {
+            continue;
+        };
+        let before = worst(front, fan, here);
+        let fidelity = facing(front, fan, here, normal).min(LEVEL);
+        let mut share = 1.0;
+        for _ in 0..4 {
+            let point = front.flat[v].lerp(target, share);
+            if front.may_move(guide, v, front.flat[v], point) {
+                let Some(place) = field.locate(point, front.place[slot].triangle) else { break };
+                let (value, gradient) = field.at(point, place);
+                let height = value.sqrt();
+                let there = point.extend(height);
+                let after = worst(front, fan, there);
+                if (after >= before || after > 0.2)
+                    && facing(front, fan, there, surface_normal(gradient, height)) >= fidelity
+                {
+                    front.flat[v] = point;
+                    front.place[slot] = place;
+                    front.height[v] = height;
+                    break;
+                }
+            } else {
+                front.shortened += 1;
+            }
+            share *= 0.5;
+        }
+    }
+    Ok(())
+}
+
+/// Moves the vertices of the sharpest triangles to where the least angle around them is largest, by
+/// trial in eight directions. A vertex is left alone once it has not moved for some rounds, nor
+/// its neighbours.
+pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
+    let first = front.first;
+    let mut patience = vec![PATIENCE; front.flat.len()];
+    let mut active: Vec<u32> = (first as u32..front.flat.len() as u32).collect();
+    for round in 0..ROUNDS {
+        let reach = [0.3, 0.12, 0.05][round as usize % 3];
+        let mut next = vec![];
+        for (k, &v) in active.iter().enumerate() {
+            if k % ASK_EVERY == 0 {
+                progress.report(0.8)?;
+            }
+            let v = v as usize;
+            let fan = guide.around.fan(v);
+            let present = sharpest(front, fan, front.position(v));
+            if present <= SHARP {
+                continue;
+            }
+            if try_around(front, guide, v, present, reach, 0.3 * f64::from(round)) {
+                patience[v] = PATIENCE;
+                for &u in fan.iter().flatten().filter(|&&u| u as usize >= first) {
+                    patience[u as usize] = PATIENCE;
+                    next.push(u);
+                }
+            } else {
+                patience[v] -= 1;
+            }
+            if patience[v] > 0 {
+                next.push(v as u32);
+            }
+        }
+        next.sort_unstable();
+        next.dedup();
+        if next.is_empty() {
+            break;
+        }
+        active = next;
+    }
+    Ok(())
+}
+
+/// Moves `v`, the largest cotangent around which is `present`, to the best of eight places around it;
+/// false if none is better.
+fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reach: f64, turn: f64) -> bool {
+    let field = guide.field;
+    let slot = v - front.first;
+    let fan = guide.around.fan(v);
+    let (here, start) = (front.position(v), front.flat[v]);
+    let (_, gradient) = field.at(start, front.place[slot]);
+    let normal = surface_normal(gradient, front.height[v]);
+    let (e, f) = normal.any_orthonormal_pair();
+    let mean =
+        fan.iter().map(|&[a, _]| here.distance(front.position(a as usize))).sum::<f64>() / fan.len() as f64;
+    let fidelity = facing(front, fan, here, normal).min(LEVEL);
+    let mut best = present;
+    let mut moved = false;
+    for k in 0..8 {
+        let (sin, cos) = (f64::from(k) * FRAC_PI_4 + turn).sin_cos();
+        let target = here + reach * mean * (cos * e + sin * f);
+        // Off the surface by a second-order term: a cheap first look.
+        if sharpest(front, fan, target) >= best {
+            continue;
+        }
+        let Some((point, place)) = project(field, target, front.place[slot].triangle) else { continue };
+        if !front.may_move(guide, v, start, point) {
+            continue;
+        }
+        let (value, gradient) = field.at(point, place);
+        let height = value.sqrt();
+        let there = point.extend(height);
+        let now = sharpest(front, fan, there);
+        if now < best && facing(front, fan, there, surface_normal(gradient, height)) >= fidelity {
+            best = now;
+            moved = true;
+            front.flat[v] = point;
+            front.place[slot] = place;
+            front.height[v] = height;
+        }
+    }
+    moved
+}
+
+/// Unit normal of the surface `z^2 = f` where it has this height, from the gradient of `f`.
+fn surface_normal(gradient: DVec2, height: f64) -> DVec3 {
+    (-gradient).extend(2.0 * height).normalize_or(DVec3::Z)
+}
+
+/// Least cosine between the surface's normal at a vertex at `point` and the triangles around it: how
+/// well they stand for the surface. A vertex that leaves a narrow ridge cuts it off.
+fn facing(front: &Front, fan: &[[u32; 2]], point: DVec3, normal: DVec3) -> f64 {
+    let cosine = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
+        a.cross(b).normalize_or_zero().dot(normal)
+    };
+    fan.iter().map(cosine).fold(f64::INFINITY, f64::min)
+}
+
+/// Largest cotangent of the triangles around a vertex at `point`.
+fn sharpest(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
+    let largest = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
+        let c = b - a;
+        a.dot(b).max(b.dot(c)).max(-a.dot(c)) / a.cross(b).length()
+    };
+    fan.iter().map(largest).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Least ratio of twice the area to the sum of the squared sides of the triangles around a vertex at
+/// `point`; 0.29 if they are equilateral.
+fn worst(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
+    let ratio = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
+        a.cross(b).length() / (a.length_squared() + b.length_squared() + (b - a).length_squared())
+    };
+    fan.iter().map(ratio).fold(f64::INFINITY, f64::min)
+}

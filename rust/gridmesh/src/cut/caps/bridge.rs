@@ -1,0 +1,309 @@
+//! Opens regions with holes: two lines of new vertices join each hole to what surrounds it, so that only simple
+//! polygons are left, which the patches of fills are for.
+
+use glam::DVec2;
+use rustc_hash::FxHashSet;
+
+use super::regions::{Region, Spot, is_within};
+use crate::geometry::segments::segments_meet;
+
+/// Vertices made on the way, numbered after all others.
+pub(in crate::cut) struct Bridges<'a> {
+    /// Edges between vertices that are there already, lower one first.
+    pub taken: &'a FxHashSet<(u32, u32)>,
+    /// Number of the first one.
+    pub first: u32,
+    /// Place and height of each.
+    pub spots: Vec<DVec2>,
+}
+
+impl Bridges<'_> {
+    /// Simple polygons, counter-clockwise, that cover a region; `None` if no way was found.
+    pub fn open(&mut self, region: Region, width: f64) -> Option<Vec<Vec<Spot>>> {
+        let mut pieces = vec![];
+        match region {
+            Region::Sheet { outline, holes } => self.open_sheet(outline, holes, &mut pieces)?,
+            Region::Tube { lower, upper, holes } => {
+                for (outline, holes) in self.open_tube(lower, upper, holes, width)? {
+                    self.open_sheet(outline, holes, &mut pieces)?;
+                }
+            }
+        }
+        Some(pieces)
+    }
+
+    fn open_sheet(
+        &mut self,
+        outline: Vec<Spot>,
+        mut holes: Vec<Vec<Spot>>,
+        pieces: &mut Vec<Vec<Spot>>,
+    ) -> Option<()> {
+        if holes.is_empty() {
+            pieces.push(outline);
+            return Some(());
+        }
+        // The hole nearest to the outline, from the vertex nearest to it.
+        let (_, k) = (0..holes.len())
+            .map(|k| {
+                let near = links(&outline, &holes[k]);
+                (near.iter().map(|l| l.0).fold(f64::INFINITY, f64::min), k)
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let hole = holes.swap_remove(k);
+        let mut walls = edges(&outline);
+        walls.extend(edges(&hole));
+        walls.extend(holes.iter().flat_map(|h| edges(h)));
+        let mut near = links(&outline, &hole);
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let first = *near.iter().find(|l| is_clear(&walls, outline[l.1].at, hole[l.2].at))?;
+        walls.push([outline[first.1].at, hole[first.2].at]);
+        let n = hole.len();
+        let apart = |l: &(f64, usize, usize)| {
+            let steps = (l.2 + n - first.2) % n;
+            steps.min(n - steps)
+        };
+        let second = [n / 3, n / 6, 1].into_iter().find_map(|least| {
+            let far = |l: &&(f64, usize, usize)| apart(l) >= least.max(1) && l.1 != first.1;
+            near.iter().filter(far).find(|l| is_clear(&walls, outline[l.1].at, hole[l.2].at)).copied()
+        });
+        // The nearest vertex of the outline may be taken or hidden: look at all of them.
+        let second = second.or_else(|| {
+            let mut all = vec![];
+            for i in (0..outline.len()).filter(|&i| i != first.1) {
+                for j in (0..n).filter(|&j| j != first.2) {
+                    all.push((outline[i].at.distance(hole[j].at), i, j));
+                }
+            }
+            all.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+            all.into_iter().take(4000).find(|l| is_clear(&walls, outline[l.1].at, hole[l.2].at))
+        })?;
+        let one = self.bridge(&outline, first.1, &hole, first.2);
+        let two = self.bridge(&outline, second.1, &hole, second.2);
+        // Along the outline to the one, over it, along the hole, back over the other.
+        let halves = [
+            walk(&outline, second.1, first.1, &one, &hole, first.2, second.2, &two),
+            walk(&outline, first.1, second.1, &two, &hole, second.2, first.2, &one),
+        ];
+        let mut shares = [vec![], vec![]];
+        for other in holes {
+            let k = usize::from(!is_within(&halves[0], other[0].at));
+            shares[k].push(other);
+        }
+        for (half, share) in halves.into_iter().zip(shares) {
+            self.open_sheet(half, share, pieces)?;
+        }
+        Some(())
+    }
+
+    /// Cuts a tube along two lines into two sheets.
+    #[expect(clippy::type_complexity, reason = "two sheets with their holes")]
+    fn open_tube(
+        &mut self,
+        lower: Vec<Spot>,
+        upper: Vec<Spot>,
+        holes: Vec<Vec<Spot>>,
+        width: f64,
+    ) -> Option<Vec<(Vec<Spot>, Vec<Vec<Spot>>)>> {
+        // Both forward, beginning at about the same place, three times around.
+        let upper = upper.into_iter().rev().collect::<Vec<_>>();
+        let begin = lower[0].at.x;
+        let thrice = |around: &[Spot]| {
+            let base = width * ((begin - around[0].at.x) / width).round();
+            let turn = |k: f64| {
+                around.iter().map(move |s| Spot { at: DVec2::new(s.at.x + (base + k * width), s.at.y), ..*s })
+            };
+            turn(-1.0).chain(turn(0.0)).chain(turn(1.0)).collect::<Vec<_>>()
+        };
+        let (low, high) = (thrice(&lower), thrice(&upper));
+        let mut walls = edges_open(&low);
+        walls.extend(edges_open(&high));
+        for h in &holes {
+            for shift in [0.0, -width, width] {
+                walls.extend(edges(h).into_iter().map(|e| e.map(|p| p + DVec2::new(shift, 0.0))));
+            }
+        }
+        let n = lower.len();
+        let off = |i: usize, j: usize| low[i].at.distance_squared(high[j].at);
+        let nearest = |i: usize| {
+            let best = (0..high.len()).min_by(|&a, &b| off(i, a).total_cmp(&off(i, b)))?;
+            is_clear(&walls, low[i].at, high[best].at).then(|| (off(i, best).sqrt(), i, best))
+        };
+        // Where the nearest vertex is behind others of its own loop, the nearest that is not.
+        let in_sight = |i: usize| {
+            let mut near = (0..high.len()).collect::<Vec<_>>();
+            near.sort_by(|&a, &b| off(i, a).total_cmp(&off(i, b)));
+            let best = near.into_iter().find(|&j| is_clear(&walls, low[i].at, high[j].at))?;
+            Some((off(i, best).sqrt(), i, best))
+        };
+        let m = upper.len();
+        let apart =
+            |l: &(f64, usize, usize), other: &(f64, usize, usize)| l.1 != other.1 && l.2 % m != other.2 % m;
+        let mut links = (n..2 * n).filter_map(nearest).collect::<Vec<_>>();
+        if !links.iter().any(|l| apart(l, &links[0])) {
+            links = (n..2 * n).filter_map(in_sight).collect();
+        }
+        let first = *links.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let middle = low[first.1].at.x + 0.5 * width;
+        // Another one about half around.
+        let rank = |l: &(f64, usize, usize)| {
+            let x = low[l.1].at.x;
+            let off = [x - middle, x + width - middle, x - width - middle];
+            off.into_iter().map(f64::abs).fold(f64::INFINITY, f64::min)
+        };
+        let crosses = |l: &(f64, usize, usize)| {
+            let own = [low[l.1].at, high[l.2].at];
+            [0.0, -width, width].into_iter().any(|shift| {
+                segments_meet(own, [low[first.1].at, high[first.2].at].map(|p| p + DVec2::new(shift, 0.0)))
+            })
+        };
+        let second = *links
+            .iter()
+            .filter(|l| apart(l, &first) && !crosses(l))
+            .min_by(|a, b| rank(a).total_cmp(&rank(b)))?;
+        let one = self.bridge(&low, first.1, &high, first.2);
+        let two = self.bridge(&low, second.1, &high, second.2);
+        let mut sheets = vec![];
+        for ((from, up), (to, down)) in [((first, &one), (second, &two)), ((second, &two), (first, &one))] {
+            // Forward on the lower loop, over a bridge, back on the upper loop, over the other bridge.
+            let mut outline = vec![];
+            let mut spots = (0..=n).map(|k| low[(from.1 + k) % n]);
+            let mut x = low[from.1].at.x;
+            for spot in spots.by_ref() {
+                let at = DVec2::new(spot.at.x + width * ((x - spot.at.x) / width).round(), spot.at.y);
+                x = at.x;
+                outline.push(Spot { at, ..spot });
+                if outline.len() > 1 && spot.node == low[to.1].node {
+                    break;
+                }
+            }
+            let shift = |spot: Spot, x: f64| Spot {
+                at: DVec2::new(spot.at.x + width * ((x - spot.at.x) / width).round(), spot.at.y),
+                ..spot
+            };
+            for &spot in down {
+                let spot = shift(spot, x);
+                x = spot.at.x;
+                outline.push(spot);
+            }
+            // The upper loop backward.
+            for k in 0..=m {
+                let spot = shift(high[(to.2 + 3 * m - k) % m], x);
+                x = spot.at.x;
+                outline.push(spot);
+                if k > 0 && spot.node == high[from.2].node {
+                    break;
+                }
+            }
+            for &spot in up.iter().rev() {
+                let spot = shift(spot, x);
+                x = spot.at.x;
+                outline.push(spot);
+            }
+            sheets.push((outline, vec![]));
+        }
+        for hole in holes {
+            let at = |shift: f64| hole[0].at + DVec2::new(shift, 0.0);
+            let place = [0.0, -width, width].into_iter().find_map(|shift| {
+                let k =
+                    sheets.iter().position(|s: &(Vec<Spot>, Vec<Vec<Spot>>)| is_within(&s.0, at(shift)))?;
+                Some((k, shift))
+            });
+            let (k, shift) = place?;
+            let moved = hole.iter().map(|s| Spot { at: s.at + DVec2::new(shift, 0.0), ..*s }).collect();
+            sheets[k].1.push(moved);
+        }
+        Some(sheets)
+    }
+
+    /// New vertices from one spot to another, about as far apart as the vertices at its ends.
+    fn bridge(&mut self, from: &[Spot], i: usize, to: &[Spot], j: usize) -> Vec<Spot> {
+        let beside = |around: &[Spot], k: usize| {
+            let n = around.len();
+            let p = around[k].at;
+            let near = [around[(k + 1) % n].at, around[(k + n - 1) % n].at].map(|q| p.distance(q));
+            near[0].min(near[1])
+        };
+        let (p, q) = (from[i].at, to[j].at);
+        let step = 0.5 * (beside(from, i) + beside(to, j));
+        let steps = (p.distance(q) / step.max(f64::MIN_POSITIVE)).round().clamp(1.0, 1000.0) as usize;
+        let (a, b) = (from[i].node, to[j].node);
+        let steps = if self.taken.contains(&(a.min(b), a.max(b))) { steps.max(2) } else { steps };
+        (1..steps)
+            .map(|k| {
+                let at = p.lerp(q, k as f64 / steps as f64);
+                self.spots.push(at);
+                Spot { node: self.first + self.spots.len() as u32 - 1, at }
+            })
+            .collect()
+    }
+}
+
+/// Outline from `from` to `to`, the bridge, the hole from `enter` to `leave`, and the other bridge back.
+#[expect(clippy::too_many_arguments, reason = "two loops and two bridges")]
+fn walk(
+    outline: &[Spot],
+    from: usize,
+    to: usize,
+    over: &[Spot],
+    hole: &[Spot],
+    enter: usize,
+    leave: usize,
+    back: &[Spot],
+) -> Vec<Spot> {
+    let (n, m) = (outline.len(), hole.len());
+    let mut all = vec![];
+    let mut k = from;
+    loop {
+        all.push(outline[k]);
+        if k == to {
+            break;
+        }
+        k = (k + 1) % n;
+    }
+    all.extend(over);
+    let mut k = enter;
+    loop {
+        all.push(hole[k]);
+        if k == leave {
+            break;
+        }
+        k = (k + 1) % m;
+    }
+    all.extend(back.iter().rev());
+    all
+}
+
+/// For each vertex of the hole the nearest one of the outline: distance, there, here.
+fn links(outline: &[Spot], hole: &[Spot]) -> Vec<(f64, usize, usize)> {
+    let nearest = |(j, h): (usize, &Spot)| {
+        let best = (0..outline.len()).min_by(|&a, &b| {
+            outline[a].at.distance_squared(h.at).total_cmp(&outline[b].at.distance_squared(h.at))
+        });
+        best.map(|i| (outline[i].at.distance(h.at), i, j))
+    };
+    hole.iter().enumerate().filter_map(nearest).collect()
+}
+
+fn edges(around: &[Spot]) -> Vec<[DVec2; 2]> {
+    (0..around.len()).map(|k| [around[k].at, around[(k + 1) % around.len()].at]).collect()
+}
+
+fn edges_open(line: &[Spot]) -> Vec<[DVec2; 2]> {
+    line.windows(2).map(|w| [w[0].at, w[1].at]).collect()
+}
+
+/// True if the segment meets none of the walls but those that end where it ends.
+fn is_clear(walls: &[[DVec2; 2]], p: DVec2, q: DVec2) -> bool {
+    let joins = |w: &[DVec2; 2]| w.iter().any(|&x| x == p || x == q);
+    walls.iter().all(|w| {
+        if joins(w) {
+            // Not along it.
+            let other = if w[0] == p || w[0] == q { w[1] } else { w[0] };
+            let at = if w[0] == p || w[1] == p { p } else { q };
+            let far = if at == p { q } else { p };
+            other == far || (other - at).perp_dot(far - at) != 0.0 || (other - at).dot(far - at) < 0.0
+        } else {
+            !segments_meet(*w, [p, q])
+        }
+    })
+}

@@ -1,0 +1,148 @@
+//! Caps: regions of the swept surface, unrolled, filled vertex for vertex, and rolled up again.
+
+use glam::{DVec2, DVec3};
+use rustc_hash::FxHashSet;
+
+use super::bridge::Bridges;
+use super::bulge::Bulged;
+use super::loops::Loops;
+use super::mirrored;
+use super::regions::{self, Region, Spot};
+use crate::cut::caps::capper::{Capper, Caps, LARGE};
+use crate::cut::divide::parted::Parted;
+use crate::cut::input::Polygons;
+use crate::cut::options::CutOptions;
+use crate::cut::report::Tally;
+use crate::cut::sheet::Sheet;
+use crate::error::{Error, Result};
+use crate::fill::options::Smooth;
+use crate::fill::parallel::in_parallel;
+use crate::progress::Progress;
+
+/// Polygons filled between two reports of progress.
+const BATCH: usize = 16;
+
+#[expect(clippy::too_many_arguments, reason = "a stage of the whole")]
+pub(in crate::cut) fn close(
+    vertices: &[DVec3],
+    faces: Polygons<'_>,
+    parted: &Parted,
+    sheet: &Sheet,
+    loops: &Loops,
+    options: &CutOptions,
+    tally: &mut Tally,
+    progress: Progress<'_>,
+) -> Result<Caps> {
+    let first = (parted.n_old + parted.nodes.len()) as u32;
+    let seams = mirrored::close(vertices, parted, sheet, loops, &options.mirrors, first);
+    tally.report.open_lines -= seams.outlines.len();
+    let found = regions::find(vertices, parted, sheet, loops, seams.outlines);
+    let mut capper = Capper {
+        vertices,
+        faces,
+        parted,
+        sheet,
+        options,
+        edges: FxHashSet::default(),
+        facets: FxHashSet::default(),
+        first,
+        caps: Caps { vertices: seams.vertices, triangles: vec![] },
+        seams: seams.edges,
+    };
+    capper.reserve();
+    let report = &mut tally.report;
+    report.uncapped = found.uncapped;
+    report.caps = found.regions.len();
+    let (mut polygons, mut bulging) = (vec![], vec![]);
+    for region in found.regions {
+        if let Region::Sheet { outline, holes } = &region
+            && holes.is_empty()
+        {
+            let is_seamed = outline.iter().any(|s| s.node >= first);
+            if options.smooth == Smooth::Flat || is_seamed {
+                polygons.push(outline.clone());
+            } else {
+                bulging.push(outline.clone());
+            }
+            continue;
+        }
+        report.rings += 1;
+        let alone: Vec<Vec<Spot>> = match &region {
+            Region::Sheet { outline, holes } => std::iter::once(outline).chain(holes).cloned().collect(),
+            Region::Tube { .. } => vec![],
+        };
+        let mut bridges = Bridges {
+            taken: &capper.edges,
+            first: capper.first + capper.caps.vertices.len() as u32,
+            spots: vec![],
+        };
+        // An angle between rays of the eye as the length that it spans.
+        let unit = if sheet.view.central { region.height() } else { 1.0 };
+        let opened = bridges.open(region.stretched(unit), unit * sheet.width());
+        let spots = bridges.spots;
+        match opened {
+            Some(mut opened) => {
+                let new =
+                    spots.iter().map(|&at| capper.node(DVec2::new(at.x / unit, at.y))).collect::<Vec<_>>();
+                capper.caps.vertices.extend(new);
+                opened.iter_mut().flatten().for_each(|s| s.at.x /= unit);
+                polygons.extend(opened);
+            }
+            None if alone.is_empty() => {
+                return Err(Error::CutFailed {
+                    reason: "the rim of a tunnel is too rough to be capped",
+                    at: sheet.lift(0.0, 0.0).into(),
+                });
+            }
+            None => {
+                // Loops that are not apart: each is closed by itself.
+                report.repeated += 1;
+                polygons.extend(alone);
+            }
+        }
+    }
+    let is_small = |a: &Vec<Spot>, b: &Vec<Spot>| a.len().max(b.len()) < LARGE;
+    let batches = polygons.chunk_by(is_small).flat_map(|same| same.chunks(BATCH));
+    let mut done = 0;
+    for batch in batches {
+        let part = |done: usize| 0.5 * done as f64 / polygons.len() as f64;
+        let here = progress.part(part(done), part(done + batch.len()));
+        here.report(0.0)?;
+        done += batch.len();
+        // Of several errors the first one counts, but for the wish to stop.
+        let plan = |polygon: &Vec<Spot>, progress: Progress<'_>| match capper.plan(polygon, progress) {
+            Err(Error::Cancelled) => Err(Error::Cancelled),
+            plan => Ok(plan),
+        };
+        let plans: Vec<_> = match batch {
+            [polygon] => vec![plan(polygon, progress.part(part(done), part(done)))?],
+            _ => in_parallel(batch, Vec::len, here, plan)?,
+        };
+        for (polygon, plan) in batch.iter().zip(plans) {
+            let mut plan = plan?;
+            if capper.repeats(polygon, &plan) {
+                plan = capper.plan(polygon, progress.part(0.0, 0.0))?;
+            }
+            report.folded += usize::from(plan.folded);
+            capper.roll_up(polygon, &plan, found.inverted);
+        }
+    }
+    for (k, outline) in bulging.iter().enumerate() {
+        let here = k as f64 / bulging.len() as f64;
+        match capper.bulge(outline, found.inverted, progress.part(0.5 + 0.5 * here, 0.5 + 0.5 * here))? {
+            Bulged::Whole => continue,
+            Bulged::Reduced => {
+                report.reduced_caps += 1;
+                continue;
+            }
+            Bulged::Flat => report.reduced_caps += 1,
+        }
+        let plan = capper.plan(outline, progress.part(1.0, 1.0))?;
+        report.folded += usize::from(plan.folded);
+        capper.roll_up(outline, &plan, found.inverted);
+    }
+    capper.name_sources(&polygons);
+    capper.prove()?;
+    capper.measure(tally);
+    Ok(capper.caps)
+}

@@ -1,0 +1,8 @@
+//! What was drawn: closed curves cleaned, sorted into outlines and holes, joined, measured.
+
+pub mod combine;
+pub mod contours;
+pub mod curve;
+pub(crate) mod symmetry;
+pub mod thickness;
+pub(crate) mod union;

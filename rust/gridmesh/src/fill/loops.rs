@@ -1,0 +1,6 @@
+//! The loops to be filled and the mesh around them.
+
+pub(crate) mod check;
+pub mod holes;
+pub(crate) mod mesh;
+pub(crate) mod reserve;

@@ -1,0 +1,13 @@
+//! A patch in the plane for a closed polygon, vertex for vertex.
+
+pub(crate) mod exact;
+pub(crate) mod flat;
+pub(crate) mod flips;
+pub(crate) mod graded;
+pub(crate) mod grown;
+pub(crate) mod mean_value;
+pub(crate) mod place;
+pub(crate) mod quality;
+pub(crate) mod settle;
+pub(crate) mod small;
+pub(crate) mod walls;

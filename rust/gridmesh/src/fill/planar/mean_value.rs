@@ -1,0 +1,130 @@
+//! A first guess of the harmonic extension into a lattice polygon, from its loop to all inside at once.
+//!
+//! Sweeps over the vertices carry a value by one edge each; from a loop of a thousand edges they would need
+//! hundreds to meet in the middle. Mean value coordinates (Floater, Mean value coordinates, 2003; for any polygon
+//! Hormann and Floater, 2006) are smooth and near enough to it, and so are computed at the points of a lattice many
+//! times coarser only; what is left are waves shorter than that, which few sweeps smooth out.
+
+use glam::DVec2;
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::lattice::axial::Axial;
+use crate::path::placement::Lattice;
+
+/// Steps of the loop to one step of the coarse lattice.
+const COARSER: usize = 96;
+
+/// Steps between coarse points for a loop of `n`.
+pub(in crate::fill) fn step(n: usize) -> i32 {
+    (n / COARSER).max(2) as i32
+}
+
+/// Values at `inner` points from those at the vertices of the polygon `outline`.
+pub(in crate::fill) fn spread(outline: &[Axial], values: &[DVec2], inner: &[Axial]) -> Vec<DVec2> {
+    let step = step(outline.len());
+    let cell = |p: Axial| {
+        (Axial::new(p.q.div_euclid(step), p.r.div_euclid(step)), p.q.rem_euclid(step), p.r.rem_euclid(step))
+    };
+    let mut cells: Vec<Axial> = inner.iter().map(|&p| cell(p).0).collect();
+    cells.sort_unstable();
+    cells.dedup();
+    let around = [Axial::new(0, 0), Axial::new(1, 0), Axial::new(0, 1), Axial::new(1, 1)];
+    let mut coarse: Vec<Axial> = cells.iter().flat_map(|&c| around.map(|d| c + d)).collect();
+    coarse.sort_unstable();
+    coarse.dedup();
+    let polygon: Vec<DVec2> = outline.iter().map(|&p| Lattice::units(p)).collect();
+    let at =
+        |c: &Axial| (*c, mean_value(&polygon, values, Lattice::units(Axial::new(c.q * step, c.r * step))));
+    let known: FxHashMap<Axial, DVec2> = coarse.into_par_iter().map(|c| at(&c)).collect();
+    let corners: FxHashMap<Axial, [DVec2; 4]> =
+        cells.into_iter().map(|c| (c, around.map(|d| known[&(c + d)]))).collect();
+    let value = |&p: &Axial| {
+        let (c, q, r) = cell(p);
+        let [a, b, c, d] = corners[&c];
+        let (u, v) = (f64::from(q) / f64::from(step), f64::from(r) / f64::from(step));
+        if u + v <= 1.0 {
+            a + (b - a) * u + (c - a) * v
+        } else {
+            d + (c - d) * (1.0 - u) + (b - d) * (1.0 - v)
+        }
+    };
+    inner.iter().map(value).collect()
+}
+
+fn mean_value(polygon: &[DVec2], values: &[DVec2], x: DVec2) -> DVec2 {
+    let n = polygon.len();
+    let (mut sum, mut whole) = (DVec2::ZERO, 0.0);
+    let mut a = polygon[n - 1] - x;
+    let mut length = a.length();
+    let mut last = n - 1;
+    for k in 0..n {
+        let b = polygon[k] - x;
+        let far = b.length();
+        if far < 1e-9 {
+            return values[k];
+        }
+        let half = a.perp_dot(b) / (length * far + a.dot(b));
+        if half.is_finite() {
+            let (before, after) = (half / length, half / far);
+            sum += values[last] * before + values[k] * after;
+            whole += before + after;
+        }
+        (a, length, last) = (b, far, k);
+    }
+    sum / whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::assemble::assemble;
+    use crate::lattice::dir::Dir;
+
+    /// An L of this size; its coarse points lie inside and outside.
+    fn bent(size: usize) -> Vec<Axial> {
+        let mut at = Axial::default();
+        let mut path = vec![];
+        for (dir, steps) in [(0, 3), (2, 1), (3, 2), (2, 2), (3, 1), (5, 3)] {
+            for _ in 0..steps * size {
+                path.push(at);
+                at = at + Dir::ALL[dir];
+            }
+        }
+        assert_eq!(at, Axial::default());
+        path
+    }
+
+    #[test]
+    fn linear_functions_are_kept() {
+        let path = bent(40);
+        let patch = assemble(std::slice::from_ref(&path));
+        let (outline, inner) = patch.points.split_at(path.len());
+        let linear = |p: Axial| {
+            let x = Lattice::units(p);
+            DVec2::new(2.0 * x.x - x.y + 3.0, 0.5 * x.y)
+        };
+        let values: Vec<DVec2> = outline.iter().map(|&p| linear(p)).collect();
+        for (&p, value) in inner.iter().zip(spread(outline, &values, inner)) {
+            assert!(value.distance(linear(p)) < 1e-7, "{p:?}: {value} is not {}", linear(p));
+        }
+    }
+
+    #[test]
+    fn what_has_no_short_waves_is_nearly_harmonic() {
+        let path = bent(40);
+        let patch = assemble(std::slice::from_ref(&path));
+        let (outline, inner) = patch.points.split_at(path.len());
+        // The real part of the square of a complex number.
+        let harmonic = |p: Axial| {
+            let x = Lattice::units(p) / 40.0;
+            DVec2::new(x.x * x.x - x.y * x.y, 0.0)
+        };
+        let values: Vec<DVec2> = outline.iter().map(|&p| harmonic(p)).collect();
+        let (low, high) =
+            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v.x), b.max(v.x)));
+        for (&p, value) in inner.iter().zip(spread(outline, &values, inner)) {
+            assert!((value.x - harmonic(p).x).abs() < 0.1 * (high - low), "{p:?}: {value}");
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! A patch brought to space: smooth to its surroundings, free of intersections.
+
+pub(crate) mod fair;
+pub(crate) mod fit;
+pub(crate) mod meet;
+pub(crate) mod patchwork;
+pub(crate) mod sharp;
+pub(crate) mod solver;
+pub(crate) mod sweep;

@@ -1,0 +1,10 @@
+//! Plain geometry that knows nothing of lattices: segments, intersections, measures of meshes.
+
+pub(crate) mod cholesky;
+pub(crate) mod disjoint;
+pub mod embed;
+pub mod harmonic;
+pub(crate) mod laplace;
+pub mod metrics;
+pub(crate) mod segments;
+pub(crate) mod topology;

@@ -1,0 +1,399 @@
+//! From a lattice outline to a patch: vertices on the drawn curve, the interior relaxed, checked.
+
+use glam::DVec2;
+
+use crate::drawing::curve::ClosedCurve;
+use crate::error::Result;
+use crate::lattice::assemble::assemble;
+use crate::lattice::axial::Axial;
+use crate::lattice::squares::assemble_squares;
+use crate::options::{CellShape, SketchOptions};
+use crate::patch::deviation::{Stray, beside, crossings, deviation};
+use crate::patch::expel::expel;
+use crate::patch::pockets::{Fans, pockets};
+use crate::patch::{Loop, Patch};
+use crate::path::mapping::{Corner, corners, snap};
+use crate::path::outline::{Obstacle, Outline};
+use crate::path::placement::Lattice;
+use crate::progress::Progress;
+use crate::relax::{Band, Contour, RelaxOptions, Relaxation, Rim, Stars, first_inverted, settle_corners};
+
+/// Half the length over which a corner's turning angle is measured, in edges.
+pub(crate) const CORNER_WINDOW: f64 = 0.5;
+
+/// A boundary vertex moves this far along the drawing to sit on a corner, in edges.
+const REACH: f64 = 1.5;
+
+/// The drawing may lie this far outside the mesh, in edges.
+pub(crate) const STRAY: f64 = 2.0;
+
+/// Where it lies this far outside, a boundary vertex is held there, if the triangles allow.
+const CLOSE: f64 = 0.7;
+
+/// Triangles may be bent down to this angle for the drawing's sake.
+const LEAST_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
+
+/// A vertex may lie this far outside the drawing, in an inlet that the boundary bridges.
+pub(crate) const INLET: f64 = 0.05;
+
+/// Rings of quads behind the rim that may move: their path strays farther from the drawing than that of triangles.
+const QUAD_RINGS: usize = 6;
+
+/// Rounds of relaxing, each holding vertices where the drawing strayed in the one before.
+const ROUNDS: usize = 4;
+
+/// A patch and what placing it cost.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    pub(crate) patch: Patch,
+    /// For each loop the arc length of each vertex on its contour, from the contour's own first point:
+    /// unlike that from the first input point it does not depend on where the drawing starts.
+    pub(crate) arcs: Vec<Vec<f64>>,
+    pub(crate) corners: usize,
+    pub(crate) released_corners: usize,
+    /// Greatest distance of the drawing from the boundary, in edges.
+    pub(crate) max_deviation: f64,
+    /// Boundary edges that bridge an inlet with a mesh vertex in it.
+    pub(crate) bridged_inlets: usize,
+    /// Boundary edges that cross others.
+    pub(crate) crossings: usize,
+}
+
+impl Placed {
+    /// In how many places a part of the drawing is lost in the mesh.
+    pub(crate) fn lost(&self) -> usize {
+        self.bridged_inlets + self.crossings
+    }
+
+    /// Why the patch is not to be had, if it is not; without relaxation bridges and crossings are no fault.
+    pub(crate) fn fault(&self, options: &SketchOptions) -> Option<&'static str> {
+        match self {
+            _ if !options.relax => None,
+            Placed { crossings: 1.., .. } => Some("two walls of the drawing are too near to each other"),
+            Placed { bridged_inlets: 1.., .. } => Some("an inlet is narrower than the grid"),
+            _ => None,
+        }
+    }
+}
+
+/// Puts the boundary on the contours, snaps corners, relaxes the interior and proves that no
+/// triangle is inverted and no quad concave, also after rounding to `f32` at the lattice origin, and that the drawing
+/// lies within two edges of the boundary.
+///
+/// `laid` gives the positions of lattice points in units of `lattice`, from which they are moved.
+/// Where the drawing does not, as at a tip that the lattice path cuts off, a boundary vertex is held at the
+/// farthest point and the patch relaxed again.
+pub(crate) fn place(
+    contours: &[ClosedCurve],
+    lattice: &Lattice,
+    laid: impl Fn(&[Axial]) -> Vec<DVec2>,
+    outline: &Outline,
+    options: &SketchOptions,
+    progress: Progress<'_>,
+) -> Result<Result<Placed, Obstacle>> {
+    match options.cells {
+        CellShape::Triangle => {
+            let region = assemble(&outline.paths);
+            let positions = laid(&region.points);
+            let faces = |triangles: &[[u32; 3]]| (triangles.to_vec(), Vec::new());
+            let sheet = Sheet { cells: &region.triangles, positions, faces };
+            sheet.place(contours, lattice, outline, options, progress)
+        }
+        CellShape::Quad => {
+            let region = assemble_squares(&outline.paths);
+            // The rim itself is put on the drawing before anything else moves.
+            let mut positions = Vec::with_capacity(region.n_rim + region.points.len());
+            for (contour, arcs) in contours.iter().zip(&outline.arcs) {
+                let at = |s: &f64| lattice.to_units(contour.point_at(s * lattice.edge_length));
+                positions.extend(arcs.iter().map(at));
+            }
+            positions.extend(laid(&region.points));
+            let faces = |quads: &[[u32; 4]]| (Vec::new(), quads.to_vec());
+            let sheet = Sheet { cells: &region.quads, positions, faces };
+            sheet.place(contours, lattice, outline, options, progress)
+        }
+    }
+}
+
+/// Cells of a lattice, to be placed.
+struct Sheet<'a, const N: usize, F> {
+    cells: &'a [[u32; N]],
+    /// In units of the lattice.
+    positions: Vec<DVec2>,
+    /// The cells as triangles and quads.
+    faces: F,
+}
+
+impl<const N: usize, F: Fn(&[[u32; N]]) -> (Vec<[u32; 3]>, Vec<[u32; 4]>)> Sheet<'_, N, F>
+where
+    Band<N>: Stars,
+{
+    /// See [`place`].
+    fn place(
+        &self,
+        contours: &[ClosedCurve],
+        lattice: &Lattice,
+        outline: &Outline,
+        options: &SketchOptions,
+        progress: Progress<'_>,
+    ) -> Result<Result<Placed, Obstacle>> {
+        let corners = Band::<N>::corners(self.cells);
+        let lattice_positions = &self.positions;
+        let h = lattice.edge_length;
+        let drawn: Vec<(Vec<DVec2>, Vec<f64>)> = contours
+            .iter()
+            .map(|contour| {
+                let points = contour.points().iter().map(|&p| lattice.to_units(p)).collect();
+                (points, contour.arc().iter().map(|&s| s / h).collect())
+            })
+            .collect();
+        let lines: Vec<Contour<'_>> = drawn.iter().map(|(points, arc)| Contour { points, arc }).collect();
+        let found: Vec<Vec<Corner>> =
+            contours.iter().map(|contour| corners_of(contour, options.corner_angle, h)).collect();
+        let (mut rims, mut angles) = rims(contours, outline, &found, h);
+        if options.relax && N == 3 {
+            settle_corners(&corners, &lines, &mut rims, &mut angles);
+        }
+        let lengths: Vec<f64> = contours.iter().map(|contour| contour.length() / h).collect();
+        let rings = if N == 4 { QUAD_RINGS } else { RelaxOptions::default().rings };
+        let relaxed = RelaxOptions { rings, ..RelaxOptions::default() };
+        let mut relaxation = Relaxation::<N>::new(self.cells, lattice_positions, &lines, &rims, &relaxed)?;
+        // A valid patch that bridges an inlet serves if following the inlet leads to none.
+        let mut valid: Option<Placed> = None;
+        let mut obstacle = Obstacle::new("a part of the drawing is lost", contours[0].points()[0]);
+        let mut held: Vec<(usize, f64)> = Vec::new();
+        let mut fans = Fans::new(lattice_positions.len(), &corners);
+        for round in 0..ROUNDS {
+            let progress = progress.part(round as f64 / ROUNDS as f64, (round + 1) as f64 / ROUNDS as f64);
+            if options.relax {
+                if round == 0 {
+                    relaxation.run(progress)?;
+                } else {
+                    relaxation.hold(&held, progress)?;
+                }
+                relaxation.store(&mut rims);
+            }
+            let mut vertices: Vec<DVec2> =
+                relaxation.positions.iter().map(|&p| lattice.from_units(p)).collect();
+            let (loops, arcs, own) = loops(contours, &rims, &found, h, &mut vertices);
+            if let Some(triangle) = first_inverted(&vertices, &corners, lattice.origin) {
+                let at = vertices[corners[triangle][0] as usize];
+                obstacle = Obstacle {
+                    is_inverted: !options.relax,
+                    ..Obstacle::new("a triangle stays inverted", at)
+                };
+                break;
+            }
+            let beside = beside(contours, &vertices, &arcs);
+            let (farthest, mut strays) = deviation(&beside, &vertices, &arcs, CLOSE * h, STRAY * h);
+            if farthest > STRAY * h {
+                strays.retain(|stray| stray.distance > STRAY * h);
+                obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
+                held = to_hold(&strays, &rims, &lengths, h);
+                if held.is_empty() || !options.relax {
+                    break;
+                }
+                continue;
+            }
+            let mut pockets_now = pockets(&beside, &vertices, &mut fans, &arcs, INLET * h);
+            let occupied = std::mem::take(&mut pockets_now.occupied);
+            let mut bridged_inlets = occupied.len();
+            if !occupied.is_empty() && options.relax {
+                let mut expelled = vertices.clone();
+                if expel(&pockets_now, &mut expelled, &fans, INLET * h, h, progress)?
+                    && first_inverted(&expelled, &corners, lattice.origin).is_none()
+                {
+                    let left = pockets(&beside, &expelled, &mut fans, &arcs, INLET * h);
+                    if left.occupied.len() < bridged_inlets {
+                        bridged_inlets = left.occupied.len();
+                        vertices = expelled;
+                    }
+                }
+            }
+            let crossing = if options.relax { crossings(&beside, &vertices, &arcs) } else { Vec::new() };
+            let n_corners = found.iter().map(Vec::len).sum();
+            let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
+            let (triangles, quads) = (self.faces)(self.cells);
+            let placed = Placed {
+                patch: Patch {
+                    vertices,
+                    triangles,
+                    quads,
+                    loops,
+                    inlets: pockets_now.inlets,
+                    lattice: *lattice,
+                },
+                arcs: own,
+                corners: n_corners,
+                released_corners: n_corners - kept,
+                max_deviation: farthest / h,
+                bridged_inlets,
+                crossings: crossing.len(),
+            };
+            let first = valid.is_none();
+            if valid.as_ref().is_none_or(|best| better(&placed, best)) {
+                valid = Some(placed);
+            }
+            // Following the drawing more closely is worth one more round.
+            if !options.relax || !first && valid.as_ref().is_some_and(|best| best.lost() == 0) {
+                break;
+            }
+            strays.extend(occupied);
+            strays.extend(crossing);
+            strays.sort_by_key(|stray| (stray.contour, stray.edge));
+            strays.dedup_by_key(|stray| (stray.contour, stray.edge));
+            held = to_hold(&strays, &rims, &lengths, h);
+            if held.is_empty() {
+                break;
+            }
+        }
+        Ok(valid.ok_or(obstacle))
+    }
+}
+
+/// Whether a patch that follows the drawing more closely is worth the triangles that this bends.
+fn better(placed: &Placed, best: &Placed) -> bool {
+    let (least, before) = (min_angle(&placed.patch), min_angle(&best.patch));
+    placed.lost() < best.lost()
+        || (placed.lost() == best.lost()
+            && placed.max_deviation < best.max_deviation
+            && least >= before.min(LEAST_ANGLE))
+}
+
+/// Boundary vertices with their arc lengths in edges, some of them pinned to corners; the angle of
+/// the corner at each.
+fn rims(
+    contours: &[ClosedCurve],
+    outline: &Outline,
+    corners: &[Vec<Corner>],
+    h: f64,
+) -> (Vec<Rim>, Vec<Vec<f64>>) {
+    let (mut rims, mut angles, mut start) = (Vec::new(), Vec::new(), 0);
+    for ((contour, arcs), corners) in contours.iter().zip(&outline.arcs).zip(corners) {
+        let mut s = arcs.clone();
+        let angle = snap(&mut s, corners, contour.length() / h, REACH);
+        let n = s.len();
+        rims.push(Rim { start, s, pinned: angle.iter().map(|&a| a != 0.0).collect(), held: vec![false; n] });
+        angles.push(angle);
+        start += n;
+    }
+    (rims, angles)
+}
+
+/// Puts the boundary vertices exactly on their contours; the patch's loops, and the arc lengths in
+/// the units of the drawing, unwrapped, and as they are placed.
+fn loops(
+    contours: &[ClosedCurve],
+    rims: &[Rim],
+    corners: &[Vec<Corner>],
+    h: f64,
+    vertices: &mut [DVec2],
+) -> (Vec<Loop>, Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    let mut loops = Vec::new();
+    let mut arcs = Vec::new();
+    let mut own = Vec::new();
+    for ((contour, rim), corners) in contours.iter().zip(rims).zip(corners) {
+        let mut placed = Loop { start: rim.start as u32, length: contour.length(), ..Loop::default() };
+        let mut at = Vec::with_capacity(rim.s.len());
+        for (i, &s) in rim.s.iter().enumerate() {
+            let s = if rim.pinned[i] { nearest_drawn(contour, s * h) } else { contour.wrap(s * h) };
+            at.push(contour.wrap(s));
+            vertices[rim.start + i] = contour.point_at(s);
+            placed.arc.push(contour.input_arc(s));
+            placed.source.push(contour.source(s));
+            placed.corner.push(if rim.pinned[i] { turning_at(contour, corners, s, h) } else { 0.0 });
+        }
+        loops.push(placed);
+        arcs.push(rim.s.iter().map(|s| s * h).collect());
+        own.push(at);
+    }
+    (loops, arcs, own)
+}
+
+/// The angle of the corner at arc length `s`, however its vertex came there; zero if there is none.
+fn turning_at(contour: &ClosedCurve, corners: &[Corner], s: f64, h: f64) -> f64 {
+    const SAME: f64 = 1e-6;
+    let gap = |corner: &Corner| {
+        let turns = (corner.arc * h - s) / contour.length();
+        (turns - turns.round()).abs() * contour.length()
+    };
+    corners.iter().find(|corner| gap(corner) <= SAME * h).map_or(0.0, |corner| corner.angle)
+}
+
+/// The nearer end of each strayed edge and the arc position of the farthest point, in edges, where it
+/// is to be held; ends that hold a corner of the drawing only if no other is free.
+fn to_hold(strays: &[Stray], rims: &[Rim], lengths: &[f64], h: f64) -> Vec<(usize, f64)> {
+    let mut chosen: Vec<(usize, f64)> = Vec::new();
+    for stray in strays {
+        let rim = &rims[stray.contour];
+        let n = rim.s.len();
+        let to = stray.arc / h;
+        let after = (stray.edge + 1) % n;
+        // The last edge ends at the first vertex, a lap on.
+        let lap = if after == 0 { lengths[stray.contour] } else { 0.0 };
+        let mut ends = [(stray.edge, 0.0), (after, lap)];
+        ends.sort_by(|a, b| {
+            let key = |&(i, lap): &(usize, f64)| (rim.pinned[i], (rim.s[i] + lap - to).abs());
+            let (a, b) = (key(a), key(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+        let is_free = |end: usize| !rim.held[end] && chosen.iter().all(|&(v, _)| v != rim.start + end);
+        let Some(&(end, lap)) = ends.iter().find(|(end, _)| is_free(*end)) else { continue };
+        chosen.push((rim.start + end, to - lap));
+    }
+    chosen
+}
+
+/// The corners of a contour, with arc lengths in edges.
+fn corners_of(contour: &ClosedCurve, angle: f64, h: f64) -> Vec<Corner> {
+    let arcs: Vec<f64> = contour.arc().iter().map(|&s| s / h).collect();
+    let turning = contour.turning(CORNER_WINDOW * h);
+    corners(&arcs[..turning.len()], &turning, contour.length() / h, angle, 1.0)
+}
+
+/// Arc length of the drawn point nearest to arc length `s`, along the curve.
+pub(crate) fn nearest_drawn(contour: &ClosedCurve, s: f64) -> f64 {
+    let (segment, t) = contour.locate(s);
+    contour.arc()[if t < 0.5 { segment } else { segment + 1 }]
+}
+
+/// Smallest angle of any triangle, in radians; of quads the smallest corner, or what the largest one is short of
+/// pi, if that is less.
+pub(crate) fn min_angle(patch: &Patch) -> f64 {
+    sharpest(patch, |_| true)
+}
+
+/// Smallest angle of the triangles that have no vertex on a corner of the drawing, in radians: what
+/// the placement answers for.
+pub(crate) fn min_angle_off_corners(patch: &Patch) -> f64 {
+    let mut on_corner = vec![false; patch.vertices.len()];
+    for l in &patch.loops {
+        for (flag, &turning) in on_corner[l.start as usize..].iter_mut().zip(&l.corner) {
+            *flag = turning != 0.0;
+        }
+    }
+    sharpest(patch, |t| t.iter().all(|&v| !on_corner[v as usize]))
+}
+
+fn sharpest(patch: &Patch, counts: impl Fn(&[u32; 3]) -> bool) -> f64 {
+    // The cotangent of the least angle.
+    let mut most = -f64::INFINITY;
+    // Seen from a corner of a quad: the angle between its sides, or between one and the other drawn on.
+    let bent = |a: DVec2, b: DVec2| a.dot(b).abs() / a.perp_dot(b);
+    for q in patch.quads.iter() {
+        let p = q.map(|v| patch.vertices[v as usize]);
+        for k in 0..4 {
+            let [last, own, next] = [3, 0, 1].map(|ahead| (k + ahead) % 4);
+            if counts(&[q[last], q[own], q[next]]) {
+                most = most.max(bent(p[next] - p[own], p[last] - p[own]));
+            }
+        }
+    }
+    for t in patch.triangles.iter().filter(|t| counts(t)) {
+        let p = t.map(|v| patch.vertices[v as usize]);
+        let [a, b, c] = [p[2] - p[1], p[0] - p[2], p[1] - p[0]];
+        let dot = (-a.dot(b)).max(-b.dot(c)).max(-c.dot(a));
+        most = most.max(dot / a.perp_dot(b));
+    }
+    1f64.atan2(most)
+}

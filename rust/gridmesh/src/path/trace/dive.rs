@@ -1,0 +1,257 @@
+//! Conflict pricing: from the cheapest paths to ones without conflicts.
+
+use rustc_hash::FxHashMap;
+
+use super::conflicts::{Conflict, Finder, Vertex};
+use super::graph::TURN;
+use super::prices::Prices;
+use super::search::{Search, Walk};
+use super::sides::wrong_sides;
+use crate::error::Result;
+use crate::lattice::axial::Axial;
+use crate::lattice::grid::Grid;
+use crate::path::trace::contour::Contour;
+use crate::progress::Progress;
+
+/// What both sides of a conflict are charged in each round.
+pub(super) const STEP: u32 = TURN / 4;
+/// Greatest number of rounds.
+pub(super) const ROUNDS: usize = 100;
+/// Price, in the second pass, of a lattice point that is nearer to another stretch of contour than to its own.
+pub(super) const APART: u32 = 2 * TURN;
+/// Pricing stops after this many rounds without a new minimum of conflicts.
+const PATIENCE: usize = 25;
+/// Pricing stops after this many rounds unless conflicts have halved or are below one per `CROWDED` vertices.
+const TRIAL: usize = 12;
+/// See `TRIAL`: vertices per conflict that are few enough to go on.
+const CROWDED: usize = 20;
+/// Vertices on each side of a conflict that are free to move when it is priced.
+const REACH: usize = 16;
+
+/// Where a dive ended.
+pub(super) struct Dive {
+    pub rounds: usize,
+    /// The number of conflicts that it began with.
+    pub first: usize,
+    /// The conflicts that are left.
+    pub conflicts: Vec<Conflict>,
+    /// The vertices left that have the patch on their wrong side.
+    pub wrong: Vec<Vertex>,
+}
+
+/// Prices conflicts and searches again near them until none is left.
+///
+/// In each round both vertices of each conflict become dearer: of a repeated point the visit, of a
+/// chord its lying inside. Where a path has the patch on its wrong side every vertex does. Only
+/// windows around the vertices are searched again, all else stays.
+pub(super) fn dive<G: Grid>(
+    contours: &[Contour<G>],
+    walks: &mut [Walk<G>],
+    prices: &mut [Prices],
+    search: &mut Search<'_>,
+    progress: Progress<'_>,
+) -> Result<Dive> {
+    dive_from(contours, walks, prices, search, ROUNDS, progress)
+}
+
+/// Likewise, with some prices to begin with and a limit to the rounds.
+pub(super) fn dive_from<G: Grid>(
+    contours: &[Contour<G>],
+    walks: &mut [Walk<G>],
+    prices: &mut [Prices],
+    search: &mut Search<'_>,
+    limit: usize,
+    progress: Progress<'_>,
+) -> Result<Dive> {
+    let mut finder = Finder::default();
+    let mut rounds = 0;
+    let mut patience = Patience::new(walks);
+    loop {
+        let conflicts = finder.find(contours, walks);
+        let repeated = conflicts.iter().any(|conflict| conflict.chord.is_none());
+        let wrong = if repeated || walks.len() > 1 || !turned_once(walks) {
+            wrong_sides(contours, walks)
+        } else {
+            Vec::new()
+        };
+        let left = conflicts.len() + wrong.len();
+        if patience.ends(rounds, left) || left == 0 || rounds == limit || search.pulse.is_spent() {
+            return Ok(Dive { rounds, first: patience.first, conflicts, wrong });
+        }
+        rounds += 1;
+        progress.report(rounds as f64 / limit as f64)?;
+        let mut hot: Vec<Vertex> = Vec::new();
+        for conflict in &conflicts {
+            raise(walks, prices, conflict, STEP);
+            hot.extend([conflict.a, conflict.b]);
+        }
+        for vertex in wrong {
+            let node = walks[vertex.contour as usize].node(vertex.index as usize);
+            prices[vertex.contour as usize].raise_visit(node, STEP);
+            hot.push(vertex);
+        }
+        hot.sort_unstable();
+        hot.dedup();
+        for (c, walk) in (0..).zip(walks.iter_mut()) {
+            let of_contour = hot.iter().filter(|vertex| vertex.contour == c);
+            let at: Vec<usize> = of_contour.map(|vertex| vertex.index as usize).collect();
+            let (contour, prices) = (&contours[c as usize], &prices[c as usize]);
+            resolve(contour, walk, prices, search, &at, REACH);
+        }
+    }
+}
+
+/// Whether more rounds of pricing are worth their time.
+pub(super) struct Patience {
+    /// Conflicts that are not too many.
+    few: usize,
+    pub first: usize,
+    fewest: usize,
+    since: usize,
+}
+
+impl Patience {
+    pub fn new<G: Grid>(walks: &[Walk<G>]) -> Self {
+        let vertices: usize = walks.iter().map(Walk::len).sum();
+        Self { few: vertices / CROWDED, first: usize::MAX, fewest: usize::MAX, since: 0 }
+    }
+
+    /// True once there is little hope, seeing how many conflicts are left after a round.
+    pub fn ends(&mut self, round: usize, left: usize) -> bool {
+        if round == 0 {
+            self.first = left;
+        }
+        if left < self.fewest {
+            (self.fewest, self.since) = (left, round);
+        }
+        let is_stuck = round >= TRIAL && self.fewest > self.few && 2 * self.fewest > self.first;
+        is_stuck || round - self.since >= PATIENCE
+    }
+}
+
+/// Charges every node for whose point another stretch of curve, or another contour, is nearer; and
+/// searches all walks again.
+///
+/// From there walls that have changed sides in a narrow part find back: each has its own half.
+pub(super) fn keep_apart<G: Grid>(
+    contours: &[Contour<G>],
+    walks: &mut [Walk<G>],
+    prices: &mut [Prices],
+    search: &mut Search<'_>,
+) {
+    let nearest = nearest_squared(contours);
+    for ((contour, prices), walk) in contours.iter().zip(prices).zip(walks) {
+        let Contour { graph, potential } = contour;
+        prices.clear();
+        for node in 0..graph.n_nodes() as u32 {
+            let (point, squared) = (graph.points[node as usize], graph.squared[node as usize]);
+            if nearest.get(&point).is_some_and(|&least| least < squared) {
+                prices.raise_visit(node, APART);
+            }
+        }
+        if let Some((found, _)) = search.closed(graph, potential, prices, u32::MAX) {
+            *walk = found;
+        }
+    }
+}
+
+/// The squared distance of each point to the nearest of all stretches.
+pub(super) fn nearest_squared<G>(contours: &[Contour<G>]) -> FxHashMap<Axial, f64> {
+    let mut nearest: FxHashMap<Axial, f64> = FxHashMap::default();
+    for Contour { graph, .. } in contours {
+        for (&point, &squared) in graph.points.iter().zip(&graph.squared) {
+            let least = nearest.entry(point).or_insert(squared);
+            *least = least.min(squared);
+        }
+    }
+    nearest
+}
+
+/// True if the outer walk turns by one full circle and each hole's by one back.
+pub(super) fn turned_once<G: Grid>(walks: &[Walk<G>]) -> bool {
+    walks.iter().enumerate().all(|(c, walk)| {
+        let sum: i32 = (0..walk.len()).map(|i| walk.turn(i)).sum();
+        let circle = G::DIRECTIONS as i32;
+        sum == if c == 0 { circle } else { -circle }
+    })
+}
+
+/// Charges both sides of a conflict.
+pub(super) fn raise<G: Grid>(walks: &[Walk<G>], prices: &mut [Prices], conflict: &Conflict, amount: u32) {
+    let mut charge = |vertex: Vertex, chord: Option<u32>| {
+        let walk = &walks[vertex.contour as usize];
+        let node = walk.node(vertex.index as usize);
+        let prices = &mut prices[vertex.contour as usize];
+        match chord {
+            Some(dir) => prices.raise_inside(node, dir, amount),
+            None => prices.raise_visit(node, amount),
+        }
+    };
+    charge(conflict.a, conflict.chord);
+    charge(conflict.b, conflict.chord.map(|dir| G::turned(dir, G::OPPOSITE as i32)));
+}
+
+/// Searches a walk again within `reach` vertices of those in `at` (ascending).
+fn resolve<G: Grid>(
+    contour: &Contour<G>,
+    walk: &mut Walk<G>,
+    prices: &Prices,
+    search: &mut Search<'_>,
+    at: &[usize],
+    reach: usize,
+) {
+    if at.is_empty() {
+        return;
+    }
+    let Contour { graph, potential } = contour;
+    match windows(at, reach, walk.len()) {
+        Some(windows) => {
+            let mut shift = 0;
+            for (from, to) in windows {
+                let (from, to) = (from - shift, to - shift);
+                let n = walk.len();
+                let found = search.between(graph, potential, prices, (walk, from, to), u32::MAX);
+                if let Some((steps, _)) = found {
+                    walk.splice(from, to, &steps);
+                    shift += (to + 1).saturating_sub(n);
+                }
+            }
+            walk.cost = walk.base_cost(graph);
+        }
+        None => {
+            if let Some((found, _)) = search.closed(graph, potential, prices, u32::MAX) {
+                *walk = found;
+            }
+        }
+    }
+}
+
+/// Disjoint index ranges around some indices, the last first; the first may go past the end.
+/// `None` if they take up nearly the whole cycle.
+pub(super) fn windows(at: &[usize], reach: usize, n: usize) -> Option<Vec<(usize, usize)>> {
+    let mut found: Vec<(usize, usize)> = Vec::new();
+    // From the widest gap on, so that no range but the last goes round the end.
+    let gaps = (0..at.len()).map(|k| {
+        let next = if k + 1 < at.len() { at[k + 1] } else { at[0] + n };
+        (next - at[k], k)
+    });
+    let (gap, k) = gaps.max().unwrap_or((0, 0));
+    if gap <= 2 * reach + 2 {
+        return None;
+    }
+    let turned = at[k + 1..].iter().copied().chain(at[..=k].iter().map(|i| i + n));
+    for i in turned {
+        let (from, to) = (i + n - reach, i + n + reach);
+        match found.last_mut() {
+            Some(last) if last.1 + 1 >= from => last.1 = to,
+            _ => found.push((from, to)),
+        }
+    }
+    for window in &mut found {
+        let turns = window.0 / n * n;
+        window.0 -= turns;
+        window.1 -= turns;
+    }
+    found.sort_unstable_by(|a, b| b.cmp(a));
+    Some(found)
+}

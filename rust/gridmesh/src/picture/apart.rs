@@ -1,0 +1,173 @@
+//! Contours that do not meet: where refined lines cross, they go back to their crossings, which never do.
+
+use glam::DVec2;
+
+use crate::error::Result;
+use crate::geometry::segments::{SegmentGrid, orientation, segments_meet};
+use crate::picture::heights::Sample;
+use crate::progress::Progress;
+
+/// How many crossings to each side of a conflict go back at first; each further round takes twice as many.
+const AROUND: usize = 3;
+
+/// A refined contour and the crossings that it came from.
+#[derive(Clone, Debug)]
+pub struct Line {
+    raw: Vec<DVec2>,
+    /// By crossing, in order.
+    kept: Vec<(usize, DVec2)>,
+    /// Crossings that count instead of what was kept.
+    back: Vec<bool>,
+    /// The points now, each with its crossing.
+    points: Vec<(usize, DVec2)>,
+}
+
+impl Line {
+    /// A contour that stays as it is.
+    pub fn raw(raw: Vec<DVec2>) -> Self {
+        let points = raw.iter().copied().enumerate().collect();
+        Self { back: vec![true; raw.len()], raw, kept: Vec::new(), points }
+    }
+
+    /// A contour with refined samples, in the order of their crossings.
+    pub fn new(raw: Vec<DVec2>, samples: Vec<Sample>) -> Self {
+        let kept: Vec<_> = samples.into_iter().map(|sample| (sample.crossing, sample.at)).collect();
+        if kept.len() < 3 {
+            return Self::raw(raw);
+        }
+        Self { back: vec![false; raw.len()], raw, points: kept.clone(), kept }
+    }
+
+    /// The points.
+    pub fn into_points(self) -> Vec<DVec2> {
+        self.points.into_iter().map(|(_, point)| point).collect()
+    }
+
+    fn segment(&self, i: usize) -> [DVec2; 2] {
+        [self.points[i].1, self.points[(i + 1) % self.points.len()].1]
+    }
+
+    /// Marks the crossings around a segment; whether any was not yet marked.
+    fn mark(&mut self, segment: usize, around: usize) -> bool {
+        let n = self.raw.len();
+        let first = self.points[segment].0;
+        let last = self.points[(segment + 1) % self.points.len()].0;
+        let length = ((last + n - first) % n + 2 * around).min(n - 1);
+        let mut changed = false;
+        for k in 0..=length {
+            let at = (first + 2 * n - around.min(n) + k) % n;
+            changed |= !std::mem::replace(&mut self.back[at], true);
+        }
+        changed
+    }
+
+    fn rebuild(&mut self) {
+        let mut kept = self.kept.iter().peekable();
+        self.points.clear();
+        for (crossing, (&point, &back)) in self.raw.iter().zip(&self.back).enumerate() {
+            let refined = kept.next_if(|(index, _)| *index == crossing);
+            if back {
+                self.points.push((crossing, point));
+            } else {
+                self.points.extend(refined.copied());
+            }
+        }
+    }
+}
+
+/// Changes lines until none meets itself or another.
+pub fn separate(lines: &mut [Line], progress: Progress<'_>) -> Result<()> {
+    let mut around = AROUND;
+    for round in 0.. {
+        progress.report(1.0 - 1.0 / f64::from(round + 1))?;
+        let conflicts = conflicts(lines, progress, 1.0 - 1.0 / f64::from(round + 1))?;
+        let mut touched = Vec::new();
+        for (line, segment) in conflicts {
+            if lines[line].mark(segment, around) {
+                touched.push(line);
+            }
+        }
+        if touched.is_empty() {
+            break;
+        }
+        touched.sort_unstable();
+        touched.dedup();
+        for line in touched {
+            lines[line].rebuild();
+        }
+        around *= 2;
+    }
+    Ok(())
+}
+
+/// Segments that meet another one that is not their neighbour, or fold back onto it.
+fn conflicts(lines: &[Line], progress: Progress<'_>, fraction: f64) -> Result<Vec<(usize, usize)>> {
+    let mut owner = Vec::new();
+    let mut segments = Vec::new();
+    for (k, line) in lines.iter().enumerate() {
+        for i in 0..line.points.len() {
+            owner.push((k, i));
+            segments.push(line.segment(i));
+        }
+    }
+    let mut found = Vec::new();
+    let (mut count, mut stopped) = (0_usize, Ok(()));
+    SegmentGrid::new(&segments).pairs(|i, j| {
+        count += 1;
+        if count.is_multiple_of(1 << 16) {
+            stopped = progress.report(fraction);
+        }
+        let ((line, first), (other, second)) = (owner[i], owner[j]);
+        let n = lines[line].points.len();
+        let meet = if line == other && second == first + 1 {
+            folds(segments[i], segments[j])
+        } else if line == other && first == 0 && second == n - 1 {
+            folds(segments[j], segments[i])
+        } else {
+            segments_meet(segments[i], segments[j])
+        };
+        if meet {
+            found.extend([owner[i], owner[j]]);
+        }
+        stopped.is_ok()
+    });
+    stopped?;
+    found.sort_unstable();
+    found.dedup();
+    Ok(found)
+}
+
+/// True if a segment turns back onto the one before it.
+fn folds([a, b]: [DVec2; 2], [_, c]: [DVec2; 2]) -> bool {
+    orientation(a, b, c) == 0.0 && (b - a).dot(c - b) <= 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_cross_go_back() {
+        let square = |x: f64| -> Vec<DVec2> {
+            [(0.0, 0.0), (2.0, 0.0), (4.0, 0.0), (4.0, 2.0), (4.0, 4.0), (2.0, 4.0), (0.0, 4.0), (0.0, 2.0)]
+                .map(|(dx, dy)| DVec2::new(x + dx, dy))
+                .to_vec()
+        };
+        let moved = |points: &[DVec2], which: usize, by: f64| -> Line {
+            let sample = |(crossing, &at): (usize, &DVec2)| {
+                let at = if crossing == which { at + DVec2::new(by, 0.0) } else { at };
+                Sample { crossing, at, exact: true, corner: false }
+            };
+            Line::new(points.to_vec(), points.iter().enumerate().map(sample).collect())
+        };
+        let (left, right) = (square(0.0), square(4.1));
+        let mut lines = vec![moved(&left, 3, 0.4), moved(&right, 1, 0.3)];
+        separate(&mut lines, Progress::NONE).unwrap();
+        assert!(conflicts(&lines, Progress::NONE, 0.0).unwrap().is_empty());
+        assert_eq!(lines[0].points[3].1, left[3]);
+        // What is far from the conflict stays refined.
+        let mut one = vec![moved(&left, 3, 0.05)];
+        separate(&mut one, Progress::NONE).unwrap();
+        assert_ne!(one[0].points[3].1, left[3]);
+    }
+}

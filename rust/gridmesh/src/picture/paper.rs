@@ -1,0 +1,185 @@
+//! Drawings on paper: what is not paper is covered.
+//!
+//! Light that falls unevenly on a sheet changes slowly: the brightness of the paper is a parabola of place, fitted
+//! to the brightest pixels of blocks, without the blocks that a drawing darkens.
+
+use faer::Mat;
+use faer::prelude::Solve;
+
+use crate::error::Result;
+use crate::picture::field::Picture;
+use crate::picture::threshold::otsu;
+
+/// Blocks along the longer side.
+const BLOCKS: usize = 24;
+
+/// Fits, each without the blocks that are too dark for the one before.
+const ROUNDS: usize = 8;
+
+/// Blocks darker than this times the fit are drawn on.
+const DRAWN: f64 = 0.93;
+
+/// Of a picture of this contrast or less, nothing is drawn: the noise of a camera.
+const CONTRAST: f64 = 0.06;
+
+/// How much of each pixel is drawn on, from its red, green and blue (0 to 1), row by row from the top.
+///
+/// What is darker or more colourful than the paper counts, against the paper's own colour where it lies: 0 is
+/// the typical paper, 1 the typical ink, where the two groups are those of `otsu`; a blank sheet is 0
+/// throughout. O(pixels).
+///
+/// # Errors
+/// [`Error::PictureSize`](crate::error::Error::PictureSize) and
+/// [`Error::PixelNotFinite`](crate::error::Error::PixelNotFinite).
+pub fn coverage(width: usize, height: usize, colours: &[[f32; 3]]) -> Result<Picture> {
+    Picture::check_size(width, height)?;
+    let channel = |c: usize| Picture::new(width, height, colours.iter().map(|colour| colour[c]).collect());
+    let mut drawn = vec![0.0_f32; width * height];
+    for c in 0..3 {
+        let channel = channel(c)?;
+        let light = Light::fit(&channel);
+        for (k, (drawn, &value)) in drawn.iter_mut().zip(channel.values()).enumerate() {
+            let paper = light.at((k % width) as f64, (k / width) as f64).max(0.05);
+            *drawn = drawn.max((1.0 - f64::from(value) / paper).clamp(0.0, 1.0) as f32);
+        }
+    }
+    stretch(Picture::new(width, height, drawn)?)
+}
+
+/// Stretches values so that the means of the two groups become 0 and 1.
+fn stretch(picture: Picture) -> Result<Picture> {
+    let threshold = otsu(&picture);
+    let (mut low, mut high) = ((0.0, 0_usize), (0.0, 0_usize));
+    for &value in picture.values() {
+        let group = if f64::from(value) < threshold { &mut low } else { &mut high };
+        group.0 += f64::from(value);
+        group.1 += 1;
+    }
+    let paper = low.0 / low.1.max(1) as f64;
+    let ink = high.0 / high.1.max(1) as f64;
+    let (width, height) = (picture.width(), picture.height());
+    if high.1 == 0 || low.1 == 0 || ink - paper < CONTRAST {
+        return Picture::new(width, height, vec![0.0; width * height]);
+    }
+    let scaled = picture.values().iter().map(|&value| ((f64::from(value) - paper) / (ink - paper)) as f32);
+    Picture::new(width, height, scaled.collect())
+}
+
+/// The brightness of the paper.
+struct Light {
+    coefficients: [f64; 6],
+    size: [f64; 2],
+}
+
+impl Light {
+    fn fit(channel: &Picture) -> Self {
+        let (width, height) = (channel.width(), channel.height());
+        let size = [width as f64, height as f64];
+        let block = width.max(height).div_ceil(BLOCKS);
+        let mut blocks: Vec<([f64; 2], f64)> = Vec::new();
+        for top in (0..height).step_by(block) {
+            for left in (0..width).step_by(block) {
+                let (right, bottom) = ((left + block).min(width), (top + block).min(height));
+                let mut values: Vec<f32> = (top..bottom)
+                    .flat_map(|y| channel.values()[y * width + left..y * width + right].iter().copied())
+                    .collect();
+                // The upper quarter of the pixels: their least is above the noise of ink, below that of paper.
+                let place = values.len() * 3 / 4;
+                let (_, &mut bright, _) = values.select_nth_unstable_by(place, f32::total_cmp);
+                let middle = [0.5 * (left + right) as f64 / size[0], 0.5 * (top + bottom) as f64 / size[1]];
+                blocks.push((middle, f64::from(bright)));
+            }
+        }
+        let brightest = blocks.iter().map(|block| block.1).fold(0.0, f64::max);
+        let mut light = Self { coefficients: [brightest, 0.0, 0.0, 0.0, 0.0, 0.0], size };
+        // From flat to curved, so that a large drawing is not taken for the paper's shade.
+        for round in 0..ROUNDS {
+            let dark = if round < 2 { 0.6 } else { DRAWN };
+            let paper: Vec<_> =
+                blocks.iter().filter(|(at, value)| *value >= dark * light.value(*at)).copied().collect();
+            let terms = if paper.len() >= 24 && round >= 2 {
+                6
+            } else if paper.len() >= 6 {
+                3
+            } else {
+                1
+            };
+            light.coefficients = least_squares(&paper, terms).unwrap_or(light.coefficients);
+        }
+        light
+    }
+
+    fn value(&self, at: [f64; 2]) -> f64 {
+        powers(at).iter().zip(self.coefficients).map(|(power, coefficient)| power * coefficient).sum()
+    }
+
+    /// At a pixel, counted from the upper left corner.
+    fn at(&self, x: f64, y: f64) -> f64 {
+        self.value([(x + 0.5) / self.size[0], (y + 0.5) / self.size[1]])
+    }
+}
+
+fn powers([x, y]: [f64; 2]) -> [f64; 6] {
+    [1.0, x, y, x * x, x * y, y * y]
+}
+
+/// The polynomial of this many terms that fits best.
+fn least_squares(blocks: &[([f64; 2], f64)], terms: usize) -> Option<[f64; 6]> {
+    if blocks.len() < terms {
+        return None;
+    }
+    let mut normal = Mat::<f64>::zeros(terms, terms);
+    let mut right = Mat::<f64>::zeros(terms, 1);
+    for &(at, value) in blocks {
+        let powers = powers(at);
+        for i in 0..terms {
+            right[(i, 0)] += powers[i] * value;
+            for j in 0..terms {
+                normal[(i, j)] += powers[i] * powers[j];
+            }
+        }
+    }
+    for i in 0..terms {
+        normal[(i, i)] += 1e-9;
+    }
+    let solution = normal.partial_piv_lu().solve(&right);
+    let mut coefficients = [0.0; 6];
+    for (i, coefficient) in coefficients.iter_mut().enumerate().take(terms) {
+        *coefficient = solution[(i, 0)];
+    }
+    coefficients.iter().all(|c| c.is_finite()).then_some(coefficients)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sheet lit from a corner, slightly yellow, with a disk of ink in a colour.
+    fn sheet(ink: [f64; 3], radius: f64) -> Vec<[f32; 3]> {
+        let pixel = |k: usize| {
+            let (x, y) = ((k % 300) as f64, (k / 300) as f64);
+            let light = 0.95 - 0.5 * (x / 300.0) * (y / 200.0) - 0.1 * x / 300.0;
+            let paper = [1.0, 0.97, 0.9];
+            let drawn = (x - 150.0).hypot(y - 100.0) < radius;
+            [0, 1, 2].map(|c| (light * paper[c] * if drawn { ink[c] } else { 1.0 }) as f32)
+        };
+        (0..300 * 200).map(pixel).collect()
+    }
+
+    #[test]
+    fn ink_is_told_from_shade() {
+        for (ink, radius) in [([0.15, 0.15, 0.2], 60.0), ([0.95, 0.9, 0.2], 80.0), ([0.2, 0.6, 0.9], 20.0)] {
+            let covered = coverage(300, 200, &sheet(ink, radius)).unwrap();
+            for (k, &value) in covered.values().iter().enumerate() {
+                let inside = ((k % 300) as f64 - 150.0).hypot((k / 300) as f64 - 100.0) < radius;
+                assert_eq!(value >= 0.5, inside, "{ink:?} {k} {value}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_blank_sheet_has_nothing_on_it() {
+        let covered = coverage(300, 200, &sheet([1.0; 3], 0.0)).unwrap();
+        assert!(covered.values().iter().all(|&value| value == 0.0));
+    }
+}

@@ -1,0 +1,336 @@
+//! What is wanted of a lattice, and how hard it is tried.
+
+use std::time::Instant;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::bend::Bent;
+use crate::drawing::curve::ClosedCurve;
+use crate::drawing::symmetry::Symmetry;
+use crate::drawing::thickness;
+use crate::drawing::thickness::Limb;
+use crate::error::{Error, Result};
+use crate::lattice::axial::Axial;
+use crate::lattice::grid::{Square, Triangular};
+use crate::options::{CellShape, SketchOptions, SketchReport};
+use crate::patch::place::{Placed, min_angle, min_angle_off_corners, place};
+use crate::patch::{Patch, mirror};
+use crate::path::outline::{Obstacle, Outline};
+use crate::path::placement::{Laid, Lattice};
+use crate::progress::Progress;
+
+#[derive(Clone, Copy)]
+pub(crate) enum Asked {
+    EdgeLength(f64),
+    Cells(usize),
+}
+
+/// How hard to try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// All placements.
+    Full,
+    /// One.
+    Quick,
+}
+
+/// A patch on one lattice, and how far it is from being good enough.
+pub(crate) struct Found {
+    pub(crate) faults: f64,
+    /// None on a straight lattice.
+    pub(crate) bent: Option<Bent>,
+    pub(crate) outline: Outline,
+    pub(crate) placed: Placed,
+    pub(crate) mirror_error: Option<f64>,
+}
+
+impl Found {
+    /// How far the least angle is from a good one: 0 to 1.
+    pub(crate) fn starved(&self) -> f64 {
+        let patch = &self.placed.patch;
+        // At a corner of the drawing two quads share its angle on any lattice.
+        let least = match patch.cells() {
+            CellShape::Triangle => min_angle(patch),
+            CellShape::Quad => min_angle_off_corners(patch),
+        };
+        (1.0 - least / GOOD_ANGLE).max(0.0)
+    }
+
+    /// Cost, faults and starved triangles in turns.
+    pub(crate) fn score(&self) -> f64 {
+        let price = self.bent.as_ref().map_or(0.0, |bent| bent.price);
+        self.outline.cost + price + TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved()
+    }
+
+    /// True if a part of the drawing is lost in the mesh.
+    pub(crate) fn lost(&self) -> bool {
+        self.placed.lost() > 0
+    }
+}
+
+pub(crate) struct Job<'a> {
+    pub(crate) contours: Vec<ClosedCurve>,
+    pub(crate) symmetry: Option<Symmetry>,
+    pub(crate) options: &'a SketchOptions,
+    pub(crate) area: f64,
+    pub(crate) centre: DVec2,
+    pub(crate) thinnest: Option<Limb>,
+    pub(crate) seconds: Vec<(&'static str, f64)>,
+    pub(crate) placements: usize,
+}
+
+impl Job<'_> {
+    pub(crate) fn lap(&mut self, stage: &'static str, since: Instant) {
+        let spent = since.elapsed().as_secs_f64();
+        match self.seconds.iter_mut().find(|s| s.0 == stage) {
+            Some(known) => known.1 += spent,
+            None => self.seconds.push((stage, spent)),
+        }
+    }
+
+    pub(crate) fn attempt_unless_hopeless(
+        &mut self,
+        asked: Asked,
+        expected: f64,
+        progress: Progress<'_>,
+    ) -> Result<Result<Sketch, Obstacle>> {
+        if self.is_hopeless(expected.round() as usize) {
+            let at = self.contours[0].points()[0];
+            let reason = match self.options.cells {
+                CellShape::Triangle => "the drawing is too thin for two rows of triangles",
+                CellShape::Quad => "the drawing is too thin for three rows of quads",
+            };
+            return Ok(Err(Obstacle::new(reason, at)));
+        }
+        self.attempt(asked, Effort::Full, progress)
+    }
+
+    /// Tries lattice placements until one gives a valid patch of the size asked for: the angles
+    /// first, cheapest boundary first, then shifts of the lattice. Where the cheapest boundary
+    /// starves triangles or cuts off a tip, the other angles are tried too, and the best is taken.
+    pub(crate) fn attempt(
+        &mut self,
+        asked: Asked,
+        effort: Effort,
+        progress: Progress<'_>,
+    ) -> Result<Result<Sketch, Obstacle>> {
+        let mut bent = self.best_bent(asked, effort, progress)?;
+        if let Some(found) = bent.take_if(|found| self.is_settled(found)) {
+            return Ok(Ok(self.report(found)));
+        }
+        let mut best: Option<Found> = None;
+        let started = Instant::now();
+        let lattices = self.placements_to_try(asked, effort);
+        let found: Vec<Result<Result<(Lattice, Outline), Miss>>> = lattices
+            .par_iter()
+            .map(|&(angle, shift)| self.outline(asked, effort, angle, shift, progress.part(0.0, 0.3)))
+            .collect();
+        let mut obstacle = None;
+        let mut outlines = Vec::new();
+        let mut is_passable = self.symmetry.is_some();
+        for found in found {
+            match found? {
+                Ok(found) => {
+                    is_passable = true;
+                    outlines.push(found);
+                }
+                Err(miss) => {
+                    is_passable |= miss.is_of_count;
+                    obstacle = obstacle.or(Some(miss.obstacle));
+                }
+            }
+        }
+        outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        if let Some(bent) = &bent {
+            outlines.retain(|(_, outline)| outline.cost < bent.score());
+        }
+        self.lap("boundary", started);
+        // Where no angle gives a boundary a shift does not either.
+        let shifts = match effort {
+            Effort::Full if is_passable && bent.is_none() => self.shifts(&lattices),
+            _ => Vec::new(),
+        };
+        let part_of = |k: usize| 0.4 + 0.5 * k as f64 / shifts.len() as f64;
+        let mut shifts = shifts.iter().copied().enumerate();
+        let mut outlines = outlines.into_iter();
+        loop {
+            let (lattice, outline) = match outlines.next() {
+                Some(next) => next,
+                None if best.as_ref().is_some_and(|best| best.placed.fault(self.options).is_none()) => break,
+                None => {
+                    let Some((k, (angle, shift))) = shifts.next() else { break };
+                    let started = Instant::now();
+                    let part = progress.part(part_of(k), part_of(k + 1));
+                    let found = self.shifted(asked, effort, angle, shift, part)?;
+                    self.lap("boundary", started);
+                    match found {
+                        Ok(found) => found,
+                        Err(miss) => {
+                            obstacle = obstacle.or(Some(miss.obstacle));
+                            continue;
+                        }
+                    }
+                }
+            };
+            self.placements += 1;
+            let started = Instant::now();
+            let placed = self.place(None, &lattice, &outline, progress.part(0.3, 0.9))?;
+            self.lap("placement", started);
+            match placed {
+                Ok((placed, mirror_error)) => {
+                    let faults = faults(&placed);
+                    if best.as_ref().is_none_or(|best| faults < best.faults) {
+                        best = Some(Found { faults, bent: None, outline, placed, mirror_error });
+                    }
+                    if faults == 0.0 {
+                        break;
+                    }
+                }
+                Err(found) => obstacle = Some(found),
+            }
+        }
+        if let Some(bent) = bent
+            && best.as_ref().is_none_or(|best| best.lost() || bent.score() < best.score())
+        {
+            best = Some(bent);
+        }
+        if let Some(best) = best {
+            if let Some(reason) = best.placed.fault(self.options) {
+                let at = best.placed.patch.inlets.first().map_or(self.centre, |inlet| inlet[0]);
+                return Ok(Err(Obstacle::new(reason, at)));
+            }
+            return Ok(Ok(self.report(best)));
+        }
+        match obstacle {
+            Some(obstacle) => Ok(Err(obstacle)),
+            None => Err(Error::Internal { reason: "no lattice was tried" }),
+        }
+    }
+
+    /// True if no straight lattice is tried beside a bent one: it has no faults and hardly more turns than
+    /// there must be.
+    pub(crate) fn is_settled(&self, found: &Found) -> bool {
+        const FEW: usize = 12;
+        let price = found.bent.as_ref().map_or(0.0, |bent| bent.price);
+        found.faults <= SLIGHT
+            && found.starved() == 0.0
+            && price < 1.0
+            && found.outline.turns(self.options.cells) <= FEW * self.contours.len()
+    }
+
+    /// The patch of an outline, symmetric if that was asked for; and by how much it is not.
+    pub(crate) fn place(
+        &self,
+        bent: Option<&Bent>,
+        lattice: &Lattice,
+        outline: &Outline,
+        progress: Progress<'_>,
+    ) -> Result<Result<(Placed, Option<f64>), Obstacle>> {
+        let cells = self.options.cells;
+        let placed = match bent {
+            None => {
+                let laid = |points: &[Axial]| match cells {
+                    CellShape::Triangle => points.iter().map(|&p| Triangular::units(p)).collect(),
+                    CellShape::Quad => points.iter().map(|&p| Square::units(p)).collect(),
+                };
+                place(&self.contours, lattice, laid, outline, self.options, progress)?
+            }
+            Some(bent) => {
+                let laid = |points: &[Axial]| match cells {
+                    CellShape::Triangle => bent.positions::<Triangular>(outline, lattice, points),
+                    CellShape::Quad => bent.positions::<Square>(outline, lattice, points),
+                };
+                place(&self.contours, &bent.lattice(lattice), laid, outline, self.options, progress)?
+            }
+        };
+        Ok(match &self.symmetry {
+            None => placed.map(|placed| (placed, None)),
+            Some(symmetry) => placed
+                .and_then(|p| mirror::symmetrised(&self.contours, symmetry, outline, p, self.options))
+                .map(|(placed, error)| (placed, Some(error))),
+        })
+    }
+
+    /// The patch with its numbers.
+    pub(crate) fn report(&mut self, found: Found) -> Sketch {
+        let Found { bent, outline, placed, mirror_error, .. } = found;
+        let started = Instant::now();
+        let mut patch = placed.patch;
+        let cells = self.options.cells;
+        // Each contour turns four times at least.
+        let (is_quads, least_poles) = (cells == CellShape::Quad, 8 * self.contours.len());
+        patch.lattice = patch.lattice.of_least_angle(self.options.cells);
+        let mut report = SketchReport {
+            triangles: patch.triangles.len(),
+            quads: patch.quads.len(),
+            irregular: outline.irregular(cells),
+            minimum_irregular: if is_quads { least_poles } else { 6 + 3 * (self.contours.len() - 1) },
+            poles: if is_quads { outline.irregular(cells) } else { 0 },
+            minimum_poles: if is_quads { least_poles } else { 0 },
+            turns: outline.turns(cells),
+            turns_before: outline.turns_before,
+            turns_bound: outline.turns_bound,
+            cost: outline.cost,
+            cost_bound: outline.cost_bound,
+            optimal: outline.optimal,
+            max_distance_used: outline.max_distance_used,
+            max_deviation: placed.max_deviation,
+            bridged_inlets: placed.bridged_inlets,
+            min_angle: min_angle(&patch),
+            corners: placed.corners,
+            released_corners: placed.released_corners,
+            across: self.thinnest.map(|limb| thickness::across(limb.width, patch.lattice.edge_length, cells)),
+            repaired: self.contours.iter().map(ClosedCurve::repaired).sum(),
+            mirror_error,
+            bend: bent.as_ref().map_or(0.0, |bent| bent.share * self.options.bend),
+            scale_range: bent.as_ref().map_or(1.0, |bent| bent.scale_range()),
+            placements: self.placements,
+            seconds: Vec::new(),
+        };
+        self.lap("report", started);
+        report.seconds = self.seconds.clone();
+        Sketch { patch, report }
+    }
+}
+
+/// Faults of a patch on a bent lattice up to which no straight one is tried, and how many turns a fault
+/// of one outweighs between the two.
+pub(crate) const SLIGHT: f64 = 0.1;
+
+pub(crate) const TURNS_OF_FAULT: f64 = 12.0;
+
+/// Where a patch on a bent lattice has triangles below this angle, 20 degrees, others are placed too; and
+/// how many turns it outweighs that an angle is zero.
+pub(crate) const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
+
+pub(crate) const TURNS_OF_ANGLE: f64 = 16.0;
+
+/// A flat patch with the numbers of its making.
+#[derive(Clone, Debug)]
+pub struct Sketch {
+    /// The patch.
+    pub patch: Patch,
+    /// What was done.
+    pub report: SketchReport,
+}
+
+/// How far a placement is from being good enough: zero if it is.
+pub(crate) fn faults(placed: &Placed) -> f64 {
+    let (angle, distance) = ENOUGH;
+    let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
+    // A patch that has lost a part of the drawing serves only to say where.
+    let lost = 100.0 * placed.lost() as f64;
+    lost + 4.0 * starved + (placed.max_deviation - distance).max(0.0)
+}
+
+/// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies
+/// this close to the drawing, in edges, is good enough not to try another lattice angle.
+pub(crate) const ENOUGH: (f64, f64) = (14.0 * std::f64::consts::PI / 180.0, 1.0);
+
+/// Why a lattice angle gives no boundary of the size asked for.
+pub(crate) struct Miss {
+    pub(super) obstacle: Obstacle,
+    /// There is a boundary, but with too many or too few triangles: a shift of the lattice may help.
+    pub(super) is_of_count: bool,
+}

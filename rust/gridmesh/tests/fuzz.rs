@@ -1,0 +1,58 @@
+//! The fuzz targets (`rust/fuzz`) on a fixed number of pseudorandom inputs, and on what fuzzing found.
+//!
+//! `GRIDMESH_FUZZ_RUNS` is the number of inputs for each target, `GRIDMESH_FUZZ_SEED` the first one's number.
+
+#![expect(clippy::panic, clippy::unwrap_used, reason = "in a function that the tests share")]
+
+#[path = "../../fuzz/src/lib.rs"]
+mod targets;
+
+/// Pseudorandom bytes (SplitMix64), of a length that varies.
+fn bytes(seed: u64) -> Vec<u8> {
+    let mut state = seed;
+    let mut next = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    };
+    let n = next() % 400;
+    (0..n).map(|_| next() as u8).collect()
+}
+
+fn run(target: fn(&[u8]), runs: u64) {
+    let number = |name, default| std::env::var(name).map_or(default, |text| text.parse().unwrap());
+    let (first, runs) = (number("GRIDMESH_FUZZ_SEED", 0), number("GRIDMESH_FUZZ_RUNS", runs));
+    for seed in first..first + runs {
+        let data = bytes(seed);
+        if std::panic::catch_unwind(|| target(&data)).is_err() {
+            panic!("seed {seed}, {} bytes", data.len());
+        }
+    }
+}
+
+#[test]
+fn sketches_keep_their_promises() {
+    run(targets::sketch, 400);
+}
+
+#[test]
+fn fills_keep_their_promises() {
+    run(targets::fill, 1500);
+}
+
+#[test]
+fn regrids_keep_their_promises() {
+    run(targets::regrid, 1500);
+}
+
+#[test]
+fn cuts_keep_their_promises() {
+    run(targets::cut, 1500);
+}
+
+#[test]
+fn combined_drawings_keep_their_promises() {
+    run(targets::combine, 3000);
+}

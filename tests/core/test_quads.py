@@ -1,0 +1,195 @@
+"""Patches and bodies of quads: what they promise."""
+
+import pickle
+import threading
+
+import gridmesh
+import numpy as np
+import pytest
+from quad_checks import check_quad_body, check_quad_patch, check_refused_with_a_count_that_works, edges_of
+from sketches import DRAWINGS, SHAPES, blob, circle
+
+
+def random_blob(seed, size=0.2):
+    random = np.random.default_rng(seed)
+    return blob(list(random.uniform(-size, size, 5)), list(random.uniform(0, 6, 5)), 200)
+
+
+def limbs(count, width, length=3.0):
+    """A disc with bars that run askew in all directions."""
+    t = np.linspace(0, 2 * np.pi, 1200, endpoint=False)
+    angle = (t - 0.2 + np.pi / count) % (2 * np.pi / count) - np.pi / count
+    with np.errstate(divide="ignore"):
+        edge = np.where(np.abs(angle) < 1, 0.5 * width / np.abs(np.sin(angle)), 0)
+    radius = np.maximum(1.0, np.minimum(length / np.cos(angle), edge))
+    return np.column_stack([radius * np.cos(t), radius * np.sin(t)])
+
+
+@pytest.mark.parametrize("name", sorted(DRAWINGS | SHAPES))
+def test_drawings_keep_every_promise_as_patches_and_bodies(name):
+    sketch = (DRAWINGS | SHAPES)[name]
+    points = sketch["points"]
+    patch = gridmesh.mesh_sketch(points, quads=800)
+    check_quad_patch(patch, [points])
+    check_quad_body(gridmesh.inflate(patch), patch, 0)
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("quads", [60, 400, 3000])
+def test_blobs_keep_every_promise(seed, quads):
+    points = random_blob(seed)
+    patch = gridmesh.mesh_sketch(points, quads=quads)
+    check_quad_patch(patch, [points])
+    assert abs(len(patch.quads) - quads) <= max(0.1 * quads, 6)
+    check_quad_body(gridmesh.inflate(patch), patch, 0)
+
+
+@pytest.mark.parametrize("profile", ["round", "even", "flat", "peak"])
+def test_bodies_of_every_profile_are_closed_and_unfolded(profile):
+    patch = gridmesh.mesh_sketch(random_blob(3), quads=700)
+    check_quad_body(gridmesh.inflate(patch, profile=profile), patch, 0)
+
+
+def test_pillows_and_sheets_have_the_patch_s_quads():
+    points = random_blob(1)
+    patch = gridmesh.mesh_sketch(points, quads=500)
+    check_quad_body(gridmesh.stitch(patch), patch, 0)
+    sheet = gridmesh.flat(patch)
+    assert np.array_equal(sheet.quads, patch.quads)
+    assert np.array_equal(sheet.vertices[:, :2], patch.vertices)
+    assert 2 * sheet.report["irregular"] == patch.report["poles"]
+
+
+def test_a_disc_needs_eight_poles_and_becomes_a_sphere():
+    patch = gridmesh.mesh_sketch(circle(300), quads=1000)
+    check_quad_patch(patch, [circle(300)])
+    assert patch.report["poles"] == 8
+    ball = gridmesh.inflate(patch)
+    assert np.allclose(np.linalg.norm(ball.vertices, axis=1), 1, atol=0.01)
+
+
+def test_holes_are_kept_with_belts_of_their_own():
+    outline, hole = random_blob(4), 0.35 * circle(80) + [0.1, 0.05]
+    patch = gridmesh.mesh_sketch(outline, [hole], quads=1200)
+    check_quad_patch(patch, [outline, hole])
+    check_quad_body(gridmesh.inflate(patch), patch, 1)
+
+
+@pytest.mark.parametrize("width", [0.12, 0.2, 0.4])
+def test_thin_limbs_have_three_rows_or_more(width):
+    points = limbs(5, width)
+    patch = gridmesh.mesh_sketch(points, quads=1500)
+    check_quad_patch(patch, [points])
+    check_quad_body(gridmesh.inflate(patch), patch, 0)
+
+
+def test_a_drawing_too_thin_is_told_how_many_quads_work():
+    check_refused_with_a_count_that_works(limbs(7, 0.1), 60)
+
+
+def test_a_rectangle_has_a_vertex_on_each_corner_and_four_turns():
+    box = np.array([[0.0, 0.0], [4, 0], [4, 3], [0, 3]]) @ [[0.8, 0.6], [-0.6, 0.8]]
+    patch = gridmesh.mesh_sketch(box, quads=600)
+    check_quad_patch(patch, [box])
+    assert patch.report["poles"] == 8
+    assert (patch.corner[0] != 0).sum() == 4
+    at = patch.vertices[patch.loops[0]][patch.corner[0] != 0]
+    assert sorted(map(tuple, at)) == sorted(map(tuple, box))
+
+
+def test_the_number_of_poles_hardly_grows_with_the_quads():
+    few, many = (
+        np.mean([gridmesh.mesh_sketch(random_blob(k), quads=n).report["poles"] for k in range(9)])
+        for n in (500, 2000)
+    )
+    assert many <= few * 4 / 3
+
+
+def test_start_and_direction_and_threads_do_not_matter():
+    points = random_blob(7)
+    patch = gridmesh.mesh_sketch(points, quads=600)
+    for other in (np.roll(points, 57, axis=0), points[::-1], np.roll(points[::-1], 11, axis=0)):
+        again = gridmesh.mesh_sketch(other, quads=600)
+        assert again.vertices.tobytes() == patch.vertices.tobytes()
+        assert again.quads.tobytes() == patch.quads.tobytes()
+    bodies = [gridmesh.map_sketches([points] * 3, threads=n, quads=600) for n in (1, 3)]
+    assert len({body.vertices.tobytes() + body.quads.tobytes() for pair in bodies for body in pair}) == 1
+
+
+def test_a_drawing_moved_and_scaled_has_the_same_quads():
+    points = random_blob(8)
+    patch = gridmesh.mesh_sketch(points, quads=600)
+    moved = gridmesh.mesh_sketch(64 * points + [1000.0, -300.0], quads=600)
+    assert np.array_equal(moved.quads, patch.quads)
+    assert np.abs(moved.vertices - (64 * patch.vertices + [1000.0, -300.0])).max() < 1e-6 * 64
+
+
+def test_corners_are_near_right_angles():
+    off = []
+    for seed in range(10):
+        patch = gridmesh.mesh_sketch(random_blob(seed), quads=1000)
+        at = patch.vertices[patch.quads]
+        ahead, back = np.roll(at, -1, axis=1) - at, np.roll(at, 1, axis=1) - at
+        lengths = np.linalg.norm(ahead, axis=2) * np.linalg.norm(back, axis=2)
+        off.append(np.abs(np.degrees(np.arccos((ahead * back).sum(2) / lengths)) - 90).mean())
+    assert np.median(off) < 8
+
+
+def test_a_straight_lattice_makes_quads_too():
+    points = random_blob(2)
+    patch = gridmesh.mesh_sketch(points, quads=700, bend=0)
+    check_quad_patch(patch, [points])
+    assert patch.report["bend"] == 0
+    assert gridmesh.mesh_sketch(points, quads=700).report["poles"] < patch.report["poles"]
+
+
+def test_an_edge_length_gives_quads_of_about_that_size():
+    points = random_blob(5)
+    patch = gridmesh.mesh_sketch(points, cells="quads", edge_length=0.08)
+    check_quad_patch(patch, [points])
+    ends, _ = edges_of(patch.quads)
+    lengths = np.linalg.norm(patch.vertices[ends[:, 0]] - patch.vertices[ends[:, 1]], axis=1)
+    assert 0.06 < np.median(lengths) < 0.1
+
+
+def test_cells_and_numbers_must_agree():
+    points = circle()
+    assert len(gridmesh.mesh_sketch(points, cells="quads").triangles) == 0
+    assert len(gridmesh.mesh_sketch(points, cells="triangles").quads) == 0
+    assert gridmesh.mesh_sketch(points, triangles=300).quads.shape == (0, 4)
+    for options in (
+        {"quads": 300, "triangles": 300},
+        {"quads": 300, "cells": "triangles"},
+        {"triangles": 300, "cells": "quads"},
+        {"quads": 300, "boundary": "grown"},
+        {"quads": 300, "mirror": "auto"},
+        {"cells": "hexagons"},
+        {"quads": 2},
+    ):
+        with pytest.raises(gridmesh.GridMeshError) as refusal:
+            gridmesh.mesh_sketch(points, **options)
+        assert refusal.value.kind == "invalid_option"
+
+
+def test_patches_and_bodies_can_be_pickled():
+    patch = gridmesh.mesh_sketch(random_blob(6), quads=300)
+    copy = pickle.loads(pickle.dumps(patch))
+    assert copy.quads.tobytes() == patch.quads.tobytes()
+    body = gridmesh.inflate(patch)
+    assert gridmesh.inflate(copy).vertices.tobytes() == body.vertices.tobytes()
+    assert pickle.loads(pickle.dumps(body)).quads.tobytes() == body.quads.tobytes()
+    assert "quads" in repr(patch)
+    assert "quads" in repr(body)
+
+
+def test_a_patch_of_quads_can_be_cancelled():
+    calls = threading.local()
+    calls.seen = 0
+
+    def stop(fraction):
+        calls.seen += 1
+        return calls.seen < 3
+
+    with pytest.raises(gridmesh.GridMeshError) as refusal:
+        gridmesh.mesh_sketch(random_blob(0), quads=20000, progress=stop)
+    assert refusal.value.kind == "cancelled"

@@ -1,0 +1,138 @@
+# /// script
+# requires-python = "==3.11.*"
+# dependencies = ["bpy==4.5.15", "numpy==1.26.4", "gridmesh"]
+#
+# [tool.uv]
+# python-downloads = "never"
+#
+# [tool.uv.sources]
+# gridmesh = { path = "../.." }
+# ///
+"""Sprites and bodies of 200 pictures with alpha: twemoji's, 64 pixels wide, from the package index.
+
+uv run tests/peers/pictures.py [ARCHIVE] [--count 200] [--triangles 500]
+
+ARCHIVE is what `npm pack emoji-datasource-twitter@16.0.0` downloads; without it, it is downloaded.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import tarfile
+import tempfile
+import time
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "core")]
+
+from rasters import sampled  # noqa: E402
+
+from addon.pictures import images  # noqa: E402
+from addon.pictures.cutouts import Options, PictureError, cut_out  # noqa: E402
+
+PACKAGE, FOLDER = "emoji-datasource-twitter@16.0.0", "package/img/twitter/64/"
+
+
+def pictures(archive: Path, count: int, into: Path) -> list[Path]:
+    """Unpack this many pictures, evenly spread over the names."""
+    with tarfile.open(archive) as tar:
+        members = sorted(
+            (m for m in tar if m.name.startswith(FOLDER) and m.name.endswith(".png")), key=lambda m: m.name
+        )
+        chosen = [members[k * len(members) // count] for k in range(count)]
+        tar.extractall(into, members=chosen, filter="data")
+    return [into / member.name for member in chosen]
+
+
+def measure(pixels: np.ndarray, triangles: int, body: bool) -> dict[str, float]:
+    """Mesh a picture, and compare it with its pixels."""
+    started = time.perf_counter()
+    cutout = cut_out(
+        pixels,
+        Options(threshold=0.5, margin=1.0, min_area=0.0, triangles=triangles, body={} if body else None),
+    )
+    seconds = time.perf_counter() - started
+    height, width = pixels.shape[:2]
+    loops = [cutout.vertices[loop, :2] for loop in cutout.silhouette]
+    inside = sampled(loops, width, height, 8)[::-1].reshape(height, 8, width, 8).mean(axis=(1, 3))
+    alpha = pixels[..., 3]
+    edges = np.sort(np.concatenate([cutout.triangles[:, [a, a - 1]] for a in range(3)]), axis=1)
+    edges, counts = np.unique(edges, axis=0, return_counts=True)
+    ends = cutout.vertices[edges]
+    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    return {
+        "seconds": seconds,
+        "triangles": len(cutout.triangles),
+        "refused": len(cutout.refused),
+        "cut": int(((alpha >= 0.5) & (inside < 0.5)).sum()),
+        "opaque_cut": float(np.maximum((alpha >= 0.5) - inside, 0).sum() / (alpha >= 0.5).sum()),
+        "empty": float(inside[alpha < 0.02].sum() / inside.sum()),
+        "shortest": float(lengths.min() / lengths.mean()),
+        "closed": bool((counts == 2).all()),
+    }
+
+
+def main() -> None:
+    """Print what was measured."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("archive", nargs="?", type=Path)
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--triangles", type=int, default=500)
+    chosen = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        into = Path(folder)
+        archive = chosen.archive
+        if archive is None:
+            packed = subprocess.run(
+                ["npm", "pack", "-s", PACKAGE], cwd=into, check=True, capture_output=True, text=True
+            )
+            archive = into / packed.stdout.strip().splitlines()[-1]
+        files = pictures(archive, chosen.count, into)
+        for body in (False, True):
+            results, refused = {}, {}
+            for file in files:
+                image = bpy.data.images.load(str(file))
+                try:
+                    results[file.stem] = measure(images.pixels(image), chosen.triangles, body)
+                except PictureError as error:
+                    refused[file.stem] = str(error)
+                bpy.data.images.remove(image)
+            tell("bodies" if body else "sprites", results, refused)
+
+
+def tell(what: str, results: dict[str, dict[str, float]], refused: dict[str, str]) -> None:
+    """Print a summary, and the names of what is worst."""
+    print(f"{what}: {len(results)} made, {len(refused)} refused")
+    for name, reason in refused.items():
+        print(f"  {name}: {reason}")
+    columns = {
+        name: np.array([result[name] for result in results.values()]) for name in next(iter(results.values()))
+    }
+    names = np.array(list(results))
+    parts = columns["refused"].astype(int)
+    print(
+        f"  parts refused: {parts.sum()} of {(parts > 0).sum()} pictures: {', '.join(names[parts > 0][:8])}"
+    )
+    print(
+        f"  pixels of at least half cover whose middle is outside: {columns['cut'].sum():.0f}, of {(columns['cut'] > 0).sum()} pictures"
+    )
+    print(
+        f"  opaque area outside: mean {100 * columns['opaque_cut'].mean():.3f} %, most {100 * columns['opaque_cut'].max():.2f} %"
+    )
+    print(
+        f"  empty area: mean {100 * columns['empty'].mean():.2f} %, most {100 * columns['empty'].max():.2f} %"
+    )
+    short = columns["shortest"]
+    print(f"  shortest edge over the mean: least {short.min():.3f}, below a third in {(short < 1 / 3).sum()}")
+    print(f"  closed: {columns['closed'].sum():.0f}; triangles: median {np.median(columns['triangles']):.0f}")
+    print(f"  seconds: mean {columns['seconds'].mean():.4f}, most {columns['seconds'].max():.3f}")
+
+
+if __name__ == "__main__":
+    main()
