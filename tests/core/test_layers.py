@@ -68,7 +68,8 @@ def rust_modules():
         if file.stem.endswith("_tests"):
             continue
         text = re.sub(r"//[^\n]*", "", file.read_text())
-        found["/".join(file.relative_to(LIBRARY).with_suffix("").parts)] = text.split("#[cfg(test)]\nmod ")[0]
+        own = re.split(r"#\[cfg\(test\)\]\n(?:pub\(super\) )?mod ", text)[0]
+        found["/".join(file.relative_to(LIBRARY).with_suffix("").parts)] = own
     return found
 
 

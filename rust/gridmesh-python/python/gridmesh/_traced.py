@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-_Contour = npt.NDArray[np.float64]
 
-
-class Traced(list[tuple[_Contour, list[_Contour]]]):
+class Traced(list[tuple[npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]]):
     """Outlines with their holes, largest first, and what was left out.
 
     Attributes
@@ -23,7 +21,7 @@ class Traced(list[tuple[_Contour, list[_Contour]]]):
 
     def __init__(
         self,
-        parts: list[tuple[_Contour, list[_Contour]]],
+        parts: list[tuple[npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]],
         dropped: int = 0,
         filled: int = 0,
         threshold: float = 0.5,

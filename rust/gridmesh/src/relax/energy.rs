@@ -241,7 +241,7 @@ impl Local {
 }
 
 #[cfg(test)]
-pub(in crate::relax) mod tests {
+pub(super) mod tests {
     use super::*;
 
     fn ring() -> (Vec<u32>, Vec<DVec2>) {
