@@ -97,7 +97,7 @@ def library_literals():
             continue
         code = re.split(r"#\[cfg\(test\)\]\s*(?:pub\(super\) )?mod tests \{", path.read_text(encoding="utf-8"))[0]
         code = re.sub(r"//[^\n]*", "", code)
-        code = re.sub(r"#!?\[(?:[^\[\]]|\[[^\]]*\])*\]", "", code)
+        code = re.sub(r"#!?\[(?!error)(?:[^\[\]]|\[[^\]]*\])*\]", "", code)
         code = re.sub(r"(?:debug_)?assert\w*!\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)", "", code)
         for found in text.finditer(code):
             one = re.sub(r"\\\n\s*", "", found.group(1)).replace('\\"', '"')

@@ -6,10 +6,11 @@ use std::fmt;
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Why a call was refused. Nothing is returned half done.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A coordinate is NaN or infinite.
+    #[error("point {point} of the {what} is NaN or infinite; all coordinates must be finite")]
     NotFinite {
         /// What holds the coordinate, such as `outline` or `hole 2`.
         what: String,
@@ -17,6 +18,10 @@ pub enum Error {
         point: usize,
     },
     /// The drawing is so large or small that areas leave the range of floating point.
+    #[error(
+        "the {what} is {size:.3e} across; allowed: 1e-30 to 1e30 (meshes and loops in space: 1e-60 to \
+         1e60), scale it"
+    )]
     ExtremeSize {
         /// What was given, such as `outline` or `hole 2`.
         what: String,
@@ -24,6 +29,7 @@ pub enum Error {
         size: f64,
     },
     /// Fewer than three distinct points.
+    #[error("the {what} has {distinct} distinct points; at least 3 are needed, draw a closed shape")]
     TooFewPoints {
         /// What was given, such as `outline` or `hole 2`.
         what: String,
@@ -31,11 +37,17 @@ pub enum Error {
         distinct: usize,
     },
     /// All points lie on one line, or the outline encloses nothing.
+    #[error("the {what} encloses no area: its points lie on one line; draw a closed shape")]
     ZeroArea {
         /// What was given, such as `outline` or `hole 2`.
         what: String,
     },
     /// Two segments of the input cross, touch or overlap.
+    #[error(
+        "the {what} meets itself: segments {first} and {second} cross or touch at ({:.6}, {:.6}); draw \
+         an outline that does not cross itself",
+        .at[0], .at[1]
+    )]
     SelfIntersecting {
         /// What was given, such as `outline` or `hole 2`.
         what: String,
@@ -47,6 +59,10 @@ pub enum Error {
         at: [f64; 2],
     },
     /// The parts that a self-crossing outline encloses meet in single points only.
+    #[error(
+        "the {what} encloses {parts} parts that meet only where it crosses itself; draw each of them as \
+         an outline of its own"
+    )]
     Disconnected {
         /// What was given, such as `outline`.
         what: String,
@@ -54,6 +70,7 @@ pub enum Error {
         parts: usize,
     },
     /// A hole does not lie inside the outline, or meets the outline or another hole.
+    #[error("hole {hole} {reason}; each hole must lie inside the outline and apart from the others")]
     HoleMisplaced {
         /// Index of the hole.
         hole: usize,
@@ -61,6 +78,7 @@ pub enum Error {
         reason: String,
     },
     /// A mirror-symmetric mesh was asked for, of a drawing that is not symmetric.
+    #[error(fmt = not_symmetric)]
     NotSymmetric {
         /// What is not, such as `outline` or `hole 2`.
         what: String,
@@ -72,6 +90,7 @@ pub enum Error {
         at: [f64; 2],
     },
     /// An option has a value that is not allowed.
+    #[error("{name} is {value}; allowed: {allowed}")]
     InvalidOption {
         /// Name of the option.
         name: &'static str,
@@ -81,6 +100,7 @@ pub enum Error {
         allowed: &'static str,
     },
     /// No chord-free lattice patch of about this size follows the drawing.
+    #[error(fmt = too_coarse)]
     TooCoarse {
         /// The number of triangles, or of quads, that was asked for.
         triangles: usize,
@@ -90,6 +110,10 @@ pub enum Error {
         needed: Needed,
     },
     /// The mesh asked for is larger than is supported.
+    #[error(
+        "about {triangles:.3e} triangles were asked for; at most {limit:.3e} are supported, use a larger \
+         edge length"
+    )]
     TooLarge {
         /// Triangles asked for (estimated from the area).
         triangles: f64,
@@ -97,6 +121,10 @@ pub enum Error {
         limit: f64,
     },
     /// No valid patch was found at any resolution tried.
+    #[error(
+        "no valid mesh was found: {reason} near ({:.6}, {:.6}); simplify the drawing there",
+        .at[0], .at[1]
+    )]
     NoPatch {
         /// What stood in the way at the last resolution tried.
         reason: String,
@@ -104,6 +132,7 @@ pub enum Error {
         at: [f64; 2],
     },
     /// A linear solve failed.
+    #[error("the linear solve of the {stage} failed: {reason}")]
     Solver {
         /// The stage, such as `inflation`.
         stage: &'static str,
@@ -111,18 +140,29 @@ pub enum Error {
         reason: String,
     },
     /// The caller asked to stop.
+    #[error("cancelled")]
     Cancelled,
     /// Without relaxation some triangles of the patch are inverted.
+    #[error(
+        "without relaxation triangles are inverted, one of them near ({:.6}, {:.6}); leave relax on, or \
+         use more triangles",
+        .at[0], .at[1]
+    )]
     Inverted {
         /// A corner of one of them, in the units of the drawing.
         at: [f64; 2],
     },
     /// The library contradicts itself: a bug, whatever the input.
+    #[error("a bug in gridmesh, please report it with this input: {reason}")]
     Internal {
         /// What should not be.
         reason: &'static str,
     },
     /// A vertex number that does not exist.
+    #[error(
+        "the {what} names vertex {index}; allowed: 0 to {}, one of the {vertices} vertices given",
+        .vertices.saturating_sub(1)
+    )]
     IndexOutOfRange {
         /// What names it, such as `loop` or `triangle 7`.
         what: String,
@@ -132,6 +172,10 @@ pub enum Error {
         vertices: usize,
     },
     /// A loop names a vertex twice in a row.
+    #[error(
+        "the loop names vertex {vertex} twice in a row (places {first} and {second}); name each vertex \
+         once"
+    )]
     RepeatedVertex {
         /// The vertex.
         vertex: u32,
@@ -141,11 +185,15 @@ pub enum Error {
         second: usize,
     },
     /// A loop passes through a vertex twice.
+    #[error("the loop passes through vertex {vertex} twice, like a figure eight; fill its parts one by one")]
     FigureEight {
         /// The vertex.
         vertex: u32,
     },
     /// Edges that should form loops meet three or more in a vertex.
+    #[error(
+        "{edges} of the edges meet in vertex {vertex}; a loop has two at each vertex, deselect the others"
+    )]
     Branching {
         /// The vertex.
         vertex: u32,
@@ -153,17 +201,30 @@ pub enum Error {
         edges: usize,
     },
     /// Edges that should form a loop end.
+    #[error(
+        "the edges form an open chain from vertex {} to vertex {}; join its ends to a closed loop",
+        .ends[0], .ends[1]
+    )]
     OpenChain {
         /// Two vertices with one edge each.
         ends: [u32; 2],
     },
     /// Two neighbours on a loop lie on the same point.
+    #[error(
+        "the loop's edge from vertex {} to vertex {} has no length; merge the two vertices",
+        .edge[0], .edge[1]
+    )]
     ZeroLengthEdge {
         /// The two vertices.
         edge: [u32; 2],
     },
     /// Two vertices of a loop that are not neighbours lie on the same point, or a vertex lies on or an
     /// edge crosses an edge that it does not belong to.
+    #[error(
+        "the loop touches itself at vertices {first} and {second}, near ({:.6}, {:.6}, {:.6}); merge or \
+         move apart what meets there",
+        .at[0], .at[1], .at[2]
+    )]
     SelfTouching {
         /// A vertex, or the first vertex of an edge, of the loop.
         first: u32,
@@ -173,11 +234,21 @@ pub enum Error {
         at: [f64; 3],
     },
     /// An edge of a loop has faces on both sides already.
+    #[error(
+        "the loop's edge from vertex {} to vertex {} has faces on both sides; there is no hole, choose \
+         edges of one face",
+        .edge[0], .edge[1]
+    )]
     FacesOnBothSides {
         /// The two vertices.
         edge: [u32; 2],
     },
     /// An edge joins more than two faces, or more than two would result.
+    #[error(
+        "the border stops at vertex {vertex} after the edge from vertex {} to vertex {}: an edge there \
+         joins more than two faces; delete the surplus ones",
+        .edge[0], .edge[1]
+    )]
     NonManifold {
         /// The two vertices.
         edge: [u32; 2],
@@ -185,6 +256,11 @@ pub enum Error {
         vertex: u32,
     },
     /// Two loops of one call use the same edge.
+    #[error(
+        "loop {second} uses the edge from vertex {} to vertex {} like loop {first}; give each loop edge \
+         to one loop",
+        .edge[0], .edge[1]
+    )]
     SharedEdge {
         /// The two vertices.
         edge: [u32; 2],
@@ -194,11 +270,19 @@ pub enum Error {
         second: usize,
     },
     /// Faces that were to be replaced do not form a disk.
+    #[error(
+        "the faces have {borders} borders or touch themselves; choose one connected region without holes"
+    )]
     NotADisk {
         /// Their number of borders.
         borders: usize,
     },
     /// The fill meets itself or the mesh, which was not to be.
+    #[error(
+        "the fill would meet itself or the mesh in {pairs} pairs of triangles, first near ({:.6}, {:.6}, \
+         {:.6}); split the loop there, or allow it",
+        .at[0], .at[1], .at[2]
+    )]
     FillIntersects {
         /// Pairs of triangles that meet.
         pairs: usize,
@@ -206,6 +290,9 @@ pub enum Error {
         at: [f64; 3],
     },
     /// A face is not a polygon.
+    #[error(
+        "face {face} is not allowed: {reason}; each face needs three or more different vertices in order"
+    )]
     InvalidFace {
         /// The face.
         face: usize,
@@ -213,13 +300,25 @@ pub enum Error {
         reason: String,
     },
     /// A stroke has too few distinct points, as it is seen, to cut along.
+    #[error(
+        "the stroke has {distinct} distinct points as it is seen along the cut; an open one needs 2, a \
+         closed one 3: draw across the model, or cut along another direction"
+    )]
     StrokeTooShort {
         /// Number of distinct points seen.
         distinct: usize,
     },
     /// A stroke does not divide the mesh.
+    #[error(
+        "the stroke does not divide the mesh: all of it lies on one side, continued ends included; draw \
+         across the model"
+    )]
     StrokeMisses,
     /// A point is not in front of the eye.
+    #[error(
+        "point {point} of the {what} is not in front of the eye; move the eye back, or cut along a \
+         direction"
+    )]
     BehindEye {
         /// What has the point: `mesh` or `stroke`.
         what: &'static str,
@@ -227,6 +326,11 @@ pub enum Error {
         point: usize,
     },
     /// Rounding leaves no consistent cut.
+    #[error(
+        "the mesh cannot be cut here: {reason}, near ({:.6}, {:.6}, {:.6}); move the stroke a little, or \
+         merge vertices that nearly coincide there",
+        .at[0], .at[1], .at[2]
+    )]
     CutFailed {
         /// What stands in the way.
         reason: &'static str,
@@ -234,11 +338,17 @@ pub enum Error {
         at: [f64; 3],
     },
     /// What a stroke crosses without its ends continued hangs together around the cut.
+    #[error(
+        "what the stroke crosses still hangs together around the cut, near ({:.6}, {:.6}, {:.6}); draw \
+         it across all that must come apart, or let its ends be extended",
+        .at[0], .at[1], .at[2]
+    )]
     StillJoined {
         /// Where.
         at: [f64; 3],
     },
     /// A picture has no pixels, or too many.
+    #[error("the picture is {width} by {height} pixels; allowed: 1 to {limit} pixels in all, scale it")]
     PictureSize {
         /// Pixels in a row.
         width: usize,
@@ -248,6 +358,10 @@ pub enum Error {
         limit: usize,
     },
     /// A value of a picture is NaN or infinite.
+    #[error(
+        "the pixel in row {row}, column {column} of the picture is NaN or infinite; all values must be \
+         finite"
+    )]
     PixelNotFinite {
         /// Its row, from the top.
         row: usize,
@@ -311,189 +425,41 @@ impl Error {
     }
 }
 
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Error::NotFinite { what, point } => {
-                write!(f, "point {point} of the {what} is NaN or infinite; all coordinates must be finite")
-            }
-            Error::ExtremeSize { what, size } => {
-                write!(
-                    f,
-                    "the {what} is {size:.3e} across; allowed: 1e-30 to 1e30 (meshes and loops in space: 1e-60 to 1e60), \
-                     scale it"
-                )
-            }
-            Error::TooFewPoints { what, distinct } => {
-                write!(
-                    f,
-                    "the {what} has {distinct} distinct points; at least 3 are needed, draw a closed shape"
-                )
-            }
-            Error::ZeroArea { what } => {
-                write!(f, "the {what} encloses no area: its points lie on one line; draw a closed shape")
-            }
-            Error::SelfIntersecting { what, first, second, at: [x, y] } => write!(
-                f,
-                "the {what} meets itself: segments {first} and {second} cross or touch at ({x:.6}, {y:.6}); \
-                 draw an outline that does not cross itself"
-            ),
-            Error::Disconnected { what, parts } => write!(
-                f,
-                "the {what} encloses {parts} parts that meet only where it crosses itself; draw each of them \
-                 as an outline of its own"
-            ),
-            Error::HoleMisplaced { hole, reason } => {
-                write!(
-                    f,
-                    "hole {hole} {reason}; each hole must lie inside the outline and apart from the others"
-                )
-            }
-            Error::NotSymmetric { what, distance, allowed, at: [x, y] } if distance.is_finite() => write!(
-                f,
-                "the {what} is not its own mirror image: near ({x:.6}, {y:.6}) it is {distance:.3e} off; \
-                 allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
-                 or mesh it without mirror"
-            ),
-            Error::NotSymmetric { what, allowed, at: [x, y], .. } => write!(
-                f,
-                "the {what} is not its own mirror image: near ({x:.6}, {y:.6}) it has no partner across the axis; \
-                 allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
-                 or mesh it without mirror"
-            ),
-            Error::InvalidOption { name, value, allowed } => {
-                write!(f, "{name} is {value}; allowed: {allowed}")
-            }
-            Error::TooCoarse { triangles, cells, needed } => {
-                match *cells {
-                    "quads" => write!(f, "{triangles} quads are too few to follow this drawing; ")?,
-                    _ => write!(f, "{triangles} triangles are too few to follow this drawing; ")?,
-                }
-                match needed {
-                    Needed::Least(least) => write!(f, "{least} work (or a smaller edge length)"),
-                    Needed::MoreThan(tried) => write!(
-                        f,
-                        "numbers up to {tried} were tried and do not work either, use more or draw its thin parts wider"
-                    ),
-                    Needed::Unknown => write!(f, "use more (or a smaller edge length)"),
-                }
-            }
-            Error::TooLarge { triangles, limit } => write!(
-                f,
-                "about {triangles:.3e} triangles were asked for; at most {limit:.3e} are supported, \
-                 use a larger edge length"
-            ),
-            Error::NoPatch { reason, at: [x, y] } => {
-                write!(
-                    f,
-                    "no valid mesh was found: {reason} near ({x:.6}, {y:.6}); simplify the drawing there"
-                )
-            }
-            Error::Solver { stage, reason } => {
-                write!(f, "the linear solve of the {stage} failed: {reason}")
-            }
-            Error::Cancelled => write!(f, "cancelled"),
-            Error::Inverted { at: [x, y] } => write!(
-                f,
-                "without relaxation triangles are inverted, one of them near ({x:.6}, {y:.6}); \
-                 leave relax on, or use more triangles"
-            ),
-            Error::Internal { reason } => {
-                write!(f, "a bug in gridmesh, please report it with this input: {reason}")
-            }
-            Error::IndexOutOfRange { what, index, vertices } => write!(
-                f,
-                "the {what} names vertex {index}; allowed: 0 to {}, one of the {vertices} vertices given",
-                vertices.saturating_sub(1)
-            ),
-            Error::RepeatedVertex { vertex, first, second } => write!(
-                f,
-                "the loop names vertex {vertex} twice in a row (places {first} and {second}); \
-                 name each vertex once"
-            ),
-            Error::FigureEight { vertex } => write!(
-                f,
-                "the loop passes through vertex {vertex} twice, like a figure eight; fill its parts one by one"
-            ),
-            Error::Branching { vertex, edges } => write!(
-                f,
-                "{edges} of the edges meet in vertex {vertex}; a loop has two at each vertex, deselect the others"
-            ),
-            Error::OpenChain { ends: [a, b] } => write!(
-                f,
-                "the edges form an open chain from vertex {a} to vertex {b}; join its ends to a closed loop"
-            ),
-            Error::ZeroLengthEdge { edge: [a, b] } => write!(
-                f,
-                "the loop's edge from vertex {a} to vertex {b} has no length; merge the two vertices"
-            ),
-            Error::SelfTouching { first, second, at: [x, y, z] } => write!(
-                f,
-                "the loop touches itself at vertices {first} and {second}, near ({x:.6}, {y:.6}, {z:.6}); \
-                 merge or move apart what meets there"
-            ),
-            Error::FacesOnBothSides { edge: [a, b] } => write!(
-                f,
-                "the loop's edge from vertex {a} to vertex {b} has faces on both sides; \
-                 there is no hole, choose edges of one face"
-            ),
-            Error::NonManifold { edge: [a, b], vertex } => write!(
-                f,
-                "the border stops at vertex {vertex} after the edge from vertex {a} to vertex {b}: \
-                 an edge there joins more than two faces; delete the surplus ones"
-            ),
-            Error::SharedEdge { edge: [a, b], first, second } => write!(
-                f,
-                "loop {second} uses the edge from vertex {a} to vertex {b} like loop {first}; \
-                 give each loop edge to one loop"
-            ),
-            Error::NotADisk { borders } => write!(
-                f,
-                "the faces have {borders} borders or touch themselves; choose one connected region without holes"
-            ),
-            Error::FillIntersects { pairs, at: [x, y, z] } => write!(
-                f,
-                "the fill would meet itself or the mesh in {pairs} pairs of triangles, \
-                 first near ({x:.6}, {y:.6}, {z:.6}); split the loop there, or allow it"
-            ),
-            Error::InvalidFace { face, reason } => write!(
-                f,
-                "face {face} is not allowed: {reason}; each face needs three or more different vertices in order"
-            ),
-            Error::StrokeTooShort { distinct } => write!(
-                f,
-                "the stroke has {distinct} distinct points as it is seen along the cut; an open one needs 2, a closed one 3: \
-                 draw across the model, or cut along another direction"
-            ),
-            Error::StrokeMisses => write!(
-                f,
-                "the stroke does not divide the mesh: all of it lies on one side, continued ends included; \
-                 draw across the model"
-            ),
-            Error::BehindEye { what, point } => write!(
-                f,
-                "point {point} of the {what} is not in front of the eye; move the eye back, or cut along a direction"
-            ),
-            Error::CutFailed { reason, at: [x, y, z] } => write!(
-                f,
-                "the mesh cannot be cut here: {reason}, near ({x:.6}, {y:.6}, {z:.6}); move the stroke a little, \
-                 or merge vertices that nearly coincide there"
-            ),
-            Error::StillJoined { at: [x, y, z] } => write!(
-                f,
-                "what the stroke crosses still hangs together around the cut, near ({x:.6}, {y:.6}, {z:.6}); \
-                 draw it across all that must come apart, or let its ends be extended"
-            ),
-            Error::PictureSize { width, height, limit } => write!(
-                f,
-                "the picture is {width} by {height} pixels; allowed: 1 to {limit} pixels in all, scale it"
-            ),
-            Error::PixelNotFinite { row, column } => write!(
-                f,
-                "the pixel in row {row}, column {column} of the picture is NaN or infinite; all values must be finite"
-            ),
-        }
+fn not_symmetric(
+    what: &str,
+    distance: &f64,
+    allowed: &f64,
+    [x, y]: &[f64; 2],
+    f: &mut fmt::Formatter<'_>,
+) -> fmt::Result {
+    if distance.is_finite() {
+        write!(
+            f,
+            "the {what} is not its own mirror image: near ({x:.6}, {y:.6}) it is {distance:.3e} off; \
+             allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
+             or mesh it without mirror"
+        )
+    } else {
+        write!(
+            f,
+            "the {what} is not its own mirror image: near ({x:.6}, {y:.6}) it has no partner across the axis; \
+             allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
+             or mesh it without mirror"
+        )
     }
 }
 
-impl std::error::Error for Error {}
+fn too_coarse(triangles: &usize, cells: &str, needed: &Needed, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match cells {
+        "quads" => write!(f, "{triangles} quads are too few to follow this drawing; ")?,
+        _ => write!(f, "{triangles} triangles are too few to follow this drawing; ")?,
+    }
+    match needed {
+        Needed::Least(least) => write!(f, "{least} work (or a smaller edge length)"),
+        Needed::MoreThan(tried) => write!(
+            f,
+            "numbers up to {tried} were tried and do not work either, use more or draw its thin parts wider"
+        ),
+        Needed::Unknown => write!(f, "use more (or a smaller edge length)"),
+    }
+}
