@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use super::cutting::Cutting;
 use super::input::{Polygons, volume};
 use super::options::Keep;
 use super::report::Tally;
@@ -55,19 +56,19 @@ pub struct Piece {
 }
 
 pub(super) fn assemble(
-    vertices: &[DVec3],
-    faces: Polygons<'_>,
+    cutting: Cutting<'_>,
     parted: &Parted,
     loops: &Loops,
     caps: &Caps,
-    keep: Keep,
     tally: &mut Tally,
 ) -> Vec<Piece> {
+    let Cutting { vertices, faces, options } = cutting;
+    let keep = options.keep;
     let on_cut = parted.on_cut();
     let sides = [(Side::Left, Keep::Left), (Side::Right, Keep::Right)];
     let kept = sides.into_iter().filter(|(_, word)| keep.has(*word)).map(|s| s.0).collect::<Vec<_>>();
     let made: Vec<_> =
-        kept.into_par_iter().map(|side| one(vertices, faces, parted, loops, caps, side, &on_cut)).collect();
+        kept.into_par_iter().map(|side| one(cutting, parted, loops, caps, side, &on_cut)).collect();
     let mut pieces = vec![];
     for (piece, least, doubled) in made {
         tally.report.rim_min_angle = tally.report.rim_min_angle.min(least);
@@ -98,8 +99,7 @@ fn whole_volume(vertices: &[DVec3], origin: DVec3, faces: Polygons<'_>) -> f64 {
 
 /// A piece, the smallest angle along its rim, and how many vertices were doubled.
 fn one(
-    vertices: &[DVec3],
-    faces: Polygons<'_>,
+    Cutting { vertices, faces, .. }: Cutting<'_>,
     parted: &Parted,
     loops: &Loops,
     caps: &Caps,

@@ -19,6 +19,7 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
+use super::cutting::Cutting;
 use super::input::{Polygons, triangles};
 use super::report::Tally;
 use crate::cut::divide::parted::{Part, Parted, SEAM};
@@ -55,9 +56,11 @@ const DRAWN: usize = 2;
 /// Angles below this are reason enough to draw the cut through a vertex.
 const POOR: f64 = 0.19;
 
-/// Which old vertices the line may be drawn through.
+/// What the line is to become, and which old vertices it may be drawn through.
 pub(super) struct Through<'a> {
-    /// Their distance from the line at most.
+    /// Its edges' length.
+    pub length: f64,
+    /// The distance of the old vertices from the line at most.
     pub reach: f64,
     /// How far each is off where the line was drawn.
     pub off: &'a dyn Fn(u32) -> f64,
@@ -72,17 +75,16 @@ const WIDE: f64 = 0.1;
 
 /// Evens out the line and the faces along it. Returns false if the cut must be repeated: `again` gets the old vertices
 /// beside the line whose triangles stay thin, in order, and says whether to snap the line to them.
-#[expect(clippy::too_many_arguments, reason = "a stage of the whole")]
 pub(super) fn even_out(
-    vertices: &[DVec3],
-    faces: Polygons<'_>,
+    cutting: Cutting<'_>,
     parted: &mut Parted,
-    length: f64,
     through: &Through<'_>,
     tally: &mut Tally,
     again: impl FnOnce(Vec<u32>) -> bool,
     progress: Progress<'_>,
 ) -> Result<bool> {
+    let Cutting { vertices, faces, .. } = cutting;
+    let length = through.length;
     let parts = gather(vertices, faces, parted);
     let old = std::mem::take(&mut parted.parts);
     let own = old.iter().map(|p| p.face).collect::<FxHashSet<_>>();

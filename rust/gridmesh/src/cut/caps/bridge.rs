@@ -17,6 +17,19 @@ pub(in crate::cut) struct Bridges<'a> {
     pub spots: Vec<DVec2>,
 }
 
+/// A line from one loop to another: its length, and its places in both.
+type Link = (f64, usize, usize);
+
+/// A line of vertices from one loop to another.
+struct Bridge {
+    /// Where it begins: a place in its loop.
+    from: usize,
+    /// Where it ends.
+    to: usize,
+    /// Its new vertices, without its ends.
+    over: Vec<Spot>,
+}
+
 impl Bridges<'_> {
     /// Simple polygons, counter-clockwise, that cover a region; `None` if no way was found.
     pub fn open(&mut self, region: Region, width: f64) -> Option<Vec<Vec<Spot>>> {
@@ -24,7 +37,7 @@ impl Bridges<'_> {
         match region {
             Region::Sheet { outline, holes } => self.open_sheet(outline, holes, &mut pieces)?,
             Region::Tube { lower, upper, holes } => {
-                for (outline, holes) in self.open_tube(lower, upper, holes, width)? {
+                for (outline, holes) in self.open_tube(&lower, upper, holes, width)? {
                     self.open_sheet(outline, holes, &mut pieces)?;
                 }
             }
@@ -58,7 +71,7 @@ impl Bridges<'_> {
         let first = *near.iter().find(|l| is_clear(&walls, outline[l.1].at, hole[l.2].at))?;
         walls.push([outline[first.1].at, hole[first.2].at]);
         let n = hole.len();
-        let apart = |l: &(f64, usize, usize)| {
+        let apart = |l: &Link| {
             let steps = (l.2 + n - first.2) % n;
             steps.min(n - steps)
         };
@@ -77,13 +90,11 @@ impl Bridges<'_> {
             all.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
             all.into_iter().take(4000).find(|l| is_clear(&walls, outline[l.1].at, hole[l.2].at))
         })?;
-        let one = self.bridge(&outline, first.1, &hole, first.2);
-        let two = self.bridge(&outline, second.1, &hole, second.2);
-        // Along the outline to the one, over it, along the hole, back over the other.
-        let halves = [
-            walk(&outline, second.1, first.1, &one, &hole, first.2, second.2, &two),
-            walk(&outline, first.1, second.1, &two, &hole, second.2, first.2, &one),
-        ];
+        let [one, two] = [first, second].map(|(_, from, to)| {
+            let over = self.bridge(&outline, from, &hole, to);
+            Bridge { from, to, over }
+        });
+        let halves = [walk(&outline, &hole, &two, &one), walk(&outline, &hole, &one, &two)];
         let mut shares = [vec![], vec![]];
         for other in holes {
             let k = usize::from(!is_within(&halves[0], other[0].at));
@@ -96,123 +107,32 @@ impl Bridges<'_> {
     }
 
     /// Cuts a tube along two lines into two sheets.
-    #[expect(clippy::type_complexity, reason = "two sheets with their holes")]
     fn open_tube(
         &mut self,
-        lower: Vec<Spot>,
+        lower: &[Spot],
         upper: Vec<Spot>,
         holes: Vec<Vec<Spot>>,
         width: f64,
     ) -> Option<Vec<(Vec<Spot>, Vec<Vec<Spot>>)>> {
-        // Both forward, beginning at about the same place, three times around.
-        let upper = upper.into_iter().rev().collect::<Vec<_>>();
-        let begin = lower[0].at.x;
-        let thrice = |around: &[Spot]| {
-            let base = width * ((begin - around[0].at.x) / width).round();
-            let turn = |k: f64| {
-                around.iter().map(move |s| Spot { at: DVec2::new(s.at.x + (base + k * width), s.at.y), ..*s })
-            };
-            turn(-1.0).chain(turn(0.0)).chain(turn(1.0)).collect::<Vec<_>>()
-        };
-        let (low, high) = (thrice(&lower), thrice(&upper));
-        let mut walls = edges_open(&low);
-        walls.extend(edges_open(&high));
-        for h in &holes {
-            for shift in [0.0, -width, width] {
-                walls.extend(edges(h).into_iter().map(|e| e.map(|p| p + DVec2::new(shift, 0.0))));
-            }
-        }
-        let n = lower.len();
-        let off = |i: usize, j: usize| low[i].at.distance_squared(high[j].at);
-        let nearest = |i: usize| {
-            let best = (0..high.len()).min_by(|&a, &b| off(i, a).total_cmp(&off(i, b)))?;
-            is_clear(&walls, low[i].at, high[best].at).then(|| (off(i, best).sqrt(), i, best))
-        };
-        // Where the nearest vertex is behind others of its own loop, the nearest that is not.
-        let in_sight = |i: usize| {
-            let mut near = (0..high.len()).collect::<Vec<_>>();
-            near.sort_by(|&a, &b| off(i, a).total_cmp(&off(i, b)));
-            let best = near.into_iter().find(|&j| is_clear(&walls, low[i].at, high[j].at))?;
-            Some((off(i, best).sqrt(), i, best))
-        };
-        let m = upper.len();
-        let apart =
-            |l: &(f64, usize, usize), other: &(f64, usize, usize)| l.1 != other.1 && l.2 % m != other.2 % m;
-        let mut links = (n..2 * n).filter_map(nearest).collect::<Vec<_>>();
-        if !links.iter().any(|l| apart(l, &links[0])) {
-            links = (n..2 * n).filter_map(in_sight).collect();
-        }
-        let first = *links.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let middle = low[first.1].at.x + 0.5 * width;
-        // Another one about half around.
-        let rank = |l: &(f64, usize, usize)| {
-            let x = low[l.1].at.x;
-            let off = [x - middle, x + width - middle, x - width - middle];
-            off.into_iter().map(f64::abs).fold(f64::INFINITY, f64::min)
-        };
-        let crosses = |l: &(f64, usize, usize)| {
-            let own = [low[l.1].at, high[l.2].at];
-            [0.0, -width, width].into_iter().any(|shift| {
-                segments_meet(own, [low[first.1].at, high[first.2].at].map(|p| p + DVec2::new(shift, 0.0)))
-            })
-        };
-        let second = *links
-            .iter()
-            .filter(|l| apart(l, &first) && !crosses(l))
-            .min_by(|a, b| rank(a).total_cmp(&rank(b)))?;
-        let one = self.bridge(&low, first.1, &high, first.2);
-        let two = self.bridge(&low, second.1, &high, second.2);
-        let mut sheets = vec![];
-        for ((from, up), (to, down)) in [((first, &one), (second, &two)), ((second, &two), (first, &one))] {
-            // Forward on the lower loop, over a bridge, back on the upper loop, over the other bridge.
-            let mut outline = vec![];
-            let mut spots = (0..=n).map(|k| low[(from.1 + k) % n]);
-            let mut x = low[from.1].at.x;
-            for spot in spots.by_ref() {
-                let at = DVec2::new(spot.at.x + width * ((x - spot.at.x) / width).round(), spot.at.y);
-                x = at.x;
-                outline.push(Spot { at, ..spot });
-                if outline.len() > 1 && spot.node == low[to.1].node {
-                    break;
-                }
-            }
-            let shift = |spot: Spot, x: f64| Spot {
-                at: DVec2::new(spot.at.x + width * ((x - spot.at.x) / width).round(), spot.at.y),
-                ..spot
-            };
-            for &spot in down {
-                let spot = shift(spot, x);
-                x = spot.at.x;
-                outline.push(spot);
-            }
-            // The upper loop backward.
-            for k in 0..=m {
-                let spot = shift(high[(to.2 + 3 * m - k) % m], x);
-                x = spot.at.x;
-                outline.push(spot);
-                if k > 0 && spot.node == high[from.2].node {
-                    break;
-                }
-            }
-            for &spot in up.iter().rev() {
-                let spot = shift(spot, x);
-                x = spot.at.x;
-                outline.push(spot);
-            }
-            sheets.push((outline, vec![]));
-        }
+        let tube = Tube::new(lower, upper, width);
+        let [first, second] = tube.links(&holes)?;
+        let [one, two] = [first, second].map(|(_, from, to)| {
+            let over = self.bridge(&tube.low, from, &tube.high, to);
+            Bridge { from, to, over }
+        });
+        let outlines = [tube.walk(&one, &two), tube.walk(&two, &one)];
+        let mut sheets = outlines.map(|outline| (outline, vec![]));
         for hole in holes {
             let at = |shift: f64| hole[0].at + DVec2::new(shift, 0.0);
-            let place = [0.0, -width, width].into_iter().find_map(|shift| {
-                let k =
-                    sheets.iter().position(|s: &(Vec<Spot>, Vec<Vec<Spot>>)| is_within(&s.0, at(shift)))?;
+            let place = tube.shifts().into_iter().find_map(|shift| {
+                let k = sheets.iter().position(|(outline, _)| is_within(outline, at(shift)))?;
                 Some((k, shift))
             });
             let (k, shift) = place?;
             let moved = hole.iter().map(|s| Spot { at: s.at + DVec2::new(shift, 0.0), ..*s }).collect();
             sheets[k].1.push(moved);
         }
-        Some(sheets)
+        Some(sheets.into())
     }
 
     /// New vertices from one spot to another, about as far apart as the vertices at its ends.
@@ -238,43 +158,127 @@ impl Bridges<'_> {
     }
 }
 
-/// Outline from `from` to `to`, the bridge, the hole from `enter` to `leave`, and the other bridge back.
-#[expect(clippy::too_many_arguments, reason = "two loops and two bridges")]
-fn walk(
-    outline: &[Spot],
-    from: usize,
-    to: usize,
-    over: &[Spot],
-    hole: &[Spot],
-    enter: usize,
-    leave: usize,
-    back: &[Spot],
-) -> Vec<Spot> {
-    let (n, m) = (outline.len(), hole.len());
-    let mut all = vec![];
-    let mut k = from;
-    loop {
-        all.push(outline[k]);
-        if k == to {
-            break;
-        }
-        k = (k + 1) % n;
+/// Two loops around a closed sheet, unrolled.
+struct Tube {
+    /// Both forward, beginning at about the same place, three times around.
+    low: Vec<Spot>,
+    high: Vec<Spot>,
+    /// Vertices of each, once around.
+    n: usize,
+    m: usize,
+    /// Of the unrolled sheet.
+    width: f64,
+}
+
+impl Tube {
+    fn new(lower: &[Spot], upper: Vec<Spot>, width: f64) -> Self {
+        let begin = lower[0].at.x;
+        let thrice = |around: &[Spot]| {
+            let base = width * ((begin - around[0].at.x) / width).round();
+            let turn = |k: f64| {
+                around.iter().map(move |s| Spot { at: DVec2::new(s.at.x + (base + k * width), s.at.y), ..*s })
+            };
+            turn(-1.0).chain(turn(0.0)).chain(turn(1.0)).collect::<Vec<_>>()
+        };
+        let upper = upper.into_iter().rev().collect::<Vec<_>>();
+        Tube { low: thrice(lower), high: thrice(&upper), n: lower.len(), m: upper.len(), width }
     }
-    all.extend(over);
-    let mut k = enter;
-    loop {
-        all.push(hole[k]);
-        if k == leave {
-            break;
-        }
-        k = (k + 1) % m;
+
+    fn shifts(&self) -> [f64; 3] {
+        [0.0, -self.width, self.width]
     }
-    all.extend(back.iter().rev());
+
+    /// Two lines from the lower to the upper loop that meet nothing, about half around apart: lengths and places.
+    fn links(&self, holes: &[Vec<Spot>]) -> Option<[Link; 2]> {
+        let Tube { low, high, n, m, width } = self;
+        let mut walls = edges_open(low);
+        walls.extend(edges_open(high));
+        for h in holes {
+            for shift in self.shifts() {
+                walls.extend(edges(h).into_iter().map(|e| e.map(|p| p + DVec2::new(shift, 0.0))));
+            }
+        }
+        let off = |i: usize, j: usize| low[i].at.distance_squared(high[j].at);
+        let nearest = |i: usize| {
+            let best = (0..high.len()).min_by(|&a, &b| off(i, a).total_cmp(&off(i, b)))?;
+            is_clear(&walls, low[i].at, high[best].at).then(|| (off(i, best).sqrt(), i, best))
+        };
+        // Where the nearest vertex is behind others of its own loop, the nearest that is not.
+        let in_sight = |i: usize| {
+            let mut near = (0..high.len()).collect::<Vec<_>>();
+            near.sort_by(|&a, &b| off(i, a).total_cmp(&off(i, b)));
+            let best = near.into_iter().find(|&j| is_clear(&walls, low[i].at, high[j].at))?;
+            Some((off(i, best).sqrt(), i, best))
+        };
+        let apart = |l: &Link, other: &Link| l.1 != other.1 && l.2 % m != other.2 % m;
+        let mut links = (*n..2 * n).filter_map(nearest).collect::<Vec<_>>();
+        if !links.iter().any(|l| apart(l, &links[0])) {
+            links = (*n..2 * n).filter_map(in_sight).collect();
+        }
+        let first = *links.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let middle = low[first.1].at.x + 0.5 * width;
+        // Another one about half around.
+        let rank = |l: &Link| {
+            let x = low[l.1].at.x;
+            let off = [x - middle, x + width - middle, x - width - middle];
+            off.into_iter().map(f64::abs).fold(f64::INFINITY, f64::min)
+        };
+        let crosses = |l: &Link| {
+            let own = [low[l.1].at, high[l.2].at];
+            self.shifts().into_iter().any(|shift| {
+                segments_meet(own, [low[first.1].at, high[first.2].at].map(|p| p + DVec2::new(shift, 0.0)))
+            })
+        };
+        let second = *links
+            .iter()
+            .filter(|l| apart(l, &first) && !crosses(l))
+            .min_by(|a, b| rank(a).total_cmp(&rank(b)))?;
+        Some([first, second])
+    }
+
+    /// Forward on the lower loop from one bridge to the other, over that, back on the upper loop, and back over the first.
+    fn walk(&self, back: &Bridge, out: &Bridge) -> Vec<Spot> {
+        let Tube { low, high, n, m, width } = self;
+        let beside = |spot: Spot, x: f64| Spot {
+            at: DVec2::new(spot.at.x + width * ((x - spot.at.x) / width).round(), spot.at.y),
+            ..spot
+        };
+        let forward = (0..=*n).map(|k| low[(back.from + k) % n]);
+        let ahead = 1 + forward.clone().skip(1).take_while(|s| s.node != low[out.from].node).count();
+        let backward = (0..=*m).map(|k| high[(out.to + 3 * m - k) % m]);
+        let behind = 1 + backward.clone().skip(1).take_while(|s| s.node != high[back.to].node).count();
+        let spots = forward
+            .take(ahead + 1)
+            .chain(out.over.iter().copied())
+            .chain(backward.take(behind + 1))
+            .chain(back.over.iter().rev().copied());
+        let mut x = low[back.from].at.x;
+        spots
+            .map(|spot| {
+                let spot = beside(spot, x);
+                x = spot.at.x;
+                spot
+            })
+            .collect()
+    }
+}
+
+/// Along the outline from one bridge to the next, over that, along the hole, and back over the first.
+fn walk(outline: &[Spot], hole: &[Spot], back: &Bridge, out: &Bridge) -> Vec<Spot> {
+    let along = |around: &[Spot], from: usize, to: usize| {
+        let n = around.len();
+        let steps = (to + n - from) % n;
+        (0..=steps).map(|k| around[(from + k) % n]).collect::<Vec<_>>()
+    };
+    let mut all = along(outline, back.from, out.from);
+    all.extend(&out.over);
+    all.extend(along(hole, out.to, back.to));
+    all.extend(back.over.iter().rev());
     all
 }
 
 /// For each vertex of the hole the nearest one of the outline: distance, there, here.
-fn links(outline: &[Spot], hole: &[Spot]) -> Vec<(f64, usize, usize)> {
+fn links(outline: &[Spot], hole: &[Spot]) -> Vec<Link> {
     let nearest = |(j, h): (usize, &Spot)| {
         let best = (0..outline.len()).min_by(|&a, &b| {
             outline[a].at.distance_squared(h.at).total_cmp(&outline[b].at.distance_squared(h.at))

@@ -38,14 +38,14 @@ impl Capper<'_> {
         inverted: bool,
         progress: Progress<'_>,
     ) -> Result<Bulged> {
-        let left = self.options.keep != Keep::Right;
-        let both = self.options.keep == Keep::Both;
+        let left = self.cutting.options.keep != Keep::Right;
+        let both = self.cutting.options.keep == Keep::Both;
         let n = outline.len();
-        let mut positions = self.vertices.to_vec();
+        let mut positions = self.cutting.vertices.to_vec();
         positions.extend(self.parted.nodes.iter().map(|node| node.position));
         let around = self.side(left);
         let nodes = outline.iter().map(|s| s.node).collect::<Vec<_>>();
-        let options = FillOptions { smooth: self.options.smooth, ..FillOptions::default() };
+        let options = FillOptions { smooth: self.cutting.options.smooth, ..FillOptions::default() };
         let fill = match fill_hole(&positions, &around, &nodes, &options, progress) {
             // What is filled in space is held to more than what is filled in the unrolled surface.
             Err(Error::ZeroLengthEdge { .. } | Error::SelfTouching { .. }) => return Ok(Bulged::Flat),
@@ -88,7 +88,7 @@ impl Capper<'_> {
         let tree = RTree::bulk_load(known.collect::<Vec<_>>());
         for position in at {
             let near = tree.nearest_neighbor(position.to_array()).map_or(nodes[0], |near| near.data);
-            self.caps.vertices.push(Node { position, ..self.parted.source(self.vertices, near) });
+            self.caps.vertices.push(Node { position, ..self.parted.source(self.cutting.vertices, near) });
         }
         for t in &fill.triangles {
             let mut t = t.map(|v| if v < old { v } else { base + v - old });
@@ -104,8 +104,10 @@ impl Capper<'_> {
     /// Triangles of one side of the divided mesh.
     fn side(&self, left: bool) -> Vec<[u32; 3]> {
         let mut found = vec![];
-        for f in (0..self.faces.len()).filter(|&f| !self.parted.divided[f] && self.parted.left[f] == left) {
-            triangles(self.vertices, self.faces.face(f), |t| found.push(t));
+        for f in
+            (0..self.cutting.faces.len()).filter(|&f| !self.parted.divided[f] && self.parted.left[f] == left)
+        {
+            triangles(self.cutting.vertices, self.cutting.faces.face(f), |t| found.push(t));
         }
         found.extend(self.parted.parts.iter().filter(|p| p.left == left).map(|p| p.corners));
         found

@@ -1,6 +1,6 @@
 //! Caps: regions of the swept surface, unrolled, filled vertex for vertex, and rolled up again.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use rustc_hash::FxHashSet;
 
 use super::bridge::Bridges;
@@ -9,10 +9,9 @@ use super::loops::Loops;
 use super::mirrored;
 use super::regions::{self, Region, Spot};
 use crate::cut::caps::capper::{Capper, Caps, LARGE};
+use crate::cut::cutting::Cutting;
 use crate::cut::divide::parted::Parted;
-use crate::cut::input::Polygons;
-use crate::cut::options::CutOptions;
-use crate::cut::report::Tally;
+use crate::cut::report::{CutReport, Tally};
 use crate::cut::sheet::Sheet;
 use crate::error::{Error, Result};
 use crate::fill::options::Smooth;
@@ -22,27 +21,23 @@ use crate::progress::Progress;
 /// Polygons filled between two reports of progress.
 const BATCH: usize = 16;
 
-#[expect(clippy::too_many_arguments, reason = "a stage of the whole")]
+/// Closes the pieces along the cut, with the same triangles for both.
 pub(in crate::cut) fn close(
-    vertices: &[DVec3],
-    faces: Polygons<'_>,
+    cutting: Cutting<'_>,
     parted: &Parted,
     sheet: &Sheet,
     loops: &Loops,
-    options: &CutOptions,
     tally: &mut Tally,
     progress: Progress<'_>,
 ) -> Result<Caps> {
     let first = (parted.n_old + parted.nodes.len()) as u32;
-    let seams = mirrored::close(vertices, parted, sheet, loops, &options.mirrors, first);
+    let seams = mirrored::close(cutting.vertices, parted, sheet, loops, &cutting.options.mirrors, first);
     tally.report.open_lines -= seams.outlines.len();
-    let found = regions::find(vertices, parted, sheet, loops, seams.outlines);
+    let found = regions::find(cutting.vertices, parted, sheet, loops, seams.outlines);
     let mut capper = Capper {
-        vertices,
-        faces,
+        cutting,
         parted,
         sheet,
-        options,
         edges: FxHashSet::default(),
         facets: FxHashSet::default(),
         first,
@@ -55,78 +50,16 @@ pub(in crate::cut) fn close(
     report.caps = found.regions.len();
     let (mut polygons, mut bulging) = (vec![], vec![]);
     for region in found.regions {
-        if let Region::Sheet { outline, holes } = &region
-            && holes.is_empty()
-        {
-            let is_seamed = outline.iter().any(|s| s.node >= first);
-            if options.smooth == Smooth::Flat || is_seamed {
-                polygons.push(outline.clone());
-            } else {
-                bulging.push(outline.clone());
+        match region {
+            Region::Sheet { outline, holes } if holes.is_empty() => {
+                let is_seamed = outline.iter().any(|s| s.node >= first);
+                let is_flat = cutting.options.smooth == Smooth::Flat || is_seamed;
+                if is_flat { &mut polygons } else { &mut bulging }.push(outline);
             }
-            continue;
-        }
-        report.rings += 1;
-        let alone: Vec<Vec<Spot>> = match &region {
-            Region::Sheet { outline, holes } => std::iter::once(outline).chain(holes).cloned().collect(),
-            Region::Tube { .. } => vec![],
-        };
-        let mut bridges = Bridges {
-            taken: &capper.edges,
-            first: capper.first + capper.caps.vertices.len() as u32,
-            spots: vec![],
-        };
-        // An angle between rays of the eye as the length that it spans.
-        let unit = if sheet.view.central { region.height() } else { 1.0 };
-        let opened = bridges.open(region.stretched(unit), unit * sheet.width());
-        let spots = bridges.spots;
-        match opened {
-            Some(mut opened) => {
-                let new =
-                    spots.iter().map(|&at| capper.node(DVec2::new(at.x / unit, at.y))).collect::<Vec<_>>();
-                capper.caps.vertices.extend(new);
-                opened.iter_mut().flatten().for_each(|s| s.at.x /= unit);
-                polygons.extend(opened);
-            }
-            None if alone.is_empty() => {
-                return Err(Error::CutFailed {
-                    reason: "the rim of a tunnel is too rough to be capped",
-                    at: sheet.lift(0.0, 0.0).into(),
-                });
-            }
-            None => {
-                // Loops that are not apart: each is closed by itself.
-                report.repeated += 1;
-                polygons.extend(alone);
-            }
+            ring => polygons.extend(open_ring(&mut capper, ring, report)?),
         }
     }
-    let is_small = |a: &Vec<Spot>, b: &Vec<Spot>| a.len().max(b.len()) < LARGE;
-    let batches = polygons.chunk_by(is_small).flat_map(|same| same.chunks(BATCH));
-    let mut done = 0;
-    for batch in batches {
-        let part = |done: usize| 0.5 * done as f64 / polygons.len() as f64;
-        let here = progress.part(part(done), part(done + batch.len()));
-        here.report(0.0)?;
-        done += batch.len();
-        // Of several errors the first one counts, but for the wish to stop.
-        let plan = |polygon: &Vec<Spot>, progress: Progress<'_>| match capper.plan(polygon, progress) {
-            Err(Error::Cancelled) => Err(Error::Cancelled),
-            plan => Ok(plan),
-        };
-        let plans: Vec<_> = match batch {
-            [polygon] => vec![plan(polygon, progress.part(part(done), part(done)))?],
-            _ => in_parallel(batch, Vec::len, here, plan)?,
-        };
-        for (polygon, plan) in batch.iter().zip(plans) {
-            let mut plan = plan?;
-            if capper.repeats(polygon, &plan) {
-                plan = capper.plan(polygon, progress.part(0.0, 0.0))?;
-            }
-            report.folded += usize::from(plan.folded);
-            capper.roll_up(polygon, &plan, found.inverted);
-        }
-    }
+    fill_flat(&mut capper, &polygons, found.inverted, report, progress.part(0.0, 0.5))?;
     for (k, outline) in bulging.iter().enumerate() {
         let here = k as f64 / bulging.len() as f64;
         match capper.bulge(outline, found.inverted, progress.part(0.5 + 0.5 * here, 0.5 + 0.5 * here))? {
@@ -145,4 +78,76 @@ pub(in crate::cut) fn close(
     capper.prove()?;
     capper.measure(tally);
     Ok(capper.caps)
+}
+
+/// Simple polygons that cover a region with holes, or one around a closed sheet.
+fn open_ring(capper: &mut Capper<'_>, region: Region, report: &mut CutReport) -> Result<Vec<Vec<Spot>>> {
+    report.rings += 1;
+    let alone: Vec<Vec<Spot>> = match &region {
+        Region::Sheet { outline, holes } => std::iter::once(outline).chain(holes).cloned().collect(),
+        Region::Tube { .. } => vec![],
+    };
+    let mut bridges = Bridges {
+        taken: &capper.edges,
+        first: capper.first + capper.caps.vertices.len() as u32,
+        spots: vec![],
+    };
+    // An angle between rays of the eye as the length that it spans.
+    let unit = if capper.sheet.view.central { region.height() } else { 1.0 };
+    let opened = bridges.open(region.stretched(unit), unit * capper.sheet.width());
+    let spots = bridges.spots;
+    match opened {
+        Some(mut opened) => {
+            let new = spots.iter().map(|&at| capper.node(DVec2::new(at.x / unit, at.y))).collect::<Vec<_>>();
+            capper.caps.vertices.extend(new);
+            opened.iter_mut().flatten().for_each(|s| s.at.x /= unit);
+            Ok(opened)
+        }
+        None if alone.is_empty() => Err(Error::CutFailed {
+            reason: "the rim of a tunnel is too rough to be capped",
+            at: capper.sheet.lift(0.0, 0.0).into(),
+        }),
+        None => {
+            // Loops that are not apart: each is closed by itself.
+            report.repeated += 1;
+            Ok(alone)
+        }
+    }
+}
+
+/// Fills polygons of the unrolled sheet, in parallel, and rolls them up in order.
+fn fill_flat(
+    capper: &mut Capper<'_>,
+    polygons: &[Vec<Spot>],
+    inverted: bool,
+    report: &mut CutReport,
+    progress: Progress<'_>,
+) -> Result<()> {
+    let is_small = |a: &Vec<Spot>, b: &Vec<Spot>| a.len().max(b.len()) < LARGE;
+    let batches = polygons.chunk_by(is_small).flat_map(|same| same.chunks(BATCH));
+    let mut done = 0;
+    for batch in batches {
+        let part = |done: usize| done as f64 / polygons.len() as f64;
+        let here = progress.part(part(done), part(done + batch.len()));
+        here.report(0.0)?;
+        done += batch.len();
+        // Of several errors the first one counts, but for the wish to stop.
+        let plan = |polygon: &Vec<Spot>, progress: Progress<'_>| match capper.plan(polygon, progress) {
+            Err(Error::Cancelled) => Err(Error::Cancelled),
+            plan => Ok(plan),
+        };
+        let plans: Vec<_> = match batch {
+            [polygon] => vec![plan(polygon, progress.part(part(done), part(done)))?],
+            _ => in_parallel(batch, Vec::len, here, plan)?,
+        };
+        for (polygon, plan) in batch.iter().zip(plans) {
+            let mut plan = plan?;
+            if capper.repeats(polygon, &plan) {
+                plan = capper.plan(polygon, progress.part(0.0, 0.0))?;
+            }
+            report.folded += usize::from(plan.folded);
+            capper.roll_up(polygon, &plan, inverted);
+        }
+    }
+    Ok(())
 }

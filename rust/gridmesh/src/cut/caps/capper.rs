@@ -8,10 +8,10 @@ use rustc_hash::FxHashSet;
 
 use crate::cut::caps::regions::Spot;
 use crate::cut::caps::sources;
+use crate::cut::cutting::Cutting;
 use crate::cut::divide::node::Node;
 use crate::cut::divide::parted::Parted;
-use crate::cut::input::Polygons;
-use crate::cut::options::{CutOptions, Keep};
+use crate::cut::options::Keep;
 use crate::cut::report::Tally;
 use crate::cut::sheet::Sheet;
 use crate::cut::sheet::roll::Roll;
@@ -29,11 +29,9 @@ pub(in crate::cut) struct Caps {
 }
 
 pub(in crate::cut) struct Capper<'a> {
-    pub vertices: &'a [DVec3],
-    pub faces: Polygons<'a>,
+    pub cutting: Cutting<'a>,
     pub parted: &'a Parted,
     pub(crate) sheet: &'a Sheet,
-    pub options: &'a CutOptions,
     /// Edges between vertices of the cut that are there already, and triangles.
     pub edges: FxHashSet<(u32, u32)>,
     pub(crate) facets: FxHashSet<[u32; 3]>,
@@ -74,13 +72,13 @@ impl Capper<'_> {
             }
         };
         // Of a piece that is not kept nothing can be repeated.
-        let is_kept = |left: bool| self.options.keep.has(if left { Keep::Left } else { Keep::Right });
+        let is_kept = |left: bool| self.cutting.options.keep.has(if left { Keep::Left } else { Keep::Right });
         for part in self.parted.parts.iter().filter(|part| is_kept(part.left)) {
             note(&part.corners);
         }
-        let whole = (0..self.faces.len()).filter(|&f| !self.parted.divided[f]);
+        let whole = (0..self.cutting.faces.len()).filter(|&f| !self.parted.divided[f]);
         for f in whole.filter(|&f| is_kept(self.parted.left[f])) {
-            note(self.faces.face(f));
+            note(self.cutting.faces.face(f));
         }
     }
 
@@ -149,7 +147,7 @@ impl Capper<'_> {
     pub(crate) fn source(&self, v: u32) -> Node {
         match v.checked_sub(self.first) {
             Some(k) => self.caps.vertices[k as usize],
-            None => self.parted.source(self.vertices, v),
+            None => self.parted.source(self.cutting.vertices, v),
         }
     }
 
@@ -160,7 +158,7 @@ impl Capper<'_> {
         }
         let known = polygons.iter().flatten().filter(|s| s.node < self.first);
         let place = |s: &Spot| {
-            let p = self.parted.position(self.vertices, s.node);
+            let p = self.parted.position(self.cutting.vertices, s.node);
             GeomWithData::new(p.to_array(), s.node)
         };
         let tree = RTree::bulk_load(known.map(place).collect::<Vec<_>>());
@@ -168,7 +166,7 @@ impl Capper<'_> {
             if node.source[0] == u32::MAX
                 && let Some(near) = tree.nearest_neighbor(node.position.to_array())
             {
-                let from = self.parted.source(self.vertices, near.data);
+                let from = self.parted.source(self.cutting.vertices, near.data);
                 (node.source, node.weights) = (from.source, from.weights);
             }
         }
@@ -212,7 +210,7 @@ impl Capper<'_> {
         let report = &mut tally.report;
         let position = |v: u32| match v.checked_sub(self.first) {
             Some(k) => self.caps.vertices[k as usize].position,
-            None => self.parted.position(self.vertices, v),
+            None => self.parted.position(self.cutting.vertices, v),
         };
         let mut valence = vec![0u32; self.caps.vertices.len()];
         // Sums of equal stretches, added up in their order.
