@@ -108,9 +108,7 @@ def build(
         if isinstance(surface, gridmesh.GridMeshError):
             if surface.kind == "cancelled":
                 raise CancelledError from surface
-            reason = (
-                str(surface) if sketch_options.get("least", True) else reason_of(surface, sketch_options)
-            )
+            reason = str(surface) if sketch_options.get("least", True) else reason_of(surface, sketch_options)
             failures.append(Failure(sketch.stroke.label, reason))
             continue
         bodies.append(
@@ -234,6 +232,66 @@ def fill(
         if error.kind == "cancelled":
             raise CancelledError from error
         return [str(error)] * len(indices)
+
+
+@dataclass(frozen=True, eq=False)
+class Regridded:
+    """A patch that takes the place of an area of a mesh."""
+
+    vertices: np.ndarray
+    """(j, 3) the new ones."""
+    triangles: np.ndarray
+    """(t, 3), the mesh's vertices first, then the new ones."""
+    source_faces: np.ndarray
+    """(j,) the old triangle on which each new vertex lies."""
+    source_weights: np.ndarray
+    """(j, 3) of its corners."""
+    unused: np.ndarray
+    """(u,) vertices that only the area used."""
+    report: dict[str, Any]
+
+
+def regrid(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    area: np.ndarray,
+    *,
+    keep_shape: bool,
+    smooth: str,
+    polygons: np.ndarray | None = None,
+    progress: Progress | None = None,
+) -> Regridded | str:
+    """Mesh an area anew, or tell why it cannot be.
+
+    vertices : (n, 3), triangles : (m, 3), the mesh. area : (f,) numbers of triangles, a disk. keep_shape : on the old
+    surface. polygons : (m,), of which each triangle is a part. Raises NativeError without the module, and
+    CancelledError if `progress` or Ctrl-C asked to stop.
+    """
+    gridmesh = native("regrid")
+    try:
+        done = gridmesh.regrid(
+            vertices,
+            triangles,
+            area,
+            keep_shape=keep_shape,
+            smooth=smooth,
+            polygons=polygons,
+            progress=progress,
+        )
+    except KeyboardInterrupt as error:
+        raise CancelledError from error
+    except gridmesh.GridMeshError as error:
+        if error.kind == "cancelled":
+            raise CancelledError from error
+        return str(error)
+    return Regridded(
+        vertices=done.fill.vertices,
+        triangles=done.fill.triangles,
+        source_faces=done.source_faces,
+        source_weights=done.source_weights,
+        unused=done.unused,
+        report={**done.fill.report, "off": done.off},
+    )
 
 
 AUTOMATIC = 4000.0

@@ -34,9 +34,7 @@ class Gesture:
     stands still in between. cells : "triangles" or "quads".
     """
 
-    def __init__(
-        self, faces: int | None, edge_length: float | None = None, cells: str = "triangles"
-    ) -> None:
+    def __init__(self, faces: int | None, edge_length: float | None = None, cells: str = "triangles") -> None:
         self.faces, self.given, self.cells = faces, edge_length, cells
         self._suggested: tuple[float, int] | None = None
         self.edge_length = edge_length

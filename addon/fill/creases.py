@@ -49,9 +49,7 @@ def rim_creases(
     return sharp & (ends[edges] > 1).any(axis=1)
 
 
-def face_angles(
-    vertices: np.ndarray, faces: np.ndarray, n_edges: int, face_edges: np.ndarray
-) -> np.ndarray:
+def face_angles(vertices: np.ndarray, faces: np.ndarray, n_edges: int, face_edges: np.ndarray) -> np.ndarray:
     """Angle (m,) in radians between the normals of the two faces at each edge; 0 where there are not two.
 
     faces : (f, 3) triangles, or (f, 4) quads, whose normal is that of their diagonals.

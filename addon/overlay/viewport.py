@@ -64,7 +64,9 @@ def _look(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[Quality
 
 def kinds(found: Quality) -> np.ndarray:
     """Number (k,) of the colour of each irregular vertex."""
-    strong = np.abs(found.curvature) > (0.3 if found.sides == 4 else 0.2)  # an edge is a sixth, of quads a fourth
+    strong = np.abs(found.curvature) > (
+        0.3 if found.sides == 4 else 0.2
+    )  # an edge is a sixth, of quads a fourth
     return np.where(found.curvature > 0, np.where(strong, 0, 1), np.where(strong, 3, 2))
 
 

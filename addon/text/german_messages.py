@@ -5,6 +5,8 @@ See `telling`. The German numbers the values, `{0}`, `{1}`; names in single quot
 """
 
 _COUNTED = {
+    "{} area": "{0} Gebiet",
+    "{} areas": "{0} Gebiete",
     "{} body": "{0} Körper",
     "{} bodies": "{0} Körper",
     "{} cap": "{0} Deckel",
@@ -48,6 +50,20 @@ _COMMON = {
     "{} and {} more": "{0} und {1} weitere",
     "{} left open": "{0} offen gelassen",
     "{} left out:": "{0} weggelassen:",
+    "Meshed {} anew: {}, {}, {} ms": "{0} neu vernetzt: {1}, {2}, {3} ms",
+    "Nothing is selected; select faces, or a closed loop of edges": (
+        "Nichts ist ausgewählt; Flächen oder eine geschlossene Schleife aus Kanten auswählen"
+    ),
+    "Edit a mesh and select faces, or a closed loop of edges": (
+        "Ein Mesh bearbeiten und Flächen oder eine geschlossene Schleife aus Kanten auswählen"
+    ),
+    "Cancelled; nothing was changed": "Abgebrochen; nichts wurde geändert",
+    "the selected edges enclose no area; select a closed loop of edges, or faces": (
+        "die ausgewählten Kanten umschließen kein Gebiet; eine geschlossene Schleife aus Kanten oder Flächen auswählen"
+    ),
+    "it would have an edge that another area gets, too; choose them one after the other": (
+        "es hätte eine Kante, die auch ein anderes Gebiet bekommt; eines nach dem anderen auswählen"
+    ),
     "{} ms": "{0} ms",
     "{}   Esc: Stop": "{0}   Esc: Abbrechen",
     "{}   Stopping": "{0}   Wird abgebrochen",

@@ -20,6 +20,15 @@ GERMAN = {
     "Fill the selected hole with a regular triangle patch that fits its edges": (
         "Das ausgewählte Loch mit einem regelmäßigen Flicken aus Dreiecken füllen, der an seine Kanten passt"
     ),
+    "Keep Shape": "Form behalten",
+    "Lay the grid on the old surface; without, the area becomes a smooth patch between its edges": (
+        "Das Gitter auf die alte Oberfläche legen; ohne dies wird das Gebiet ein glatter Flicken zwischen seinen Kanten"
+    ),
+    "Mesh the selected faces, or the area inside a selected loop, anew with a regular grid on the same surface": (
+        "Die ausgewählten Flächen oder das Gebiet in einer ausgewählten Schleife mit einem regelmäßigen Gitter auf derselben "
+        "Oberfläche neu vernetzen"
+    ),
+    "Regrid": "Neu mit Gitter",
     "Grid Patch Fill": "Loch mit Gitter füllen",
     "Make a smooth body with a clean mesh of triangles or quads from each closed stroke": (
         "Aus jedem geschlossenen Strich einen glatten Körper mit sauberem Netz aus Dreiecken oder Vierecken machen"
@@ -538,7 +547,6 @@ GERMAN = {
     ),
     "Keep Hard Edges": "Harte Kanten erhalten",
     "Max Edges": "Höchstens Kanten",
-    "Quads": "Vierecke",
     "Selected loops of open edges, and the whole holes that single selected edges or vertices lie on": (
         "Ausgewählte Schleifen offener Kanten, und ganze Löcher, an denen einzelne ausgewählte Kanten oder Punkte liegen"
     ),

@@ -13,7 +13,6 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 from ..bodies import profilecurve
 from ..data import defaults
 
-
 FACES = [
     ("TRIANGLES", "Triangles", "Triangles, six around almost every vertex"),
     (
@@ -165,7 +164,9 @@ class SketchOptions:
             "EDGE_LENGTH": {"edge_length": self.edge_length},
         }
         return {
-            **({"cells": kind} if kind == "quads" else {}),  # bodies of triangles keep the fingerprints that they had
+            **(
+                {"cells": kind} if kind == "quads" else {}
+            ),  # bodies of triangles keep the fingerprints that they had
             **fineness[self.resolution],
             "boundary": self.boundary.lower(),
             "max_distance": self.max_distance,

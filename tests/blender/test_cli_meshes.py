@@ -350,7 +350,9 @@ def test_formats_without_quads_get_them_cut_along_the_shorter_diagonal(tmp_path)
     shorter = np.minimum(*(np.linalg.norm(quads[:, k] - quads[:, k + 2], axis=1) for k in range(2)))
     sides, in_all = (np.linalg.norm(at - np.roll(at, 1, axis=1), axis=2).sum() for at in (quads, cut))
     longer = np.maximum(*(np.linalg.norm(quads[:, k] - quads[:, k + 2], axis=1) for k in range(2)))
-    apart = 2 * (longer - shorter).sum()  # folded along the shorter one, a few at tips are cut along the other
+    apart = (
+        2 * (longer - shorter).sum()
+    )  # folded along the shorter one, a few at tips are cut along the other
     assert in_all - sides - 2 * shorter.sum() < 0.05 * apart
 
 

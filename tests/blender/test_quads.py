@@ -17,6 +17,7 @@ from drawings import (
     uv_of,
     vertices,
 )
+
 from addon import api
 from addon.live import engine
 from addon.overlay import viewport
@@ -208,7 +209,9 @@ class TestRefusals:
         bar = np.array([[0, 0, 0], [8, 0, 0], [8, 0.1, 0], [0, 0.1, 0]], float)
         grease_pencil([np.repeat(bar, 3, axis=0)])
         text = self.refused(capfd, quads=60)
-        number = int("".join(c for c in text.split("follow this drawing; ")[1].split(" work")[0] if c.isdigit()))
+        number = int(
+            "".join(c for c in text.split("follow this drawing; ")[1].split(" work")[0] if c.isdigit())
+        )
         check_quads(run_one(quads=number))
 
     def test_grown_rims_and_mirrors_are_refused_and_say_what_works(self, capfd):
@@ -253,9 +256,7 @@ def test_pictures_become_quads_with_the_picture_on_them():
 
 def test_a_quad_counts_as_two_triangles_in_what_is_expected():
     square = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]], float)
-    sketches, _, _ = api.sketches_of(
-        [api.Stroke(square, True, "a", "", 0, 1)], close_gaps=0.2, holes=True
-    )
+    sketches, _, _ = api.sketches_of([api.Stroke(square, True, "a", "", 0, 1)], close_gaps=0.2, holes=True)
     assert api.expected_triangles(sketches, {"cells": "quads", "quads": 300}) == 600
     assert api.expected_triangles(sketches, {"cells": "quads", "edge_length": 0.1}) == pytest.approx(800)
     assert api.suggested_edge_length(sketches, 400, "quads") == pytest.approx(0.1)
