@@ -5,6 +5,7 @@
     draw -> outlines of its own; live keeps bodies up to date with their strokes; overlay shows what meshes are like
     pictures: images (from Blender) -> cutouts (numpy only) -> placing (to Blender)
     fill: editmesh (from Blender) -> holes, api (no bpy) -> editmesh, data.attributes (to Blender)
+    regrid: regionmesh (from Blender) -> api (no bpy) -> regionmesh, carried (to Blender)
     cut: cutline, cutobject (from Blender) -> cutsweep, cutting (no bpy) -> cutmesh, cutcorners (to Blender)
 
 `ui.properties` holds what the redo panel shows, `ui.panels` the sidebar and the menus, `text` all words. The native module `gridmesh` is
@@ -58,11 +59,13 @@ def _classes() -> tuple[type, ...]:
     from .live import ui as live_ui
     from .overlay import ui as overlay
     from .pictures import operator as pictures
+    from .regrid import operator as regrid
     from .ui import panels as ui
 
     return (
         *strokes.classes,
         *fill.classes,
+        *regrid.classes,
         *cut.classes,
         *pictures.classes,
         *overlay.classes,

@@ -29,7 +29,8 @@ class Body:
 
     sketch: Sketch
     vertices: np.ndarray
-    triangles: np.ndarray
+    faces: np.ndarray
+    """(f, 3) triangles, or (f, 4) quads."""
     uv: np.ndarray
     silhouette: list[np.ndarray]
     report: dict[str, Any]
@@ -61,12 +62,27 @@ def sketches_of(
     return outer, failures, notes
 
 
+def faces_of(mesh: Any) -> np.ndarray:
+    """Faces of a patch or a surface, which are all triangles (f, 3) or all quads (f, 4)."""
+    return mesh.quads if len(mesh.quads) else mesh.triangles
+
+
+def kind_of(faces: np.ndarray) -> str:
+    """What faces are called."""
+    return "quad" if faces.shape[1] == 4 else "triangle"
+
+
 TOO_THIN = "the stroke is too thin for a mesh this coarse; use more triangles or shorter edges"
+TOO_THIN_FOR_QUADS = (
+    "the stroke is too thin for quads this coarse; use more quads or shorter edges, or set Faces to Triangles"
+)
 
 
-def reason_of(error: Any) -> str:
-    """What to say of an error of the module where the number of triangles that would do was not searched for."""
-    return TOO_THIN if error.kind == "too_coarse" else str(error)
+def reason_of(error: Any, sketch_options: dict[str, Any]) -> str:
+    """What to say of an error of the module where the number of faces that would do was not searched for."""
+    if error.kind != "too_coarse":
+        return str(error)
+    return TOO_THIN_FOR_QUADS if sketch_options.get("cells") == "quads" else TOO_THIN
 
 
 def build(
@@ -92,14 +108,14 @@ def build(
         if isinstance(surface, gridmesh.GridMeshError):
             if surface.kind == "cancelled":
                 raise CancelledError from surface
-            reason = str(surface) if sketch_options.get("least", True) else reason_of(surface)
+            reason = str(surface) if sketch_options.get("least", True) else reason_of(surface, sketch_options)
             failures.append(Failure(sketch.stroke.label, reason))
             continue
         bodies.append(
             Body(
                 sketch=sketch,
                 vertices=surface.vertices,
-                triangles=surface.triangles,
+                faces=faces_of(surface),
                 uv=surface.uv,
                 silhouette=list(surface.silhouette),
                 report=dict(surface.report),
@@ -218,25 +234,91 @@ def fill(
         return [str(error)] * len(indices)
 
 
+@dataclass(frozen=True, eq=False)
+class Regridded:
+    """A patch that takes the place of an area of a mesh."""
+
+    vertices: np.ndarray
+    """(j, 3) the new ones."""
+    triangles: np.ndarray
+    """(t, 3), the mesh's vertices first, then the new ones."""
+    source_faces: np.ndarray
+    """(j,) the old triangle on which each new vertex lies."""
+    source_weights: np.ndarray
+    """(j, 3) of its corners."""
+    unused: np.ndarray
+    """(u,) vertices that only the area used."""
+    report: dict[str, Any]
+
+
+def regrid(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    area: np.ndarray,
+    *,
+    keep_shape: bool,
+    smooth: str,
+    polygons: np.ndarray | None = None,
+    progress: Progress | None = None,
+) -> Regridded | str:
+    """Mesh an area anew, or tell why it cannot be.
+
+    vertices : (n, 3), triangles : (m, 3), the mesh. area : (f,) numbers of triangles, a disk. keep_shape : on the old
+    surface. polygons : (m,), of which each triangle is a part. Raises NativeError without the module, and
+    CancelledError if `progress` or Ctrl-C asked to stop.
+    """
+    gridmesh = native("regrid")
+    try:
+        done = gridmesh.regrid(
+            vertices,
+            triangles,
+            area,
+            keep_shape=keep_shape,
+            smooth=smooth,
+            polygons=polygons,
+            progress=progress,
+        )
+    except KeyboardInterrupt as error:
+        raise CancelledError from error
+    except gridmesh.GridMeshError as error:
+        if error.kind == "cancelled":
+            raise CancelledError from error
+        return str(error)
+    return Regridded(
+        vertices=done.fill.vertices,
+        triangles=done.fill.triangles,
+        source_faces=done.source_faces,
+        source_weights=done.source_weights,
+        unused=done.unused,
+        report={**done.fill.report, "off": done.off},
+    )
+
+
 AUTOMATIC = 4000.0
-"""What a drawing gets about where the number of triangles is left to it."""
+"""What a drawing gets about where the number of triangles is left to it; of quads half as many."""
+
+FACE_AREA = {"triangles": float(np.sqrt(3) / 4), "quads": 1.0}
+"""Area of a face, in squared edge lengths."""
 
 
 def expected_triangles(sketches: list[Sketch], sketch_options: dict[str, Any]) -> float:
-    """About how many flat triangles these sketches get with these options."""
-    if (triangles := sketch_options.get("triangles")) is not None:
-        each = AUTOMATIC if triangles == "auto" else float(triangles)
+    """About how many flat triangles these sketches get with these options; a quad counts as two."""
+    quads = sketch_options.get("cells") == "quads"
+    number = sketch_options.get("quads" if quads else "triangles")
+    if number is not None:
+        each = AUTOMATIC if number == "auto" else float(number) * (2 if quads else 1)
         return each * len(sketches)
     length = sketch_options["edge_length"]
     if length <= 0:
         return 0.0
-    return sum(area(sketch.outline) for sketch in sketches) / (np.sqrt(3) / 4 * length**2)
+    each = FACE_AREA["quads"] / 2 if quads else FACE_AREA["triangles"]
+    return sum(area(sketch.outline) for sketch in sketches) / (each * length**2)
 
 
-def suggested_edge_length(sketches: list[Sketch], triangles: int) -> float | None:
-    """Edge length at which the largest sketch has about that many triangles; None if none has an area."""
+def suggested_edge_length(sketches: list[Sketch], number: int, cells: str = "triangles") -> float | None:
+    """Edge length at which the largest sketch has about that many faces; None if none has an area."""
     areas = (area(sketch.outline) - sum(area(hole.outline) for hole in sketch.holes) for sketch in sketches)
     largest = max(areas, default=0.0)
-    if largest <= 0 or triangles <= 0:
+    if largest <= 0 or number <= 0:
         return None
-    return float(np.sqrt(largest / triangles * 4 / np.sqrt(3)))
+    return float(np.sqrt(largest / number / FACE_AREA[cells]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many triangles go across the thinnest limb of a body, and how many would do. numpy only, no bpy."""
+"""How many faces go across the thinnest limb of a body, and how many would do. numpy only, no bpy."""
 
 from __future__ import annotations
 
@@ -12,15 +12,18 @@ from ..native import native
 from .outlines import Sketch, area, project
 
 ENOUGH = 3.0
-"""With fewer triangles across a limb looks angular."""
+"""With fewer faces across a limb looks angular."""
 
 WANTED = 5.0
 
 _MANY = 20_000
 """More than this are not recommended for a hair-thin part."""
 
-_ROW = sqrt(3) / 2
-"""Height of a row of triangles, in edge lengths."""
+_ROW = {"triangle": sqrt(3) / 2, "quad": 1.0}
+"""Height of a row of faces, in edge lengths."""
+
+_AREA = {"triangle": sqrt(3) / 4, "quad": 1.0}
+"""Area of a face, in squared edge lengths."""
 
 
 _FEWEST = 1000
@@ -32,9 +35,11 @@ class Density:
     """Of a body with a limb."""
 
     across: float
-    """Triangles across the thinnest limb."""
+    """Faces across the thinnest limb."""
     wanted: int
-    """About how many triangles of each side put five across."""
+    """About how many faces of each side put five across."""
+    kind: str = "triangle"
+    """Or "quad"."""
 
     @property
     def is_low(self) -> bool:
@@ -44,9 +49,11 @@ class Density:
     @property
     def text(self) -> str:
         """What to tell the user."""
-        return "; ".join(
-            [f"thinnest part: {self.across:.1f} across", f"{self.wanted} triangles of each side for 5"]
-        )
+        if self.kind == "quad":
+            enough = f"{self.wanted} quads of each side for 5"
+        else:
+            enough = f"{self.wanted} triangles of each side for 5"
+        return "; ".join([f"thinnest part: {self.across:.1f} across", enough])
 
 
 def automatic(outline: np.ndarray, holes: list[np.ndarray], most: int = _MANY) -> int:
@@ -61,25 +68,25 @@ def automatic(outline: np.ndarray, holes: list[np.ndarray], most: int = _MANY) -
         return _FEWEST
     if not len(limbs):
         return _FEWEST
-    edge = float(limbs[0, 2]) / (_ROW * WANTED)
+    edge = float(limbs[0, 2]) / (_ROW["triangle"] * WANTED)
     inside = area(outline) - sum(area(hole) for hole in holes)
-    return int(np.clip(inside / (_ROW / 2 * edge**2), _FEWEST, most))
+    return int(np.clip(inside / (_AREA["triangle"] * edge**2), _FEWEST, most))
 
 
-def measure(sketch: Sketch, triangles: int) -> Density | None:
-    """Measure a sketch that was meshed with so many triangles of one side; None if nothing of it is a limb.
+def measure(sketch: Sketch, faces: int, kind: str = "triangle") -> Density | None:
+    """Measure a sketch that was meshed with so many faces of one side; None if nothing of it is a limb.
 
-    In O(n log n). Raises GridMeshError for drawings that have no mesh, and NativeError without the module.
+    kind : "triangle" or "quad". In O(n log n). Raises GridMeshError for drawings that have no mesh, and NativeError without the module.
     """
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     limbs = native("thickness").thickness(sketch.outline, holes)
-    if not len(limbs) or triangles <= 0:
+    if not len(limbs) or faces <= 0:
         return None
     width = float(limbs[0, 2])
     inside = area(sketch.outline) - sum(area(hole) for hole in holes)
-    edge = sqrt(max(inside, 0.0) / (triangles * _ROW / 2))
+    edge = sqrt(max(inside, 0.0) / (faces * _AREA[kind]))
     if edge <= 0:
         return None
-    across = width / (_ROW * edge)
-    wanted = triangles * (WANTED / across) ** 2
-    return Density(across, int(min(np.ceil(wanted / 100) * 100, _MANY)))
+    across = width / (_ROW[kind] * edge)
+    wanted = faces * (WANTED / across) ** 2
+    return Density(across, int(min(np.ceil(wanted / 100) * 100, _MANY)), kind)

@@ -26,7 +26,7 @@ LONG = 50_000
 
 
 class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.types.Operator):  # noqa: N801
-    """Make a smooth body with a clean triangle mesh from each closed stroke"""  # noqa: D400 (the tooltip)
+    """Make a smooth body with a clean mesh of triangles or quads from each closed stroke"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_from_strokes"
     bl_label = "Strokes to Mesh"
@@ -115,7 +115,8 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         if not self.properties.is_property_set("edge_length"):
             chosen = self._chosen(read)
             sketches, _, _ = api.sketches_of(chosen, close_gaps=self.close_gaps, holes=self.use_holes)
-            length = api.suggested_edge_length(sketches, self.triangles)
+            kind = self.cells.lower()
+            length = api.suggested_edge_length(sketches, getattr(self, kind), kind)
             self.edge_length = length if length is not None else self.edge_length
         self.may_wait = context.window is not None and not bpy.app.background
         return self.execute(context)
@@ -241,10 +242,11 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
 
     def _summary(self, bodies: list[api.Body], seconds: float) -> str:
         kind = "sheet" if self.shape == "SHEET" else "body"
-        triangles = sum(len(body.triangles) for body in bodies)
+        face = api.kind_of(bodies[0].faces)
+        faces = sum(len(body.faces) for body in bodies)
         irregular = sum(body.report["irregular"] for body in bodies)
         text = (
-            f"{counted(len(bodies), kind)}: {triangles} triangles, "
+            f"{counted(len(bodies), kind)}: {counted(faces, face)}, "
             f"{counted(irregular, 'irregular vertex')}, {1000 * seconds:.0f} ms"
         )
         gaps = sum(body.sketch.closed_gap > 0 for body in bodies)
@@ -337,11 +339,11 @@ def _warnings(bodies: list[api.Body], failures: list[api.Failure]) -> list[str]:
 
 
 def _thin(bodies: list[api.Body]) -> list[str]:
-    """Name the body with the fewest triangles across a limb, if those are too few."""
+    """Name the body with the fewest faces across a limb, if those are too few."""
     found = []
     for body in bodies:
         sides = 1 if not body.report["watertight"] else 2
-        density = measure(body.sketch, len(body.triangles) // sides)
+        density = measure(body.sketch, len(body.faces) // sides, api.kind_of(body.faces))
         if density is not None and density.is_low:
             found.append((density.across, body.sketch.stroke.label, density.text))
     return [f"{label}: {text}" for _, label, text in sorted(found)[:1]]

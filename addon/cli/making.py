@@ -49,8 +49,11 @@ def strokes_to_bodies(source: Path, pattern: str | None, options: dict[str, Any]
     )
     corner = options.get("corner_angle", defaults.CORNER_ANGLE)
     sketch_options = {key: value for key, value in options.items() if key in params.SKETCH}
-    if "edge_length" not in options:
-        sketch_options.setdefault("triangles", defaults.TRIANGLES)
+    if "quads" in options:
+        sketch_options["cells"] = "quads"
+    if not {"triangles", "quads", "edge_length"} & options.keys():
+        quads = options.get("cells") == "quads"
+        sketch_options |= {"quads": defaults.QUADS} if quads else {"triangles": defaults.TRIANGLES}
     body_options = {key: value for key, value in options.items() if key in params.BODY}
     bodies, refused = api.build(sketches, sketch_options, {**body_options, "corner_angle": corner})
     reasons = reasons + [str(failure) for failure in failures + refused]
@@ -64,16 +67,22 @@ def strokes_to_bodies(source: Path, pattern: str | None, options: dict[str, Any]
 
 
 def _of_bodies(bodies: list[Body]) -> list[dict[str, Any]]:
-    return [{**body.report, "triangles": len(body.triangles)} for body in bodies]
+    return [{**body.report, f"{api.kind_of(body.faces)}s": len(body.faces)} for body in bodies]
 
 
 def _numbers(what: str, n: int, reports: list[dict[str, Any]]) -> dict[str, Any]:
     return {
         what: n,
         "triangles": sum(int(report["triangles"]) for report in reports),
+        **({"quads": quads} if (quads := sum(int(report.get("quads", 0)) for report in reports)) else {}),
         "irregular": sum(int(report["irregular"]) for report in reports),
         "min_angle": min(
-            (float(report["min_angle"]) for report in reports if report["triangles"]), default=None
+            (
+                float(report["min_angle"])
+                for report in reports
+                if report["triangles"] or report.get("quads", 0)
+            ),
+            default=None,
         ),
     }
 

@@ -8,9 +8,11 @@ import os
 import sys
 import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
+import numpy as np
 from mathutils import Matrix
 
 from ..api import Body
@@ -37,12 +39,27 @@ def placed(name: str, bodies: list[Body], crease_angle: float) -> list[bpy.types
     for body in bodies:
         mesh = bpy.data.meshes.new(name)
         ob = bpy.data.objects.new(name, mesh)
-        meshes.fill(mesh, body, crease_angle)
+        meshes.fill(mesh, _turned(body), crease_angle)
         ob.matrix_world = Matrix(body.sketch.plane.matrix.tolist())
         bpy.context.scene.collection.objects.link(ob)
         made.append(ob)
     bpy.context.view_layer.update()
     return made
+
+
+def _turned(body: Body) -> Body:
+    """Return the body with quads that begin at an end of their shorter diagonal.
+
+    Formats without quads get them cut from the first corner to the third.
+    """
+    faces = np.asarray(body.faces)
+    if faces.shape[1] != 4:
+        return body
+    a, b, c, d = (np.asarray(body.vertices)[faces[:, k]] for k in range(4))
+    turn = np.linalg.norm(d - b, axis=1) < np.linalg.norm(c - a, axis=1)
+    order = (np.arange(4) + turn[:, None]) % 4
+    uv = np.take_along_axis(np.asarray(body.uv).reshape(-1, 4, 2), order[..., None], axis=1)
+    return replace(body, faces=np.take_along_axis(faces, order, axis=1), uv=uv.reshape(-1, 2))
 
 
 def write(path: Path, objects: list[bpy.types.Object]) -> None:

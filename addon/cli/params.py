@@ -57,11 +57,13 @@ _SMOOTH = ("flat", "tangent", "curvature")
 _GAPS = "largest gap that is closed, relative to the stroke"
 
 SKETCH = {
+    "cells": Param("choice", "what the mesh is made of (triangles)", ("triangles", "quads")),
     "triangles": Param("count", f"triangles of one side ({defaults.TRIANGLES})"),
+    "quads": Param("count", f"quads of one side, instead ({defaults.QUADS} where cells are quads)"),
     "edge_length": Param("number", "length of the edges, instead of their number"),
     "boundary": Param("choice", "how the rim is found", ("optimal", "grown")),
     "max_distance": Param("number", "how far the rim may stray, in edge lengths"),
-    "angle": Param("number", "angle of the triangle grid, radians; the best one if not given"),
+    "angle": Param("number", "angle of the grid, radians; the best one if not given"),
     "corner_angle": Param("number", "turns sharper than this are corners, radians"),
     "self_crossing": Param("choice", "what becomes of outlines that cross themselves", ("error", "union")),
 }
@@ -129,10 +131,19 @@ def check(op: str, params: dict[str, Any]) -> None:
         raise ParameterError(f"unknown parameter '{unknown[0]}'; allowed: {', '.join(sorted(known))}")
     for name, value in params.items():
         known[name].check(name, value)
-    if op == "strokes" and {"triangles", "edge_length"} <= params.keys():
-        raise ParameterError("give triangles or edge_length, not both")
+    if op == "strokes":
+        _check_fineness(params)
     if op == "cut" and "stroke" not in params:
         raise ParameterError("the cut has no 'stroke'")
+
+
+def _check_fineness(params: dict[str, Any]) -> None:
+    given = [name for name in ("triangles", "quads", "edge_length") if name in params]
+    if len(given) > 1:
+        raise ParameterError(f"give {given[0]} or {given[1]}, not both")
+    cells = params.get("cells", given[0] if given else "triangles")
+    if given and given[0] != "edge_length" and given[0] != cells:
+        raise ParameterError(f"cells are {cells} and {given[0]} are given; give {cells}, or leave one out")
 
 
 def _is_line(value: Any) -> bool:

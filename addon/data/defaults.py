@@ -3,8 +3,12 @@
 
 from math import radians
 
+CELLS = "TRIANGLES"
+"""What bodies are made of."""
 TRIANGLES = 2000
 """Of each side of a body."""
+QUADS = 1000
+"""The same of quads: about as many vertices."""
 CORNER_ANGLE = radians(40.0)
 """Turns sharper than this are corners."""
 CLOSE_GAPS = 0.2

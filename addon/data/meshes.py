@@ -183,7 +183,7 @@ def localized(context: bpy.types.Context, sketches: list[Sketch], close_gaps: fl
 def in_space(body: Body, matrix: np.ndarray | None = None) -> Body:
     """Return the body with its vertices where its sketch is, and not in the plane of that; then moved by `matrix`.
 
-    Where that mirrors, the triangles are turned round, so that they still face outward.
+    Where that mirrors, the faces are turned round, so that they still face outward.
     """
     vertices = body.sketch.plane.world(body.vertices)
     if matrix is None:
@@ -191,9 +191,10 @@ def in_space(body: Body, matrix: np.ndarray | None = None) -> Body:
     body = replace(body, vertices=frames.moved(vertices, matrix))
     if np.linalg.det(matrix[:3, :3]) > 0:
         return body
-    order = [0, 2, 1]
-    uv = np.asarray(body.uv).reshape(len(body.triangles), 3, 2)[:, order].reshape(np.shape(body.uv))
-    return replace(body, triangles=np.asarray(body.triangles)[:, order], uv=uv)
+    faces = np.asarray(body.faces)
+    order = np.roll(np.arange(faces.shape[1])[::-1], 1)
+    uv = np.asarray(body.uv).reshape(*faces.shape, 2)[:, order].reshape(np.shape(body.uv))
+    return replace(body, faces=faces[:, order], uv=uv)
 
 
 def _carrier_world(context: bpy.types.Context, sketch: Sketch) -> np.ndarray:
@@ -234,14 +235,14 @@ def fill(mesh: bpy.types.Mesh, body: Body, crease_angle: float) -> None:
 
     body : with vertices in the space of the mesh.
     """
-    triangles = np.ascontiguousarray(body.triangles, np.int32)
-    n_corners = triangles.size
+    faces = np.ascontiguousarray(body.faces, np.int32)
+    n_corners = faces.size
     mesh.vertices.add(len(body.vertices))
     mesh.loops.add(n_corners)
-    mesh.polygons.add(len(triangles))
+    mesh.polygons.add(len(faces))
     mesh.vertices.foreach_set("co", np.ascontiguousarray(body.vertices, np.float32).ravel())
-    mesh.loops.foreach_set("vertex_index", triangles.ravel())
-    mesh.polygons.foreach_set("loop_start", np.arange(0, n_corners, 3, dtype=np.int32))
+    mesh.loops.foreach_set("vertex_index", faces.ravel())
+    mesh.polygons.foreach_set("loop_start", np.arange(0, n_corners, faces.shape[1], dtype=np.int32))
     mesh.update(calc_edges=True)
     layer = mesh.uv_layers.new(name=UV_MAP, do_init=False)
     layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
@@ -255,8 +256,8 @@ def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
     mesh.edges.foreach_get("vertices", edges)
     sides = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("edge_index", sides)
-    edges, sides = edges.reshape(-1, 2), sides.reshape(-1, 3)
-    sharp = rim_creases(body.vertices, body.triangles, body.silhouette, edges, sides, angle)
+    edges, sides = edges.reshape(-1, 2), sides.reshape(np.shape(body.faces))
+    sharp = rim_creases(body.vertices, body.faces, body.silhouette, edges, sides, angle)
     if sharp.any() or mesh.attributes.get("sharp_edge") is not None:
         mesh.edges.foreach_set("use_edge_sharp", sharp)
 

@@ -86,10 +86,12 @@ def motion(mesh: bpy.types.Mesh) -> np.ndarray | None:
     if before is None or not len(before) or len(mesh.vertices) != len(before):
         return None
     corners, count, after = corners_of(mesh), len(mesh.polygons), points_of(mesh)
-    if corners.size != 3 * count or mesh.gridmesh_made.split()[1:3] != [str(corners.size), str(count)]:
+    if not count or corners.size not in (3 * count, 4 * count):
+        return None
+    if mesh.gridmesh_made.split()[1:3] != [str(corners.size), str(count)]:
         return None
     # Blender 5 turns the faces round where a mirrored scale is applied.
-    turned = np.ascontiguousarray(corners.reshape(-1, 3)[:, [0, 2, 1]])
+    turned = np.ascontiguousarray(np.roll(corners.reshape(count, -1)[:, ::-1], 1, axis=1))
     known = mesh.gridmesh_made.split()[4]
     if known not in (str(zlib.crc32(corners.tobytes())), str(zlib.crc32(turned.tobytes()))):
         return None

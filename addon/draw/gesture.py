@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..api import FACE_AREA, faces_of
 from ..bodies.density import automatic
 from ..bodies.outlines import Plane, area
 from ..native import native
@@ -22,19 +23,19 @@ SPACING = 2.0
 
 
 MOST = 4000
-"""Triangles of a preview whose number is left to the stroke."""
+"""Triangles of a preview whose number is left to the stroke; of quads half as many."""
 
 
 class Gesture:
     """Points with pressure, and a lattice that stays while the stroke grows.
 
-    triangles : number wanted in the end; None for what the stroke so far suggests, at most `MOST`. The preview has
+    faces : number wanted in the end; None for what the stroke so far suggests, at most `MOST`. The preview has
     between two thirds and four thirds of it: its edges are lengthened in steps as the stroke grows, so that the grid
-    stands still in between.
+    stands still in between. cells : "triangles" or "quads".
     """
 
-    def __init__(self, triangles: int | None, edge_length: float | None = None) -> None:
-        self.triangles, self.given = triangles, edge_length
+    def __init__(self, faces: int | None, edge_length: float | None = None, cells: str = "triangles") -> None:
+        self.faces, self.given, self.cells = faces, edge_length, cells
         self._suggested: tuple[float, int] | None = None
         self.edge_length = edge_length
         self._pixels: list[tuple[float, float]] = []
@@ -103,7 +104,7 @@ class Gesture:
         return Trace(plane, origins, directions, self.pressures, True, free, perspective)
 
     def preview(self, part: Part | None = None) -> tuple[np.ndarray, np.ndarray] | None:
-        """Vertices (v, 2) and triangles (t, 3) of the grid inside the stroke closed by a line; None if there is none.
+        """Vertices (v, 2) and faces (f, 3) or (f, 4) of the grid inside the stroke closed by a line; None if there is none.
 
         part : what is filled instead, for instance the stroke and its image.
         """
@@ -113,13 +114,14 @@ class Gesture:
         gridmesh = native("mesh_sketch")
         if self.given is None:
             extent = max(_extent(outline), 1e-30)
-            ideal = np.sqrt(extent / (self.triangles or self._automatic(outline, holes)) * 4 / np.sqrt(3))
+            ideal = np.sqrt(extent / (self.faces or self._automatic(outline, holes)) / FACE_AREA[self.cells])
             if self.edge_length is None or not 0.75 < ideal / self.edge_length < 1.35:
                 self.edge_length = float(ideal)
         try:
             patch = gridmesh.mesh_sketch(
                 outline,
                 holes,
+                cells=self.cells,
                 edge_length=self.edge_length,
                 angle=0.0,
                 origin=outline[0],
@@ -128,14 +130,14 @@ class Gesture:
             )
         except gridmesh.GridMeshError:
             return None  # too narrow for the grid, or it encloses nothing yet: the line alone is shown
-        return patch.vertices, patch.triangles
+        return patch.vertices, faces_of(patch)
 
     def _automatic(self, outline: np.ndarray, holes: list[np.ndarray]) -> int:
-        """Number of triangles for the stroke so far, measured anew when it has grown by a twelfth."""
+        """Number of faces for the stroke so far, measured anew when it has grown by a twelfth."""
         length = float(np.linalg.norm(np.diff(outline, axis=0), axis=1).sum())
         if self._suggested is None or not 0.92 < length / self._suggested[0] < 1.08:
             self._suggested = length, automatic(outline, holes, MOST)
-        return self._suggested[1]
+        return self._suggested[1] // (2 if self.cells == "quads" else 1)
 
 
 def _extent(points: np.ndarray) -> float:

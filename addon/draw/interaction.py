@@ -68,7 +68,9 @@ class Interaction:
         self._bodies: list[Shape] | None = None
         self._mirror = _mirror(context)
         length = options.edge_length if options.resolution == "EDGE_LENGTH" else None
-        self._gesture = Gesture(None if options.resolution == "AUTO" else options.triangles, length)
+        kind = options.cells.lower()
+        number = None if options.resolution == "AUTO" else getattr(options, kind)
+        self._gesture = Gesture(number, length, kind)
         self._preview = Preview(context)
         drawing_now = True
         self._tell(context, "")

@@ -58,11 +58,12 @@ class _Action(options.StrokeOptions):
             made, hint = self._carry_out(context)
         except (drawing.DrawError, DecisionError, memory.ForgottenError, NativeError) as error:
             return self._say("WARNING", str(error), {"CANCELLED"})
-        triangles = sum(len(ob.data.polygons) for ob in made)
+        faces = sum(len(ob.data.polygons) for ob in made)
         done = _DONE[self.action].format(counted(len(made), "body"))
-        numbers = [f"{done}: {counted(triangles, 'triangle')}"]
+        face = "quad" if self.cells == "QUADS" else "triangle"
+        numbers = [f"{done}: {counted(faces, face)}"]
         if self.shape != "SHEET":
-            numbers.append(f"{triangles // 2} a side")
+            numbers.append(f"{faces // 2} a side")
         text = ", ".join([*numbers, f"{1000 * (perf_counter() - started):.0f} ms"])
         return self._say("INFO", f"{text}\n{hint}" if hint else text, {"FINISHED"})
 
@@ -82,7 +83,7 @@ class _Action(options.StrokeOptions):
         remembered.action = remembered.action or first.action
         self.action, self.body = first.action, first.body if first.action != "PART" else made[0].name
         self.done = f"{first.action} {first.body}"
-        return made, first.hint
+        return made, drawing.unmirrored(decisions, self) or first.hint
 
     def _options_of(
         self, first: Decision, bodies: dict[str, shapes.Drawn], remembered: memory.Memory

@@ -24,7 +24,7 @@ COLORS = {
 _LINE, _AXIS = (1.0, 0.55, 0.1, 1.0), (1.0, 1.0, 1.0, 0.45)
 
 Grid = tuple[np.ndarray, np.ndarray]
-"""Vertices (v, 3) in the world and triangles (t, 3)."""
+"""Vertices (v, 3) in the world and faces (f, 3) or (f, 4)."""
 
 
 class Preview:
@@ -87,10 +87,12 @@ class Preview:
         gpu.state.depth_test_set("NONE")
         plain = gpu.shader.from_builtin("UNIFORM_COLOR")
         light = tuple(0.5 + 0.5 * value for value in self._color)
-        for vertices, triangles in self._grids:
+        for vertices, faces in self._grids:
             plain.uniform_float("color", (*self._color, 0.24))
+            halves = [faces[:, [0, k, k + 1]] for k in range(1, faces.shape[1] - 1)]
+            triangles = np.ascontiguousarray(np.concatenate(halves))
             batch_for_shader(plain, "TRIS", {"pos": vertices}, indices=triangles).draw(plain)
-            edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+            edges = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
             edges = np.unique(np.sort(edges, axis=1), axis=0)
             plain.uniform_float("color", (*light, 0.55))
             batch_for_shader(plain, "LINES", {"pos": vertices}, indices=edges).draw(plain)

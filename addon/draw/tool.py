@@ -9,15 +9,13 @@ from typing import Any
 import bpy
 
 from ..data import frames
+from ..ui.properties import fineness_of
 from . import interaction
 from .operator import OBJECT_OT_gridmesh_draw
 from .simplifying import OBJECT_OT_gridmesh_simplify
 
 ICONS = Path(__file__).parent / "icons"
 """Pictures for the toolbar, made by `docs/icons.py`."""
-
-FINENESS = {"TRIANGLES": "triangles", "EDGE_LENGTH": "edge_length"}
-"""Option that gives the fineness."""
 
 _PRESS = {"type": "LEFTMOUSE", "value": "PRESS"}
 
@@ -60,9 +58,10 @@ class GridMeshDrawTool(bpy.types.WorkSpaceTool):
         else:
             layout.label(text="New Bodies", icon="ADD")
         shown = options if body is None else body.gridmesh_live
+        layout.prop(shown, "cells", text="")
         layout.prop(shown, "resolution", text="")
-        if shown.resolution in FINENESS:
-            layout.prop(shown, FINENESS[shown.resolution])
+        if shown.resolution != "AUTO":
+            layout.prop(shown, fineness_of(shown))
         layout.prop(shown, "profile")
         if body is None:
             layout.prop(shown, "curve")

@@ -16,49 +16,57 @@ CONTRAST = 2.0
 
 def rim_creases(
     vertices: np.ndarray,
-    triangles: np.ndarray,
+    faces: np.ndarray,
     silhouette: list[np.ndarray],
     edges: np.ndarray,
-    triangle_edges: np.ndarray,
+    face_edges: np.ndarray,
     angle: float,
 ) -> np.ndarray:
     """Find the edges (m,) bool of the silhouette where front and back meet at more than `angle`.
 
-    silhouette : loops of vertex indices. edges : (m, 2) vertex indices. triangle_edges : (t, 3) edge indices of
-    each triangle's sides. Edges that no other crease continues are left out: they would change no shading.
+    silhouette : loops of vertex indices. edges : (m, 2) vertex indices. face_edges : (f, k) edge indices of
+    the sides of each of the faces (f, k). Edges that no other crease continues are left out: they would change no shading.
     """
-    turns = face_angles(vertices, triangles, len(edges), triangle_edges)
+    n_sides = faces.shape[1]
+    turns = face_angles(vertices, faces, len(edges), face_edges)
     after = np.full(len(vertices), -1)
     for loop in silhouette:
         after[loop] = np.roll(loop, -1)
     a, b = edges.T
     rim = (after[a] == b) | (after[b] == a)
-    sides = triangle_edges.ravel()
+    sides = face_edges.ravel()
     order = np.argsort(sides, kind="stable")
     first = np.searchsorted(sides[order], np.arange(len(edges)))
     sharp = rim & (turns > angle)
     for edge in np.flatnonzero(sharp):
-        beside = triangle_edges[order[first[edge] : first[edge] + 2] // 3].ravel()
-        # The second lowest of four: where a crease turns off, one or two of them belong to it.
-        sharp[edge] = turns[edge] > CONTRAST * np.sort(turns[beside[beside != edge]])[1]
+        corners = order[first[edge] : first[edge] + 2]
+        if n_sides == 4:  # the opposite sides; the others turn as the outline does
+            beside, least = face_edges[corners // 4, (corners + 2) % 4], 0
+        else:  # where a crease turns off, one or two of four belong to it
+            beside, least = face_edges[corners // 3].ravel(), 1
+        sharp[edge] = turns[edge] > CONTRAST * np.sort(turns[beside[beside != edge]])[least]
     ends = np.bincount(edges[sharp].ravel(), minlength=len(vertices))
     return sharp & (ends[edges] > 1).any(axis=1)
 
 
-def face_angles(
-    vertices: np.ndarray, triangles: np.ndarray, n_edges: int, triangle_edges: np.ndarray
-) -> np.ndarray:
-    """Angle (m,) in radians between the normals of the two triangles at each edge; 0 where there are not two."""
-    a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
+def face_angles(vertices: np.ndarray, faces: np.ndarray, n_edges: int, face_edges: np.ndarray) -> np.ndarray:
+    """Angle (m,) in radians between the normals of the two faces at each edge; 0 where there are not two.
+
+    faces : (f, 3) triangles, or (f, 4) quads, whose normal is that of their diagonals.
+    """
+    corners = [vertices[faces[:, k]] for k in range(faces.shape[1])]
+    if len(corners) == 4:
+        normals = np.cross(corners[2] - corners[0], corners[3] - corners[1])
+    else:
+        normals = np.cross(corners[1] - corners[0], corners[2] - corners[0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None]
-    sides = triangle_edges.ravel()
+    sides = face_edges.ravel()
     order = np.argsort(sides, kind="stable")
     counts = np.bincount(sides, minlength=n_edges)
     first = np.concatenate([[0], np.cumsum(counts)])[:-1]
     pairs = np.flatnonzero(counts == 2)
-    faces = order // 3
-    cosines = np.einsum("ij,ij->i", normals[faces[first[pairs]]], normals[faces[first[pairs] + 1]])
+    owner = order // faces.shape[1]
+    cosines = np.einsum("ij,ij->i", normals[owner[first[pairs]]], normals[owner[first[pairs] + 1]])
     turns = np.zeros(n_edges)
     turns[pairs] = np.arccos(np.clip(cosines, -1, 1))
     return turns

@@ -333,18 +333,19 @@ def _stored(live: Any) -> Lattice | None:
 
 
 def write(ob: bpy.types.Object, body: Body, crease_angle: float, *, marks: bool) -> None:
-    """Give an object another mesh of the same name; all that belongs to vertices stays where the triangles do.
+    """Give an object another mesh of the same name; all that belongs to vertices stays where the faces do.
 
-    body : with vertices in the object's space. marks : whether creases are marked anew where the triangles stay;
+    body : with vertices in the object's space. marks : whether creases are marked anew where the faces stay;
     while dragging they wait.
     """
     mesh = ob.data
-    triangles = np.ascontiguousarray(body.triangles, np.int32).ravel()
-    if len(mesh.vertices) != len(body.vertices) or len(mesh.loops) != triangles.size:
+    faces = np.ascontiguousarray(body.faces, np.int32)
+    counts = len(mesh.vertices), len(mesh.loops), len(mesh.polygons)
+    if counts != (len(body.vertices), faces.size, len(faces)):
         meshes.refresh(ob, body, crease_angle)
         return
     corners = written.corners_of(mesh)
-    if not np.array_equal(corners, triangles):
+    if not np.array_equal(corners, faces.ravel()):
         meshes.refresh(ob, body, crease_angle)
         return
     points = np.ascontiguousarray(body.vertices, np.float32).ravel()

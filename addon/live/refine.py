@@ -24,6 +24,7 @@ def of_body(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> density.Den
     """Triangles across the thinnest limb of a live body; None if it has none, or no drawing."""
     live = ob.gridmesh_live
     key = (live.digest, len(ob.data.polygons))
+    kind = "quad" if live.cells == "QUADS" else "triangle"
     known = _known.get(ob.session_uid)
     if known is not None and known[0] == key:
         return known[1]
@@ -32,7 +33,7 @@ def of_body(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> density.Den
     try:
         sketch = sketch_of(ob, depsgraph)
         sides = 1 if live.shape == "SHEET" else 2
-        found = density.measure(sketch, len(ob.data.polygons) // sides)
+        found = density.measure(sketch, len(ob.data.polygons) // sides, kind)
     except (LostError, NativeError):
         found = None
     except native().GridMeshError:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..api import Body, native, reason_of
+from ..api import Body, faces_of, native, reason_of
 from ..bodies.outlines import Plane, Sketch, project
 
 ALGORITHM = 2
@@ -32,7 +32,7 @@ class LeftError(SolveError):
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """A triangle lattice in a drawing plane."""
+    """A lattice in a drawing plane."""
 
     plane: Plane
     edge_length: float
@@ -67,6 +67,7 @@ def solve(
     if lattice is not None and options.get("mirror") is None:
         sketch = moved(sketch, lattice.plane)
         options.pop("triangles", None)
+        options.pop("quads", None)
         options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     try:
@@ -76,11 +77,11 @@ def solve(
         else:
             surface = gridmesh.inflate(patch, **_with_pen(body_options, sketch, pen))
     except gridmesh.GridMeshError as error:
-        raise SolveError(reason_of(error)) from error
+        raise SolveError(reason_of(error, options)) from error
     body = Body(
         sketch=sketch,
         vertices=surface.vertices,
-        triangles=surface.triangles,
+        faces=faces_of(surface),
         uv=surface.uv,
         silhouette=list(surface.silhouette),
         report={**patch.report, **surface.report},

@@ -28,11 +28,11 @@ class Quality:
     valence: np.ndarray
     """(k,) edges of each."""
     least: int | None
-    """The fewest that lattice bodies or sheets of this topology have: 6, and 3 for every handle of a closed body and
-    for every border but one of a sheet. None where lattices have no say: other faces than triangles, edges of three
-    faces, sheets with handles."""
-    triangles: bool
-    """Whether all faces are triangles."""
+    """The fewest that lattice bodies or sheets of this topology have. Of triangles: 6, and 3 for every handle of a
+    closed body and for every border but one of a sheet; of quads 8 for every contour of a body's drawing, and half as many
+    of a sheet's. None where lattices have no say: mixed faces, edges of three faces, sheets with handles."""
+    sides: int
+    """Corners of all faces: 3 or 4; 0 where they are mixed or others."""
     worst_angle: float
     """The sharpest corner of a face, radians; 0 where a face has no area, nan where there is no face."""
     worst_face: int
@@ -48,10 +48,13 @@ class Quality:
     def text(self) -> str:
         """The numbers in a line, for people."""
         irregular = len(self.irregular)
-        parts = [
-            f"{self.faces} faces",
-            "1 irregular vertex" if irregular == 1 else f"{irregular} irregular vertices",
-        ]
+        if self.sides == 4:
+            parts = [f"{self.faces} quads", "1 pole" if irregular == 1 else f"{irregular} poles"]
+        else:
+            parts = [
+                f"{self.faces} faces",
+                "1 irregular vertex" if irregular == 1 else f"{irregular} irregular vertices",
+            ]
         if self.least is not None:
             parts[-1] = f"{parts[-1]} (least {self.least})"
         if self.worst_face >= 0:
@@ -71,6 +74,7 @@ def measure(vertices: np.ndarray, corners: np.ndarray, offsets: np.ndarray) -> Q
     corners, offsets = np.asarray(corners, np.int64), np.asarray(offsets, np.int64)
     n, n_faces = len(vertices), len(offsets) - 1
     sizes = np.diff(offsets)
+    sides = int(sizes[0]) if n_faces and sizes[0] in (3, 4) and (sizes == sizes[0]).all() else 0
     face = np.repeat(np.arange(n_faces), sizes)
     after, before = _beside(offsets, sizes, len(corners))
     a, b = corners, corners[after]
@@ -98,9 +102,11 @@ def measure(vertices: np.ndarray, corners: np.ndarray, offsets: np.ndarray) -> Q
     if simple and topology is not None:
         euler, borders = topology
         genus = int(((2 - borders - euler) // 2).sum())
-        plain = bool((sizes == 3).all()) and bool(((borders == 0) | (2 - borders - euler == 0)).all())
-        if plain and n_faces:
+        plain = bool(((borders == 0) | (2 - borders - euler == 0)).all())
+        if plain and sides == 3:
             least = int(np.where(borders == 0, 6 + 3 * (2 - euler) // 2, 6 + 3 * (borders - 1)).sum())
+        elif plain and sides == 4:
+            least = int(np.where(borders == 0, 8 + 8 * (2 - euler) // 2, 4 * borders).sum())
     return Quality(
         vertices=int(used.sum()),
         faces=n_faces,
@@ -109,7 +115,7 @@ def measure(vertices: np.ndarray, corners: np.ndarray, offsets: np.ndarray) -> Q
         border=on_border[irregular],
         valence=valence[irregular],
         least=least,
-        triangles=bool((sizes == 3).all()),
+        sides=sides,
         worst_angle=float(angles[worst]) if worst >= 0 else float("nan"),
         worst_face=int(face[worst]) if worst >= 0 else -1,
         non_manifold=crowded + int(pinched),

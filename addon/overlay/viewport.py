@@ -16,12 +16,14 @@ MARGIN, LINE, ABOVE = 14, 18, 36
 """Pixels at scale 1; the last is the height of the redo panel's header."""
 
 # By curvature: few edges are warm, many are cold, strong colours are two or more away from regular.
-_COLOURS = (
-    ((0.95, 0.16, 0.12, 1.0), "4 edges or fewer", "Far too few edges"),
-    ((1.0, 0.62, 0.1, 1.0), "5 edges", "Too few edges"),
-    ((0.2, 0.68, 1.0, 1.0), "7 edges", "Too many edges"),
-    ((0.35, 0.2, 0.95, 1.0), "8 edges or more", "Far too many edges"),
-)
+_COLOURS = ((0.95, 0.16, 0.12, 1.0), (1.0, 0.62, 0.1, 1.0), (0.2, 0.68, 1.0, 1.0), (0.35, 0.2, 0.95, 1.0))
+
+_WORDS = {
+    3: ("4 edges or fewer", "5 edges", "7 edges", "8 edges or more"),
+    4: ("2 edges", "3 edges", "5 edges", "6 edges or more"),
+    0: ("Far too few edges", "Too few edges", "Too many edges", "Far too many edges"),
+}
+"""What the colours mean where all faces have so many corners, inside a mesh; on borders, and of mixed faces, the last."""
 
 notes: list[Any] = []
 """Functions from an object and the context to rows that are written below its numbers."""
@@ -57,15 +59,20 @@ def _look(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[Quality
     lift = 0.1 * size / max(1.0, np.sqrt(len(points)))
     at = found.irregular
     dots = np.ascontiguousarray(points[at] + lift * normals[at], np.float32)  # the only type that is drawn
-    return found, dots, colours(found.curvature)
+    return found, dots, colours(found)
 
 
-def colours(curvature: np.ndarray) -> np.ndarray:
+def kinds(found: Quality) -> np.ndarray:
+    """Number (k,) of the colour of each irregular vertex."""
+    strong = np.abs(found.curvature) > (
+        0.3 if found.sides == 4 else 0.2
+    )  # an edge is a sixth, of quads a fourth
+    return np.where(found.curvature > 0, np.where(strong, 0, 1), np.where(strong, 3, 2))
+
+
+def colours(found: Quality) -> np.ndarray:
     """Colours (k, 4) of irregular vertices."""
-    table = np.array([colour for colour, *_ in _COLOURS], np.float32)
-    strong = np.abs(curvature) > 0.2
-    kind = np.where(curvature > 0, np.where(strong, 0, 1), np.where(strong, 3, 2))
-    return table[kind]
+    return np.array(_COLOURS, np.float32)[kinds(found)]
 
 
 def shown(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -119,7 +126,10 @@ def _draw_dots() -> None:
 
 def lines(found: Quality) -> list[str]:
     """What is written in the corner."""
-    rows = [f"{found.faces} faces", f"Irregular {len(found.irregular)}"]
+    if found.sides == 4:
+        rows = [f"{found.faces} quads", f"Poles {len(found.irregular)}"]
+    else:
+        rows = [f"{found.faces} faces", f"Irregular {len(found.irregular)}"]
     if found.least is not None:
         rows[1] = f"{rows[1]}  (least {found.least})"
     if found.worst_face >= 0:
@@ -146,30 +156,18 @@ def _draw_text() -> None:
     blf.shadow(font, 3, 0.0, 0.0, 0.0, 0.9)
     toolbar = next((r.width for r in context.area.regions if r.type == "TOOLS"), 0)
     x, y = toolbar + MARGIN * scale, (MARGIN + ABOVE) * scale
-    # Inside a triangle mesh numbers say it best; on borders, and of other faces, others are regular.
-    exact = found.triangles and not found.border.any()
-    seen = [entry for entry, here in zip(_COLOURS, _present(found), strict=True) if here]
-    kinds = [number if exact else words for _, number, words in seen]
-    tints = [colour for colour, *_ in seen]
+    # Inside a mesh numbers say it best; on borders others are regular.
+    words = _WORDS[0 if found.border.any() else found.sides]
+    seen = np.unique(kinds(found))
     written = [*lines(found), *(row for note in notes for row in note(active, context))]
     rows = [(told(row, "interface"), (1.0, 1.0, 1.0, 1.0)) for row in written]
-    rows += [(f"● {told(kind, 'interface')}", tint) for kind, tint in zip(kinds, tints, strict=True)]
+    rows += [(f"● {told(words[kind], 'interface')}", _COLOURS[kind]) for kind in seen]
     for text, tint in reversed(rows):
         blf.color(font, *tint)
         blf.position(font, x, y, 0)
         blf.draw(font, text)
         y += line
     blf.disable(font, blf.SHADOW)
-
-
-def _present(found: Quality) -> list[bool]:
-    c = found.curvature
-    return [
-        bool(np.any(c > 0.2)),
-        bool(np.any((c > 0) & (c <= 0.2))),
-        bool(np.any((c < 0) & (c >= -0.2))),
-        bool(np.any(c < -0.2)),
-    ]
 
 
 def turn(on: bool) -> None:

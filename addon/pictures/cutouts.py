@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..api import CancelledError, Progress
+from ..api import FACE_AREA, CancelledError, Progress, faces_of
 from ..native import native
 
 PIXELS = 100_000_000
@@ -40,6 +40,8 @@ class Options:
     holes: bool = True
     triangles: int = 1000
     """Of one side, shared by the parts according to their area."""
+    quads: int | None = None
+    """The same of quads; None makes triangles."""
     body: dict[str, Any] | None = None
     """Keyword arguments of `gridmesh.inflate`; None for a flat sheet."""
 
@@ -49,9 +51,10 @@ class Cutout:
     """Mesh of all parts of a picture, in pixels from its lower left corner, z towards the viewer."""
 
     vertices: np.ndarray
-    triangles: np.ndarray
+    faces: np.ndarray
+    """(f, 3) triangles, or (f, 4) quads."""
     uv: np.ndarray
-    """(3t, 2) by corner, exactly over the picture."""
+    """By corner, exactly over the picture."""
     silhouette: list[np.ndarray]
     parts: int
     dropped: int
@@ -109,13 +112,13 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
         raise PictureError(refused[0])
     starts = np.cumsum([0, *(len(surface.vertices) for surface in meshed)])
     vertices = np.concatenate([surface.vertices for surface in meshed])
-    triangles = np.concatenate(
-        [surface.triangles + start for surface, start in zip(meshed, starts, strict=False)]
+    faces = np.concatenate(
+        [faces_of(surface) + start for surface, start in zip(meshed, starts, strict=False)]
     ).astype(np.int32)
     return Cutout(
         vertices=vertices,
-        triangles=triangles,
-        uv=vertices[triangles.ravel(), :2] / [width, height],
+        faces=faces,
+        uv=vertices[faces.ravel(), :2] / [width, height],
         silhouette=[
             loop + start
             for surface, start in zip(meshed, starts, strict=False)
@@ -141,16 +144,18 @@ def _part(progress: Progress | None, begin: float, end: float) -> Callable[[floa
 def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progress | None) -> list[Any]:
     """Surface or GridMeshError for each part, all with edges of about the same length."""
     total = sum(_area(outline) + sum(map(_area, holes)) for outline, holes in parts)
-    if options.triangles <= 0:
-        raise PictureError(f"Triangles of Each Side is {options.triangles}; allowed: 1 or more")
-    length = np.sqrt(total / options.triangles * 4 / np.sqrt(3))
+    cells = "triangles" if options.quads is None else "quads"
+    number = options.triangles if options.quads is None else options.quads
+    if number <= 0:
+        raise PictureError(f"{cells.capitalize()} of Each Side is {number}; allowed: 1 or more")
+    length = np.sqrt(total / number / FACE_AREA[cells])
     results: list[Any] = [None] * len(parts)
     left = list(range(len(parts)))
     for step, finer in enumerate(FINER):
         found = _surfaces(
             gridmesh,
             [parts[k] for k in left],
-            finer * length,
+            {"cells": cells, "edge_length": finer * length, "least": False},
             options.body,
             _part(progress, step / len(FINER), (step + 1) / len(FINER)),
         )
@@ -168,12 +173,11 @@ def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progres
 def _surfaces(
     gridmesh: Any,
     parts: list[Any],
-    edge_length: float,
+    options: dict[str, Any],
     body: dict[str, Any] | None,
     progress: Progress | None,
 ) -> list[Any]:
     """Surface or GridMeshError for each part."""
-    options = {"edge_length": edge_length, "least": False}
     if body is not None:
         return list(gridmesh.map_sketches(parts, progress=progress, **options, **body))
 

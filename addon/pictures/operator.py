@@ -13,13 +13,14 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 
 from ..api import CancelledError
 from ..bodies.strokes import selected
+from ..data import defaults
 from ..data.meshes import obstacle_of_mesh
 from ..data.placing import Transaction, home
 from ..native import NativeError
 from ..text.messages import counted, listed
 from ..text.telling import told
 from ..ui.progress import Pointer
-from ..ui.properties import ShapeOptions
+from ..ui.properties import FACES, ShapeOptions
 from . import images, placing
 from .cutouts import Cutout, Options, PictureError, cut_out
 
@@ -35,10 +36,20 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
 
     filepath: StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
     filter_glob: StringProperty(default=READ, options={"HIDDEN", "SKIP_SAVE"})
+    cells: EnumProperty(
+        name="Faces", description="What the mesh is made of", items=FACES, default=defaults.CELLS
+    )
     triangles: IntProperty(
         name="Triangles of Each Side",
         description="Number of triangles of one side of all that the picture shows; thin parts get more",
         default=1000,
+        soft_min=50,
+        soft_max=100_000,
+    )
+    quads: IntProperty(
+        name="Quads of Each Side",
+        description="Number of quads of one side of all that the picture shows; thin parts get more",
+        default=500,
         soft_min=50,
         soft_max=100_000,
     )
@@ -151,10 +162,11 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
             self.report({"WARNING"}, told("Cancelled; nothing was made"))
             return {"CANCELLED"}
         _select(context, objects)
-        triangles = sum(len(cutout.triangles) for *_, cutout in made)
+        faces = sum(len(cutout.faces) for *_, cutout in made)
+        face = "quad" if self.cells == "QUADS" else "triangle"
         parts = sum(cutout.parts for *_, cutout in made)
         self.result = (
-            f"{counted(len(made), 'picture')}: {counted(parts, 'part')}, {triangles} triangles, "
+            f"{counted(len(made), 'picture')}: {counted(parts, 'part')}, {counted(faces, face)}, "
             f"{1000 * (perf_counter() - started):.0f} ms"
         )
         self.report({"INFO"}, told(self.result))
@@ -170,7 +182,8 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
         if self.result:
             layout.label(text=told(self.result, "interface"))
         self.draw_shape_options(layout)
-        layout.prop(self, "triangles")
+        layout.prop(self, "cells")
+        layout.prop(self, self.cells.lower())
         column = layout.column()
         column.prop(self, "background")
         column.prop(self, "use_threshold")
@@ -217,6 +230,7 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
             margin=self.margin,
             holes=self.use_holes,
             triangles=self.triangles,
+            quads=self.quads if self.cells == "QUADS" else None,
             body=self.body_options(),
         )
 

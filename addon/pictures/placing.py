@@ -43,7 +43,7 @@ def body_of(cutout: Cutout, matrix: np.ndarray, width: int, height: int) -> Body
     return Body(
         sketch=None,
         vertices=vertices,
-        triangles=cutout.triangles,
+        faces=cutout.faces,
         uv=cutout.uv,
         silhouette=cutout.silhouette,
         report={},

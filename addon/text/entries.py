@@ -9,12 +9,12 @@ from ..ui import preset_files
 
 STROKES = "object.gridmesh_from_strokes"
 
-OWN = "Make a smooth body with a clean triangle mesh from each closed stroke"
+OWN = "Make a smooth body with a clean mesh of triangles or quads from each closed stroke"
 UPDATE = (
     "Make the bodies of the selected drawings, or the selected bodies, anew with these options; each stays the same "
     "object. Strokes without a body get one"
 )
-ANNOTATIONS = "Make a smooth body with a clean triangle mesh from each closed annotation"
+ANNOTATIONS = "Make a smooth body with a clean mesh of triangles or quads from each closed annotation"
 
 PRESETS = {
     "Body Flat Badge": "Make a flat body with a rounded rim of each closed stroke, like a badge",
@@ -22,6 +22,8 @@ PRESETS = {
     "Body Round": "Make a round body of each closed stroke; a circle becomes a sphere",
     "Sprite Deformation Heavy": "Make a flat sheet of each closed stroke, fine enough to be bent much",
     "Sprite Deformation Little": "Make a flat sheet of each closed stroke, coarse, for little bending",
+    "Body Round Quads": "Make a round body of each closed stroke, of quads in loops along the outline",
+    "Sprite Quads": "Make a flat sheet of each closed stroke, of quads in loops along the outline",
     "Sprite Mirrored Face": "Make a flat sheet of each closed stroke whose halves are alike, for faces",
     "Sprite Standard": "Make a flat sheet of each closed stroke, for cut-out animation",
 }

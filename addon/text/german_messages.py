@@ -5,6 +5,8 @@ See `telling`. The German numbers the values, `{0}`, `{1}`; names in single quot
 """
 
 _COUNTED = {
+    "{} area": "{0} Gebiet",
+    "{} areas": "{0} Gebiete",
     "{} body": "{0} Körper",
     "{} bodies": "{0} Körper",
     "{} cap": "{0} Deckel",
@@ -48,6 +50,20 @@ _COMMON = {
     "{} and {} more": "{0} und {1} weitere",
     "{} left open": "{0} offen gelassen",
     "{} left out:": "{0} weggelassen:",
+    "Meshed {} anew: {}, {}, {} ms": "{0} neu vernetzt: {1}, {2}, {3} ms",
+    "Nothing is selected; select faces, or a closed loop of edges": (
+        "Nichts ist ausgewählt; Flächen oder eine geschlossene Schleife aus Kanten auswählen"
+    ),
+    "Edit a mesh and select faces, or a closed loop of edges": (
+        "Ein Mesh bearbeiten und Flächen oder eine geschlossene Schleife aus Kanten auswählen"
+    ),
+    "Cancelled; nothing was changed": "Abgebrochen; nichts wurde geändert",
+    "the selected edges enclose no area; select a closed loop of edges, or faces": (
+        "die ausgewählten Kanten umschließen kein Gebiet; eine geschlossene Schleife aus Kanten oder Flächen auswählen"
+    ),
+    "it would have an edge that another area gets, too; choose them one after the other": (
+        "es hätte eine Kante, die auch ein anderes Gebiet bekommt; eines nach dem anderen auswählen"
+    ),
     "{} ms": "{0} ms",
     "{}   Esc: Stop": "{0}   Esc: Abbrechen",
     "{}   Stopping": "{0}   Wird abgebrochen",
@@ -179,7 +195,7 @@ _STROKES = {
     "{}: not flat, up to {} from its plane; it was projected onto the plane": (
         "{0}: nicht eben, bis {1} von seiner Ebene entfernt; er wurde auf die Ebene projiziert"
     ),
-    "{}: {} triangles, {}, {} ms": "{0}: {1} Dreiecke, {2}, {3} ms",
+    "{}: {}, {}, {} ms": "{0}: {1}, {2}, {3} ms",
     "{}; {} closed": "{0}; {1} geschlossen",
     "'{}' was changed by hand and is left as it is; delete it, press Rebuild from Outline in the panel Live "
     "Body, or turn off Update Existing": (
@@ -197,8 +213,8 @@ _STROKES = {
 }
 
 _ENTRIES = {
-    "Make a smooth body with a clean triangle mesh from each closed annotation": (
-        "Aus jeder geschlossenen Anmerkung einen glatten Körper mit sauberem Dreiecksnetz machen"
+    "Make a smooth body with a clean mesh of triangles or quads from each closed annotation": (
+        "Aus jeder geschlossenen Anmerkung einen glatten Körper mit sauberem Netz aus Dreiecken oder Vierecken machen"
     ),
     "Make a flat body with a rounded rim of each closed stroke, like a badge": (
         "Aus jedem geschlossenen Strich einen flachen Körper mit rundem Rand machen, wie eine Plakette"
@@ -208,6 +224,12 @@ _ENTRIES = {
     ),
     "Make a round body of each closed stroke; a circle becomes a sphere": (
         "Aus jedem geschlossenen Strich einen runden Körper machen; ein Kreis wird zur Kugel"
+    ),
+    "Make a round body of each closed stroke, of quads in loops along the outline": (
+        "Aus jedem geschlossenen Strich einen runden Körper machen, aus Vierecken in Schleifen am Umriss entlang"
+    ),
+    "Make a flat sheet of each closed stroke, of quads in loops along the outline": (
+        "Aus jedem geschlossenen Strich ein flaches Blatt machen, aus Vierecken in Schleifen am Umriss entlang"
     ),
     "Make a flat sheet of each closed stroke, fine enough to be bent much": (
         "Aus jedem geschlossenen Strich ein flaches Blatt machen, fein genug für starkes Biegen"
@@ -223,6 +245,7 @@ _ENTRIES = {
     ),
     "thinnest part: {} across": "dünnster Teil: {0} quer",
     "{} triangles of each side for 5": "{0} Dreiecke jeder Seite für 5",
+    "{} quads of each side for 5": "{0} Vierecke jeder Seite für 5",
 }
 
 _LIVE = {
@@ -248,6 +271,13 @@ _LIVE = {
         "sein Strich ist ausgeblendet, oder er liegt in einem anderen und ist dort ein Loch"
     ),
     "the stroke has left its plane": "der Strich hat seine Ebene verlassen",
+    "the stroke is too thin for quads this coarse; use more quads or shorter edges, or set Faces to Triangles": (
+        "der Strich ist zu dünn für so grobe Vierecke; mehr Vierecke oder kürzere Kanten nehmen, oder „Flächen“ auf "
+        "Dreiecke stellen"
+    ),
+    "the outline is mirrored, its quads are not; set Faces to Triangles for a mesh that is": (
+        "der Umriss ist gespiegelt, seine Vierecke sind es nicht; „Flächen“ auf Dreiecke stellen für ein Mesh, das es ist"
+    ),
     "the stroke is too thin for a mesh this coarse; use more triangles or shorter edges": (
         "der Strich ist zu dünn für ein so grobes Netz; mehr Dreiecke oder kürzere Kanten nehmen"
     ),
@@ -530,6 +560,12 @@ _QUALITY = {
     "Too few edges": "Zu wenige Kanten",
     "Too many edges": "Zu viele Kanten",
     "1 irregular vertex": "1 unregelmäßiger Punkt",
+    "1 pole": "1 Pol",
+    "{} poles": "{0} Pole",
+    "Poles {}": "Pole {0}",
+    "2 edges": "2 Kanten",
+    "3 edges": "3 Kanten",
+    "6 edges or more": "6 Kanten oder mehr",
     "sharpest angle {}°": "spitzester Winkel {0}°",
     "{}  (least {})": "{0}  (mindestens {1})",
     "{} (least {})": "{0} (mindestens {1})",
@@ -872,7 +908,7 @@ _LIBRARY_PARTS = {
     "nothing in it is covered; choose another background or a lower threshold": (
         "nichts darin ist bedeckt; einen anderen Hintergrund oder eine niedrigere Schwelle wählen"
     ),
-    "Triangles of Each Side is {}; allowed: 1 or more": "„Dreiecke je Seite“ ist {0}; erlaubt: 1 oder mehr",
+    "{} of Each Side is {}; allowed: 1 or more": "„{0} jeder Seite“ ist {1}; erlaubt: 1 oder mehr",
     "it shows no picture; select an image empty or an image plane": (
         "es zeigt kein Bild; ein Bild-Empty oder eine Bildebene auswählen"
     ),
@@ -903,7 +939,6 @@ _LIBRARY_PARTS = {
     ),
     "Leave the mode to make meshes of pictures": "Den Modus verlassen, um aus Bildern Meshes zu machen",
     "Select a sprite or a body made from a picture": "Ein Sprite oder einen Körper auswählen, der aus einem Bild gemacht ist",
-    "{}: {}, {} triangles, {} ms": "{0}: {1}, {2} Dreiecke, {3} ms",
     "{} updated": "{0} aktualisiert",
     "{}: a part is left out: {}": "{0}: ein Teil ist weggelassen: {1}",
     "{}: {} left out, smaller than Least Area": "{0}: {1} weggelassen, kleiner als „Kleinste Fläche“",

@@ -20,9 +20,18 @@ GERMAN = {
     "Fill the selected hole with a regular triangle patch that fits its edges": (
         "Das ausgewählte Loch mit einem regelmäßigen Flicken aus Dreiecken füllen, der an seine Kanten passt"
     ),
+    "Keep Shape": "Form behalten",
+    "Lay the grid on the old surface; without, the area becomes a smooth patch between its edges": (
+        "Das Gitter auf die alte Oberfläche legen; ohne dies wird das Gebiet ein glatter Flicken zwischen seinen Kanten"
+    ),
+    "Mesh the selected faces, or the area inside a selected loop, anew with a regular grid on the same surface": (
+        "Die ausgewählten Flächen oder das Gebiet in einer ausgewählten Schleife mit einem regelmäßigen Gitter auf derselben "
+        "Oberfläche neu vernetzen"
+    ),
+    "Regrid": "Neu mit Gitter",
     "Grid Patch Fill": "Loch mit Gitter füllen",
-    "Make a smooth body with a clean triangle mesh from each closed stroke": (
-        "Aus jedem geschlossenen Strich einen glatten Körper mit sauberem Dreiecksnetz machen"
+    "Make a smooth body with a clean mesh of triangles or quads from each closed stroke": (
+        "Aus jedem geschlossenen Strich einen glatten Körper mit sauberem Netz aus Dreiecken oder Vierecken machen"
     ),
     "Enough Triangles": "Genug Dreiecke",
     "Give the selected live bodies as many triangles as put five across their thinnest limbs": (
@@ -89,6 +98,8 @@ GERMAN = {
     "Sprite Deformation Heavy": "Sprite: starke Verformung",
     "Sprite Deformation Little": "Sprite: leichte Verformung",
     "Sprite Mirrored Face": "Sprite: gespiegeltes Gesicht",
+    "Body Round Quads": "Körper: rund, Vierecke",
+    "Sprite Quads": "Sprite: Vierecke",
     "Sprite Standard": "Sprite: Standard",
     # Where the strokes are, and which
     "Active": "Aktiv",
@@ -140,13 +151,30 @@ GERMAN = {
     "Where the strokes are": "Wo die Striche sind",
     # The grid
     "Angle": "Winkel",
-    "Angle of the triangle grid in the drawing plane, from 0 to 60 degrees": (
-        "Winkel des Dreiecksgitters in der Zeichenebene, von 0 bis 60 Grad"
+    "Angle of the grid in the drawing plane, from 0 to 60 degrees, of quads to 90": (
+        "Winkel des Gitters in der Zeichenebene, von 0 bis 60 Grad, bei Vierecken bis 90"
     ),
     "Automatic": "Automatisch",
     "Boundary": "Rand",
     "Corner Angle": "Eckenwinkel",
-    "Direction of the triangle grid": "Richtung des Dreiecksgitters",
+    "Direction of the grid; quads with a fixed one do not bend with the drawing": (
+        "Richtung des Gitters; Vierecke mit einer festen biegen sich nicht mit der Zeichnung"
+    ),
+    "Faces": "Flächen",
+    "What the mesh is made of": "Woraus das Netz besteht",
+    "Triangles, six around almost every vertex": "Dreiecke, sechs um fast jeden Punkt",
+    "Quads": "Vierecke",
+    "Quads, four around almost every vertex, in edge loops along the outline; for subdivision and rigging": (
+        "Vierecke, vier um fast jeden Punkt, in Kantenschleifen am Umriss entlang; zum Unterteilen und Riggen"
+    ),
+    "Number": "Anzahl",
+    "Quads of Each Side": "Vierecke jeder Seite",
+    "Number of quads of one side, reached within 10%; a body has two sides": (
+        "Zahl der Vierecke einer Seite, auf 10% genau; ein Körper hat zwei Seiten"
+    ),
+    "Number of quads of one side of all that the picture shows; thin parts get more": (
+        "Anzahl der Vierecke einer Seite von allem, was das Bild zeigt; dünne Teile bekommen mehr"
+    ),
     "Edge Length": "Kantenlänge",
     "Find the axis of a drawing that is symmetric within 2% of its size, and mesh both halves alike": (
         "Die Achse einer Zeichnung finden, die bis auf 2% ihrer Größe symmetrisch ist, und beide Hälften gleich vernetzen"
@@ -157,18 +185,20 @@ GERMAN = {
     "Fixed": "Fest",
     "Give the angle": "Den Winkel angeben",
     "Give the length of the edges": "Die Länge der Kanten angeben",
-    "Give the number of triangles of each side": "Die Zahl der Dreiecke jeder Seite angeben",
+    "Give the number of triangles or quads of each side": (
+        "Die Zahl der Dreiecke oder Vierecke jeder Seite angeben"
+    ),
     "Grid": "Gitter",
     "Grid Angle": "Gitterwinkel",
-    "Grow the grid from the middle and straighten its rim": (
-        "Das Gitter von der Mitte aus wachsen lassen und seinen Rand begradigen"
+    "Grow the grid from the middle and straighten its rim; for triangles": (
+        "Das Gitter von der Mitte aus wachsen lassen und seinen Rand begradigen; für Dreiecke"
     ),
     "Grown": "Gewachsen",
     "How far the grid's rim may stray before it is moved onto the stroke, in edge lengths": (
         "Wie weit der Rand des Gitters abweichen darf, bevor er auf den Strich gerückt wird, in Kantenlängen"
     ),
     "How the fineness of the mesh is given": "Wie die Feinheit des Netzes angegeben wird",
-    "How the rim of the triangle grid is chosen": "Wie der Rand des Dreiecksgitters gewählt wird",
+    "How the rim of the grid is chosen": "Wie der Rand des Gitters gewählt wird",
     "Keep corners where the stroke turns by more than this angle": (
         "Ecken erhalten, an denen der Strich um mehr als diesen Winkel abbiegt"
     ),
@@ -178,8 +208,9 @@ GERMAN = {
     "Max Distance": "Größter Abstand",
     "Mesh the drawing as it is": "Die Zeichnung vernetzen, wie sie ist",
     "Mirror": "Spiegeln",
-    "As many triangles as put five across the thinnest limb: 1000 to 20000 of each side": (
-        "So viele Dreiecke, dass fünf quer über das dünnste Glied gehen: 1000 bis 20000 jeder Seite"
+    "As many faces as put five across the thinnest limb: 1000 to 20000 triangles of each side, or half as many quads": (
+        "So viele Flächen, dass fünf quer über das dünnste Glied gehen: 1000 bis 20000 Dreiecke jeder Seite, oder halb so "
+        "viele Vierecke"
     ),
     "Number of triangles of one side, reached within 10%; a body has two sides": (
         "Zahl der Dreiecke einer Seite, auf 10% genau; ein Körper hat zwei Seiten"
@@ -516,7 +547,6 @@ GERMAN = {
     ),
     "Keep Hard Edges": "Harte Kanten erhalten",
     "Max Edges": "Höchstens Kanten",
-    "Quads": "Vierecke",
     "Selected loops of open edges, and the whole holes that single selected edges or vertices lie on": (
         "Ausgewählte Schleifen offener Kanten, und ganze Löcher, an denen einzelne ausgewählte Kanten oder Punkte liegen"
     ),

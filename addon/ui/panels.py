@@ -15,6 +15,7 @@ from ..cut.operator import OBJECT_OT_gridmesh_cut
 from ..data import meshes
 from ..fill.operator import MESH_OT_gridmesh_fill
 from ..pictures.operator import OBJECT_OT_gridmesh_from_image, OBJECT_OT_gridmesh_update_image
+from ..regrid.operator import MESH_OT_gridmesh_regrid
 from . import preset_files
 
 # Menus that get an entry; which of them exist depends on the Blender version.
@@ -53,6 +54,7 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
         column = self.layout.column()
         column.operator(idname, icon="MESH_GRID").holes = "SELECTED"
         column.operator(idname, text="Fill All Holes").holes = "ALL"
+        column.operator(MESH_OT_gridmesh_regrid.bl_idname, icon="MOD_REMESH")
 
     def _draw_strokes(self, context: bpy.types.Context) -> None:
         idname = OBJECT_OT_gridmesh_from_strokes.bl_idname
@@ -110,6 +112,7 @@ def _stroke_entry(menu: Any, context: bpy.types.Context) -> None:
 def _fill_entry(menu: Any, _context: bpy.types.Context) -> None:
     menu.layout.separator()
     menu.layout.operator(MESH_OT_gridmesh_fill.bl_idname).holes = "SELECTED"
+    menu.layout.operator(MESH_OT_gridmesh_regrid.bl_idname)
 
 
 def _cut_entry(menu: Any, context: bpy.types.Context) -> None:

@@ -13,10 +13,30 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 from ..bodies import profilecurve
 from ..data import defaults
 
+FACES = [
+    ("TRIANGLES", "Triangles", "Triangles, six around almost every vertex"),
+    (
+        "QUADS",
+        "Quads",
+        "Quads, four around almost every vertex, in edge loops along the outline; for subdivision and rigging",
+    ),
+]
+
+
+def fineness_of(options: Any) -> str:
+    """Name of the option that gives the fineness."""
+    return "edge_length" if options.resolution == "EDGE_LENGTH" else options.cells.lower()
+
 
 class SketchOptions:
     """How an outline is meshed. Mixed into operators."""
 
+    cells: EnumProperty(
+        name="Faces",
+        description="What the mesh is made of",
+        items=FACES,
+        default=defaults.CELLS,
+    )
     resolution: EnumProperty(
         name="Resolution",
         description="How the fineness of the mesh is given",
@@ -25,11 +45,12 @@ class SketchOptions:
             (
                 "AUTO",
                 "Automatic",
-                "As many triangles as put five across the thinnest limb: 1000 to 20000 of each side",
+                "As many faces as put five across the thinnest limb: 1000 to 20000 triangles of each side, or half "
+                "as many quads",
                 "NONE",
                 2,
             ),
-            ("TRIANGLES", "Triangles", "Give the number of triangles of each side", "NONE", 0),
+            ("TRIANGLES", "Number", "Give the number of triangles or quads of each side", "NONE", 0),
             ("EDGE_LENGTH", "Edge Length", "Give the length of the edges", "NONE", 1),
         ],
         default="AUTO",
@@ -38,6 +59,13 @@ class SketchOptions:
         name="Triangles of Each Side",
         description="Number of triangles of one side, reached within 10%; a body has two sides",
         default=defaults.TRIANGLES,
+        soft_min=50,
+        soft_max=100_000,
+    )
+    quads: IntProperty(
+        name="Quads of Each Side",
+        description="Number of quads of one side, reached within 10%; a body has two sides",
+        default=defaults.QUADS,
         soft_min=50,
         soft_max=100_000,
     )
@@ -53,14 +81,14 @@ class SketchOptions:
     )
     boundary: EnumProperty(
         name="Boundary",
-        description="How the rim of the triangle grid is chosen",
+        description="How the rim of the grid is chosen",
         items=[
             (
                 "OPTIMAL",
                 "Optimal",
                 "Find the rim with the fewest turns near the stroke, for the fewest irregular vertices",
             ),
-            ("GROWN", "Grown", "Grow the grid from the middle and straighten its rim"),
+            ("GROWN", "Grown", "Grow the grid from the middle and straighten its rim; for triangles"),
         ],
         default="OPTIMAL",
     )
@@ -73,7 +101,7 @@ class SketchOptions:
     )
     angle_mode: EnumProperty(
         name="Grid Angle",
-        description="Direction of the triangle grid",
+        description="Direction of the grid; quads with a fixed one do not bend with the drawing",
         items=[
             ("AUTO", "Automatic", "Take the best of several angles"),
             ("FIXED", "Fixed", "Give the angle"),
@@ -82,11 +110,11 @@ class SketchOptions:
     )
     angle: FloatProperty(
         name="Angle",
-        description="Angle of the triangle grid in the drawing plane, from 0 to 60 degrees",
+        description="Angle of the grid in the drawing plane, from 0 to 60 degrees, of quads to 90",
         subtype="ANGLE",
         default=0.0,
         soft_min=0.0,
-        soft_max=pi / 3 - 1e-4,
+        soft_max=pi / 2 - 1e-4,
     )
     corner_angle: FloatProperty(
         name="Corner Angle",
@@ -117,20 +145,28 @@ class SketchOptions:
     )
 
     def settle_resolution(self) -> None:
-        """Who gives a number of triangles, and does not say how the fineness is given, means that number."""
+        """Who gives a number of faces, and does not say how the fineness is given, means that number and those faces."""
         given = getattr(self, "properties", self)  # an operator's
-        if given.is_property_set("triangles") and not given.is_property_set("resolution"):
+        if given.is_property_set("resolution"):
+            return
+        if given.is_property_set("quads") and not given.is_property_set("cells"):
+            self.cells = "QUADS"
+        if given.is_property_set(self.cells.lower()):
             self.resolution = "TRIANGLES"
 
     def sketch_options(self) -> dict[str, Any]:
         """Keyword arguments of `gridmesh.mesh_sketch`."""
         self.settle_resolution()
+        kind = self.cells.lower()
         fineness = {
-            "AUTO": {"triangles": "auto"},
-            "TRIANGLES": {"triangles": self.triangles},
+            "AUTO": {kind: "auto"},
+            "TRIANGLES": {kind: getattr(self, kind)},
             "EDGE_LENGTH": {"edge_length": self.edge_length},
         }
         return {
+            **(
+                {"cells": kind} if kind == "quads" else {}
+            ),  # bodies of triangles keep the fingerprints that they had
             **fineness[self.resolution],
             "boundary": self.boundary.lower(),
             "max_distance": self.max_distance,
@@ -142,10 +178,11 @@ class SketchOptions:
 
     def draw_sketch_options(self, layout: bpy.types.UILayout) -> None:
         """Draw the resolution, and the grid's options in a closed panel below."""
+        layout.prop(self, "cells")
         column = layout.column()
         column.prop(self, "resolution")
         if self.resolution != "AUTO":
-            column.prop(self, "edge_length" if self.resolution == "EDGE_LENGTH" else "triangles")
+            column.prop(self, fineness_of(self))
         column.prop(self, "mirror")
         header, body = layout.panel(f"{self.bl_idname}_grid", default_closed=True)
         header.label(text="Grid")

@@ -54,6 +54,24 @@ def load(path):
     return {ob.name: ob for ob in bpy.context.scene.objects if ob.type == "MESH"}
 
 
+def corners_of(path):
+    """Positions (f, k, 3) of the corners of the faces of a file, which all have k of them."""
+    axes = {"forward_axis": "Y", "up_axis": "Z"}
+    if path.suffix in {".ply", ".blend"}:
+        (ob,) = load(path).values()
+    else:
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        read = {
+            ".obj": lambda name: bpy.ops.wm.obj_import(filepath=name, **axes),
+            ".stl": lambda name: bpy.ops.wm.stl_import(filepath=name, **axes),
+            ".glb": lambda name: bpy.ops.import_scene.gltf(filepath=name),
+        }[path.suffix]
+        assert read(str(path)) == {"FINISHED"}
+        (ob,) = (ob for ob in bpy.context.scene.objects if ob.type == "MESH")
+    points = np.array([vertex.co[:] for vertex in ob.data.vertices])
+    return points[np.array([polygon.vertices[:] for polygon in ob.data.polygons])]
+
+
 def open_edges(ob):
     """Edges without two faces, where vertices at the same place are one."""
     bm = bmesh.new()
@@ -298,6 +316,59 @@ def test_the_command_lines_of_one_operation_are_those_of_a_batch(tmp_path):
         name = f"{path.stem}.ply"
         assert (tmp_path / "a" / name).read_bytes() != (tmp_path / "c" / name).read_bytes()
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_quads_are_written_to_every_format(tmp_path):
+    items = [
+        {
+            "id": suffix,
+            "op": "strokes",
+            "in": str(SHAPES / "bean.json"),
+            "params": {"quads": 300} if suffix != "obj" else {"cells": "quads", "edge_length": 0.15},
+            "out": f"bean.{suffix}",
+        }
+        for suffix in ("ply", "obj", "glb", "stl", "blend")
+    ]
+    ran = batch(write_jobs(tmp_path, items))
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    found = results(tmp_path)
+    quads = found["ply"]["quads"]
+    assert quads == pytest.approx(600, rel=0.1)
+    assert found["ply"]["triangles"] == 0
+    assert found["ply"]["min_angle"] > 0.3
+    made = {one["id"]: corners_of(tmp_path / one["out"]).shape for one in items}
+    assert made["ply"] == made["blend"] == (quads, 4, 3)
+    assert made["obj"][1] == 4
+    assert made["glb"] == made["stl"] == (2 * quads, 3, 3)
+
+
+def test_formats_without_quads_get_them_cut_along_the_shorter_diagonal(tmp_path):
+    for suffix in ("ply", "stl"):
+        ran = run("strokes", SHAPES / "star.json", "-o", tmp_path / f"star.{suffix}", "--cells", "quads")
+        assert ran.returncode == 0, ran.stdout + ran.stderr
+    quads, cut = (corners_of(tmp_path / f"star.{suffix}") for suffix in ("ply", "stl"))
+    shorter = np.minimum(*(np.linalg.norm(quads[:, k] - quads[:, k + 2], axis=1) for k in range(2)))
+    sides, in_all = (np.linalg.norm(at - np.roll(at, 1, axis=1), axis=2).sum() for at in (quads, cut))
+    longer = np.maximum(*(np.linalg.norm(quads[:, k] - quads[:, k + 2], axis=1) for k in range(2)))
+    apart = (
+        2 * (longer - shorter).sum()
+    )  # folded along the shorter one, a few at tips are cut along the other
+    assert in_all - sides - 2 * shorter.sum() < 0.05 * apart
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--quads", "300", "--triangles", "300"], "not both"),
+        (["--quads", "300", "--edge-length", "1"], "not both"),
+        (["--cells", "triangles", "--quads", "300"], "leave one out"),
+        (["--cells", "hexagons"], "quads"),
+    ],
+)
+def test_quads_and_other_numbers_do_not_go_together(words, said):
+    ran = run("strokes", "a.json", "-o", "a.ply", *words)
+    assert ran.returncode == 2
+    assert said in ran.stderr
 
 
 @pytest.mark.parametrize(

@@ -95,7 +95,7 @@ def test_panel_with_a_drawing_and_with_a_body():
 
 def test_panel_in_edit_mode():
     edit(cylinder())
-    assert panel() == ["mesh.gridmesh_fill"] * 2 + ["object.gridmesh_cut"] * 2
+    assert panel() == ["mesh.gridmesh_fill"] * 2 + ["mesh.gridmesh_regrid"] + ["object.gridmesh_cut"] * 2
 
 
 def test_menu_of_presets():
@@ -109,7 +109,7 @@ def test_menu_entries(entry):
     grease_pencil([circle()])
     menu = types.SimpleNamespace(layout=Layout())
     entry(menu, bpy.context)
-    assert len(menu.layout.drawn) == 1
+    assert len(menu.layout.drawn) == (2 if entry is ui._fill_entry else 1)
 
 
 def options(cls, **changed):

@@ -52,6 +52,7 @@ WITHOUT_BLENDER = {
     "draw/fewer",
     "live/solve",
     "overlay/quality",
+    "regrid/carried",
     "pictures/cutouts",
     "text/messages",
 }

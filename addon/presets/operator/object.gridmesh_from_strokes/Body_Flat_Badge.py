@@ -6,5 +6,6 @@ op.shape = "BODY"
 op.profile = "FLAT"
 op.use_sides = False
 op.depth = 0.5
+op.cells = "TRIANGLES"
 op.resolution = "AUTO"
 op.mirror = "OFF"

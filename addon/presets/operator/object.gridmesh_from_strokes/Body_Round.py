@@ -6,5 +6,6 @@ op.shape = "BODY"
 op.profile = "ROUND"
 op.use_sides = False
 op.depth = 1.0
+op.cells = "TRIANGLES"
 op.resolution = "AUTO"
 op.mirror = "OFF"

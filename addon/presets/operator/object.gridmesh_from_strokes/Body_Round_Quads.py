@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import bpy
+
+op = bpy.context.active_operator
+op.shape = "BODY"
+op.profile = "ROUND"
+op.use_sides = False
+op.depth = 1.0
+op.cells = "QUADS"
+op.resolution = "AUTO"
+op.mirror = "OFF"

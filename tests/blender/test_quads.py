@@ -1,0 +1,262 @@
+"""Bodies of quads in Blender: every operator, live bodies, what is shown of them, and what is refused."""
+
+import json
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from drawings import (
+    activate,
+    bean,
+    bezier_circle,
+    circle,
+    grease_pencil,
+    mesh_objects,
+    run_one,
+    uv_of,
+    vertices,
+)
+
+from addon import api
+from addon.live import engine
+from addon.overlay import viewport
+from addon.pictures.cutouts import Options, cut_out
+
+
+def faces_of(mesh):
+    """(f, 4) corners; every face must be a quad."""
+    assert {len(polygon.vertices) for polygon in mesh.polygons} == {4}
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    return corners.reshape(-1, 4)
+
+
+def check_quads(ob, contours=1):
+    """One closed body, wound outward, of quads with three, four or five at each vertex."""
+    quads, points = faces_of(ob.data), vertices(ob.data)
+    sides = np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)
+    directed = set(map(tuple, sides.tolist()))
+    assert len(directed) == len(sides)
+    assert all((b, a) in directed for a, b in directed), "the mesh has a border"
+    assert len(points) - len(sides) // 2 + len(quads) == 4 - 2 * contours
+    assert set(np.bincount(quads.ravel()).tolist()) <= {3, 4, 5}
+    for triangle in (quads[:, :3], quads[:, [0, 2, 3]]):
+        a, b, c = (points[triangle[:, k]] for k in range(3))
+        assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() > 0, "inside out"
+    assert not ob.data.validate(verbose=True)
+    uv = uv_of(ob).reshape(-1, 4, 2)
+    assert uv.min() >= 0
+    assert uv.max() <= 1
+    assert np.ptp(uv, axis=1).max() < 0.2, "a seam runs through a quad"
+
+
+FOLDER = Path(__file__).parents[1] / "sketches" / "drawings"
+
+
+def drawing(name):
+    outline = np.asarray(json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))["points"], float)
+    outline = outline / np.ptp(outline, axis=0).max() * 3
+    return np.column_stack([outline, np.zeros(len(outline))])
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in FOLDER.glob("*.json")))
+def test_drawings_become_bodies_of_quads(name):
+    grease_pencil([drawing(name)])
+    ob = run_one(quads=900)
+    check_quads(ob)
+    assert abs(len(ob.data.polygons) / 1800 - 1) < 0.1
+
+
+def test_a_number_of_quads_asks_for_quads_and_other_options_are_what_they_were():
+    grease_pencil([bean()])
+    assert bpy.ops.object.gridmesh_from_strokes(quads=300) == {"FINISHED"}
+    assert len(bpy.context.object.data.polygons) == pytest.approx(600, rel=0.12)
+    assert faces_of(bpy.context.object.data).shape[1] == 4
+
+
+@pytest.mark.parametrize("options", [{}, {"resolution": "EDGE_LENGTH", "edge_length": 0.1}])
+def test_the_number_is_automatic_or_follows_from_an_edge_length(options):
+    grease_pencil([bean()])
+    ob = run_one(cells="QUADS", triangles=500, **{"resolution": "AUTO", **options})
+    check_quads(ob)
+    lengths = [
+        np.linalg.norm(np.subtract(*(ob.data.vertices[v].co[:] for v in edge.vertices)))
+        for edge in ob.data.edges
+    ]
+    assert len(ob.data.polygons) >= 600
+    if options:
+        assert 0.08 < np.median(lengths) < 0.15  # a body is stretched in the middle
+
+
+def test_holes_curves_and_sheets():
+    grease_pencil([circle(60, 2.0), circle(40, 0.7)])
+    drawing = bpy.context.object
+    ob = run_one(quads=900)
+    check_quads(ob, contours=2)
+    activate(drawing)
+    sheet = run_one(quads=900, shape="SHEET", update_existing=False)
+    assert len(faces_of(sheet.data)) * 2 == len(ob.data.polygons)
+    bezier_circle()
+    check_quads(run_one(quads=400))
+
+
+def test_an_updated_body_goes_from_triangles_to_quads_and_back():
+    grease_pencil([bean()])
+    ob = run_one()
+    bpy.ops.object.gridmesh_from_strokes(quads=400)
+    check_quads(ob)
+    bpy.ops.object.gridmesh_from_strokes(cells="TRIANGLES", triangles=400)
+    assert {len(polygon.vertices) for polygon in ob.data.polygons} == {3}
+    assert mesh_objects() == [ob]
+
+
+def test_flat_bodies_are_creased_along_the_rim():
+    drawing = grease_pencil([circle(80, 1.0)])
+    ob = run_one(quads=500, profile="PEAK")
+    sharp = np.array([edge.use_edge_sharp for edge in ob.data.edges])
+    quads = faces_of(ob.data)
+    rim = sum(1 for edge in ob.data.edges if all(abs(ob.data.vertices[v].co.z) < 1e-6 for v in edge.vertices))
+    assert sharp.sum() == rim > 20
+    assert len(quads) > 800
+    activate(drawing)
+    round_one = run_one(quads=500, update_existing=False)
+    assert not any(edge.use_edge_sharp for edge in round_one.data.edges)
+
+
+@pytest.mark.usefixtures("awake")
+class TestLive:
+    def live(self, **options):
+        source = grease_pencil([bean()])
+        ob = run_one(follow=True, **options)
+        engine.settle()
+        return source, ob
+
+    def drag(self, source, by):
+        drawn = source.data.layers[0].current_frame().drawing
+        points = bean()
+        away = (np.arange(len(points)) - 40) / 4.0
+        points = points * (1 + by * np.exp(-0.5 * away**2))[:, None]
+        drawn.attributes["position"].data.foreach_set("vector", points.astype(np.float32).ravel())
+        drawn.tag_positions_changed()
+        bpy.context.view_layer.update()
+
+    def test_a_body_follows_with_its_quads_while_it_is_dragged_and_after(self):
+        source, ob = self.live(quads=700)
+        before = vertices(ob.data)
+        for by in (0.1, 0.2, 0.3):
+            self.drag(source, by)
+            check_quads(ob)
+            assert ob.gridmesh_live.digest == ""
+        engine.refresh()
+        check_quads(ob)
+        assert ob.gridmesh_live.digest
+        assert len(vertices(ob.data)) != len(before) or not np.allclose(vertices(ob.data), before)
+
+    def test_a_body_made_in_full_is_that_of_the_operator(self):
+        source, ob = self.live(quads=700)
+        self.drag(source, 0.1)
+        engine.refresh()
+        activate(source)
+        other = run_one(quads=700, update_existing=False)
+        assert np.array_equal(faces_of(other.data), faces_of(ob.data))
+
+    def test_faces_are_changed_in_the_panel(self):
+        _, ob = self.live(triangles=600)
+        ob.gridmesh_live.cells = "QUADS"
+        check_quads(ob)
+        ob.gridmesh_live.quads = 300
+        ob.gridmesh_live.resolution = "TRIANGLES"
+        assert len(ob.data.polygons) == pytest.approx(600, rel=0.12)
+        ob.gridmesh_live.cells = "TRIANGLES"
+        assert {len(polygon.vertices) for polygon in ob.data.polygons} == {3}
+
+    def test_bodies_of_triangles_keep_the_fingerprints_that_they_had(self):
+        _, ob = self.live(triangles=600)
+        assert "cells" not in ob.gridmesh_live.sketch_options()
+        assert "quads" not in ob.gridmesh_live.sketch_options()
+
+    def test_work_by_hand_is_known_and_an_applied_scale_is_not_taken_for_it(self):
+        source, ob = self.live(quads=400)
+        activate(ob)
+        ob.scale = (2.0, 1.0, 1.0)
+        bpy.context.view_layer.update()
+        bpy.ops.object.transform_apply(scale=True)
+        engine.follow(ob, bpy.context.evaluated_depsgraph_get())
+        assert not ob.gridmesh_live.problem
+        ob.scale = (-1.0, 1.0, 1.0)
+        bpy.context.view_layer.update()
+        bpy.ops.object.transform_apply(scale=True)
+        self.drag(source, 0.05)
+        engine.refresh()
+        assert not ob.gridmesh_live.problem
+        check_quads(ob)
+        ob.data.vertices[0].co.z += 0.3
+        ob.data.update()
+        self.drag(source, 0.1)
+        assert ob.gridmesh_live.problem == engine.BY_HAND
+
+
+class TestRefusals:
+    def refused(self, capfd, **options):
+        before = len(mesh_objects())
+        with pytest.raises(RuntimeError) as error:
+            bpy.ops.object.gridmesh_from_strokes(**options)
+        assert len(mesh_objects()) == before
+        return str(error.value)
+
+    def test_a_drawing_too_thin_names_a_number_of_quads_that_works(self, capfd):
+        bar = np.array([[0, 0, 0], [8, 0, 0], [8, 0.1, 0], [0, 0.1, 0]], float)
+        grease_pencil([np.repeat(bar, 3, axis=0)])
+        text = self.refused(capfd, quads=60)
+        number = int(
+            "".join(c for c in text.split("follow this drawing; ")[1].split(" work")[0] if c.isdigit())
+        )
+        check_quads(run_one(quads=number))
+
+    def test_grown_rims_and_mirrors_are_refused_and_say_what_works(self, capfd):
+        grease_pencil([bean()])
+        assert "triangles" in self.refused(capfd, quads=500, boundary="GROWN")
+        assert "triangles" in self.refused(capfd, quads=500, mirror="AUTO")
+
+
+class TestQuality:
+    def test_poles_are_counted_and_the_least_is_that_of_the_drawing(self):
+        grease_pencil([circle(80, 2.0), circle(40, 0.7)])
+        ob = run_one(quads=900)
+        found = viewport.of_object(ob, bpy.context.evaluated_depsgraph_get())
+        assert found.sides == 4
+        assert found.least == 16
+        assert "poles (least 16)" in found.text
+        assert set(viewport.kinds(found).tolist()) <= {1, 2}
+        assert viewport.lines(found)[1].startswith("Poles ")
+
+    def test_a_cube_has_eight_poles_of_three_edges(self):
+        bpy.ops.mesh.primitive_cube_add()
+        found = viewport.of_object(bpy.context.object, bpy.context.evaluated_depsgraph_get())
+        assert len(found.irregular) == found.least == 8
+        assert set(viewport.kinds(found).tolist()) == {1}
+
+    def test_a_sheet_of_quads_needs_four_for_each_contour(self):
+        grease_pencil([circle(80, 2.0), circle(40, 0.7)])
+        ob = run_one(quads=900, shape="SHEET")
+        assert viewport.of_object(ob, bpy.context.evaluated_depsgraph_get()).least == 8
+
+
+def test_pictures_become_quads_with_the_picture_on_them():
+    y, x = np.mgrid[0:120, 0:160]
+    pixels = np.ones((120, 160, 4), np.float32)
+    pixels[..., 3] = ((x - 80) / 70.0) ** 2 + ((y - 60) / 50.0) ** 2 < 1
+    for body in (None, {"profile": "round", "depth": 1.0}):
+        found = cut_out(pixels, Options(threshold=0.5, quads=400, body=body))
+        assert found.faces.shape[1] == 4
+        assert abs(len(found.faces) / (400 if body is None else 800) - 1) < 0.25
+        assert np.allclose(found.uv, found.vertices[found.faces.ravel(), :2] / [160, 120])
+
+
+def test_a_quad_counts_as_two_triangles_in_what_is_expected():
+    square = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]], float)
+    sketches, _, _ = api.sketches_of([api.Stroke(square, True, "a", "", 0, 1)], close_gaps=0.2, holes=True)
+    assert api.expected_triangles(sketches, {"cells": "quads", "quads": 300}) == 600
+    assert api.expected_triangles(sketches, {"cells": "quads", "edge_length": 0.1}) == pytest.approx(800)
+    assert api.suggested_edge_length(sketches, 400, "quads") == pytest.approx(0.1)
