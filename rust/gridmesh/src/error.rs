@@ -247,6 +247,11 @@ pub enum Error {
         /// The most pixels allowed.
         limit: usize,
     },
+    /// A file of a picture cannot be read.
+    PictureFormat {
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A value of a picture is NaN or infinite.
     PixelNotFinite {
         /// Its row, from the top.
@@ -306,6 +311,7 @@ impl Error {
             Error::CutFailed { .. } => "cut_failed",
             Error::StillJoined { .. } => "still_joined",
             Error::PictureSize { .. } => "picture_size",
+            Error::PictureFormat { .. } => "picture_format",
             Error::PixelNotFinite { .. } => "not_finite",
         }
     }
@@ -488,6 +494,12 @@ impl fmt::Display for Error {
                 f,
                 "the picture is {width} by {height} pixels; allowed: 1 to {limit} pixels in all, scale it"
             ),
+            Error::PictureFormat { reason } => {
+                write!(
+                    f,
+                    "the picture cannot be read: {reason}; allowed: PNG, JPEG and WebP, each of one picture"
+                )
+            }
             Error::PixelNotFinite { row, column } => write!(
                 f,
                 "the pixel in row {row}, column {column} of the picture is NaN or infinite; all values must be finite"
