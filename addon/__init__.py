@@ -3,7 +3,7 @@
 
     bodies: strokes, curves (from Blender) -> outlines, api (numpy only) -> data.meshes (to Blender)
     draw -> outlines of its own; live keeps bodies up to date with their strokes; overlay shows what meshes are like
-    pictures: images (from Blender) -> cutouts (numpy only) -> placing (to Blender)
+    pictures: images (from Blender) -> cutouts (numpy only) -> placing, weights (to Blender), formats (to files)
     fill: editmesh (from Blender) -> holes, api (no bpy) -> editmesh, data.attributes (to Blender)
     cut: cutline, cutobject (from Blender) -> cutsweep, cutting (no bpy) -> cutmesh, cutcorners (to Blender)
 
@@ -57,6 +57,7 @@ def _classes() -> tuple[type, ...]:
     from .live import refine
     from .live import ui as live_ui
     from .overlay import ui as overlay
+    from .pictures import dropping, weights_operator
     from .pictures import operator as pictures
     from .ui import panels as ui
 
@@ -65,6 +66,8 @@ def _classes() -> tuple[type, ...]:
         *fill.classes,
         *cut.classes,
         *pictures.classes,
+        *weights_operator.classes,
+        *dropping.classes,
         *overlay.classes,
         *refine.classes,
         *live.classes,
