@@ -3,7 +3,7 @@
 
     bodies: strokes, curves (from Blender) -> outlines, api (numpy only) -> data.meshes (to Blender)
     draw -> outlines of its own; live keeps bodies up to date with their strokes; overlay shows what meshes are like
-    pictures: images (from Blender) -> cutouts (numpy only) -> placing (to Blender)
+    pictures: images (from Blender) -> cutouts (numpy only) -> placing, weights (to Blender), formats (to files)
     fill: editmesh (from Blender) -> holes, api (no bpy) -> editmesh, data.attributes (to Blender)
     regrid: regionmesh (from Blender) -> api (no bpy) -> regionmesh, carried (to Blender)
     cut: cutline, cutobject (from Blender) -> cutsweep, cutting (no bpy) -> cutmesh, cutcorners (to Blender)
@@ -58,6 +58,7 @@ def _classes() -> tuple[type, ...]:
     from .live import refine
     from .live import ui as live_ui
     from .overlay import ui as overlay
+    from .pictures import dropping, weights_operator
     from .pictures import operator as pictures
     from .regrid import operator as regrid
     from .ui import panels as ui
@@ -68,6 +69,8 @@ def _classes() -> tuple[type, ...]:
         *regrid.classes,
         *cut.classes,
         *pictures.classes,
+        *weights_operator.classes,
+        *dropping.classes,
         *overlay.classes,
         *refine.classes,
         *live.classes,

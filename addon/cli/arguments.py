@@ -17,6 +17,7 @@ _HELP = {
     "strokes": "make smooth bodies of closed strokes",
     "fill": "fill the holes of meshes",
     "cut": "cut meshes along a stroke",
+    "sprites": "make meshes of pictures, with the picture on them",
 }
 
 
@@ -45,7 +46,7 @@ def main(argv: list[str]) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        "gridmesh", description="Bodies from drawings, filled holes and cut meshes, for any number of files."
+        "gridmesh", description="Bodies from drawings, filled holes, cut meshes and sprites, for any number of files."
     )
     verbs = parser.add_subparsers(required=True, metavar="COMMAND", dest="op")
     for op, known in params.OPS.items():
@@ -56,7 +57,7 @@ def _parser() -> argparse.ArgumentParser:
             "-o",
             "--out",
             required=True,
-            help=f"file to write: {', '.join(jobs.OUTPUTS)}; with several inputs {listing.STEM} stands for each one's name",
+            help=f"file to write: {', '.join(jobs.OUTPUTS[op])}; with several inputs {listing.STEM} stands for each one's name",
         )
         verb.add_argument("--object", metavar="PATTERN", help="only objects whose name fits, as 'Leaf*'")
         for name, param in known.items():

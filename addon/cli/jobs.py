@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..pictures.formats.sheet import IMAGES
 from . import files, places
 from . import params as parameters
 
@@ -21,8 +22,15 @@ INPUTS = {
     "strokes": (*CURVES, ".blend"),
     "fill": (*MESHES, ".blend"),
     "cut": (*MESHES, ".blend"),
+    "sprites": (".png", ".jpg", ".jpeg", ".webp"),
 }
-OUTPUTS = (".ply", ".obj", ".stl", ".glb", ".blend")
+_OUTPUTS = (".ply", ".obj", ".stl", ".glb", ".blend")
+OUTPUTS = {
+    **dict.fromkeys(("strokes", "fill", "cut"), _OUTPUTS),
+    "sprites": (".glb", ".gltf", ".blend", ".json", ".tscn"),
+}
+BESIDE = (".json", ".tscn")
+"""Outputs of sprites that name a picture, which is put into a folder beside them."""
 
 LONGEST = 16 << 20
 """Bytes of the longest line of a file of jobs."""
@@ -52,6 +60,12 @@ class Job:
         """Files that are read, as far as the job names them; those may name more."""
         stroke = self.params.get("stroke")
         return [str(self.source), *([stroke] if isinstance(stroke, str) and is_file(stroke) else [])]
+
+    def beside(self) -> Path | None:
+        """File that is written beside the output, if any: the picture of a sprite."""
+        if self.op != "sprites" or self.out.suffix.lower() not in BESIDE:
+            return None
+        return self.out.parent / IMAGES / f"{self.out.stem}{self.source.suffix.lower()}"
 
 
 def is_file(stroke: str) -> bool:
@@ -141,7 +155,7 @@ def checked(
     """
     if op not in parameters.OPS:
         raise JobError(f"op '{op}' is not known; allowed: {', '.join(parameters.OPS)}")
-    for path, allowed in ((source, INPUTS[op]), (out, OUTPUTS)):
+    for path, allowed in ((source, INPUTS[op]), (out, OUTPUTS[op])):
         if path.suffix.lower() not in allowed:
             raise JobError(f"'{path.name}' does not end in one of {', '.join(allowed)}")
     try:
@@ -156,7 +170,7 @@ def checked(
             raise JobError(
                 f"stroke '{stroke}' is no file of curves ({', '.join(CURVES)}), and only a .blend file has strokes"
             )
-    if pattern is not None and source.suffix.lower() in CURVES[:2]:
+    if pattern is not None and (op == "sprites" or source.suffix.lower() in CURVES[:2]):
         raise JobError(f"'object' is for files with objects; '{source.name}' has none")
     return Job(name, op, source, pattern, chosen, out)
 

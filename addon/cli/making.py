@@ -19,7 +19,7 @@ from ..cut.cutobject import Caps, Target
 from ..data import defaults
 from ..fill import filling
 from ..fill.editmesh import EditMesh
-from . import jobs, loading, params
+from . import jobs, loading, outputs, params
 from .loading import LoadError
 from .outputs import placed
 
@@ -39,6 +39,14 @@ class Made:
     objects: list[bpy.types.Object]
     numbers: dict[str, Any]
     notes: list[str] = field(default_factory=list)
+
+    def write(self, out: Path, _beside: Path | None) -> None:
+        """Write the output."""
+        outputs.write(out, self.objects)
+
+    def tidy(self, source: Path) -> None:
+        """Empty the session of what was made of this file."""
+        loading.tidy(source, self.objects)
 
 
 def strokes_to_bodies(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: bool) -> Made:

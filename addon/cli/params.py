@@ -75,6 +75,9 @@ BODY = {
     ),
 }
 
+SPRITE_TRIANGLES, SPRITE_UNIT = 500, 100.0
+"""Triangles of one side, and pixels of a metre in .glb, .gltf and .blend files."""
+
 _WELD = Param(
     "switch", "join vertices at the same place (in .ply, .glb and .gltf files, which tear meshes at seams)"
 )
@@ -114,6 +117,26 @@ OPS: Mapping[str, Mapping[str, Param]] = {
         "gap": Param("number", "width of what is taken away (0)"),
         "extend_ends": Param("switch", "the ends of the stroke are continued through everything (true)"),
         "close_gaps": Param("number", f"{_GAPS} ({defaults.CUT_CLOSE_GAPS})", least=0, most=1),
+    },
+    "sprites": {
+        "shape": Param("choice", "a flat sheet, or a closed body (flat)", ("flat", "body")),
+        "triangles": Param("count", f"triangles of one side ({SPRITE_TRIANGLES})"),
+        "background": Param(
+            "choice",
+            "what of the picture is left out (auto: what is transparent, or paper where nothing is)",
+            ("auto", "transparent", "paper"),
+        ),
+        "threshold": Param(
+            "number", "cover of a pixel that lies inside; 0.5, on paper the best one", least=0.001, most=0.999
+        ),
+        "smooth": Param("number", "how far along the outline pixels are smoothed (1)", least=0, most=10),
+        "min_area": Param("number", "islands and holes of fewer pixels are left out (16)", least=0, most=1e9),
+        "margin": Param("number", "pixels that the outline is moved outward (1)", least=0, most=1000),
+        "holes": Param("switch", "holes of the picture stay open (true)"),
+        **BODY,
+        "unit": Param(
+            "number", f"pixels of a metre in .glb, .gltf and .blend ({SPRITE_UNIT:g})", least=1e-6, most=1e9
+        ),
     },
 }
 

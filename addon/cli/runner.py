@@ -98,6 +98,7 @@ def _one(
 ) -> dict[str, Any] | None:
     """Result of an item; None if it was done before."""
     out, picture = str(item.out), str(item.out.with_suffix(".png")) if settings.render else None
+    beside = None if item.beside() is None else str(item.beside())
     head = {
         "id": item.id,
         "op": item.op,
@@ -113,6 +114,7 @@ def _one(
         "named": item.named_files(),
         "out": out,
         "picture": picture,
+        "beside": beside,
         "most": settings.limits.input_megabytes * 1e6,
         "outside": settings.outside,
         "before": before,
@@ -127,12 +129,13 @@ def _one(
         "scripts": settings.scripts,
         "picture": picture,
         "engine": settings.engine,
+        "beside": beside,
     }
     made = worker.do(look, {"do": "prepare"}, make)
     if made["status"] == "unchanged":
         return None
     if made["status"] == "error" and worker.process is None:  # a process that died could not tidy up
-        for path in (out, picture):
+        for path in (out, picture, beside):
             if path is not None:
                 drafts.remove(Path(path), worker.number)
     return head | made

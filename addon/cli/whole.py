@@ -28,6 +28,10 @@ def is_whole(path: Path, faces: int) -> bool:
             return len(data) >= 12 and struct.unpack_from("<I", data, 8)[0] == len(data)
         if suffix == ".png":
             return b"IEND" in data[-12:]
+        if suffix in (".jpg", ".jpeg", ".webp"):
+            return True  # as it was read
+        if suffix in (".gltf", ".json", ".tscn"):
+            return data[-1:] == b"\n"
         if suffix == ".blend":
             return b"ENDB" in data[-40:]
         return (

@@ -91,6 +91,7 @@ def _look(
     named: list[str],
     out: str,
     picture: str | None,
+    beside: str | None,
     most: float,
     outside: bool,
     before: tuple[str, str] | None,
@@ -103,7 +104,7 @@ def _look(
         if same.of(path) in written:
             text = f"out '{places.shown(out)}' would overwrite '{places.shown(path)}', which it reads"
             raise files.FileError("overwrites", f"{text}; give it another name")
-    pictured = picture is None or Path(picture).exists()
+    pictured = all(path is None or Path(path).exists() for path in (picture, beside))
     unchanged = before is not None and before[0] == key and before[1] == files.digest_of(Path(out))
     return {"status": "unchanged" if unchanged and pictured else "ok", "key": key}
 
@@ -117,18 +118,20 @@ def _make(
     scripts: bool,
     picture: str | None,
     engine: str,
+    beside: str | None,
 ) -> dict[str, Any]:
-    from . import loading, making, outputs, pictures
+    from . import loading, making, pictures, sprites
 
     try:
-        made = making.OPS[op](Path(source), pattern, params, scripts=scripts)
-        outputs.write(Path(out), made.objects)
+        make = {**making.OPS, **sprites.OPS}[op]
+        made = make(Path(source), pattern, params, scripts=scripts)
+        made.write(Path(out), None if beside is None else Path(beside))
         if picture is not None:
             pictures.render(Path(picture), made.objects, engine)
     except BaseException:
         loading.clear()
         raise
-    loading.tidy(Path(source), made.objects)
+    made.tidy(Path(source))
     return {
         "status": "warning" if made.notes else "ok",
         "message": "; ".join(made.notes),

@@ -56,6 +56,8 @@ class Cutout:
     uv: np.ndarray
     """By corner, exactly over the picture."""
     silhouette: list[np.ndarray]
+    starts: np.ndarray
+    """First vertex of each part."""
     parts: int
     dropped: int
     """Islands that were too small."""
@@ -124,6 +126,7 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
             for surface, start in zip(meshed, starts, strict=False)
             for loop in surface.silhouette
         ],
+        starts=starts[:-1],
         parts=len(meshed),
         dropped=traced.dropped,
         refused=refused,

@@ -9,7 +9,14 @@ from typing import Any
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    IntProperty,
+    StringProperty,
+)
 
 from ..api import CancelledError
 from ..bodies.strokes import selected
@@ -23,8 +30,11 @@ from ..ui.progress import Pointer
 from ..ui.properties import FACES, ShapeOptions
 from . import images, placing
 from .cutouts import Cutout, Options, PictureError, cut_out
+from .dropping import ENDINGS
 
-READ = "*.png;*.jpg;*.jpeg;*.webp;*.tga;*.tif;*.tiff;*.bmp;*.exr"
+READ = ";".join(f"*{ending}" for ending in ENDINGS)
+_BETWEEN = 0.1
+"""Room between files that are placed side by side, relative to their height."""
 
 
 class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: N801
@@ -35,6 +45,8 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012
 
     filepath: StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
     filter_glob: StringProperty(default=READ, options={"HIDDEN", "SKIP_SAVE"})
     cells: EnumProperty(
         name="Faces", description="What the mesh is made of", items=FACES, default=defaults.CELLS
@@ -129,8 +141,10 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
         return False
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Take the selected pictures; with none, ask for a file."""
-        if self.filepath or _chosen(context):
+        """Take the selected pictures; with none, ask for files. Of files that were dropped, ask what they are to become."""
+        if self._paths():
+            return context.window_manager.invoke_props_dialog(self)
+        if _chosen(context):
             return self.execute(context)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
@@ -203,10 +217,8 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
     def _pictures(
         self, context: bpy.types.Context, transaction: Transaction, failures: list[str]
     ) -> list[images.Picture]:
-        if self.filepath:
-            return [
-                images.of_file(_loaded(self.filepath, transaction), np.array(context.scene.cursor.location))
-            ]
+        if paths := self._paths():
+            return _side_by_side(paths, np.array(context.scene.cursor.location), transaction, failures)
         found = []
         for ob in _chosen(context):
             try:
@@ -218,6 +230,13 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
                 "no picture is selected; select an image empty or an image plane, or give a file"
             )
         return found
+
+    def _paths(self) -> list[str]:
+        """Files that are given: several of a folder, or one."""
+        names = [element.name for element in self.files if element.name]
+        if self.directory and names:
+            return [str(Path(bpy.path.abspath(self.directory), name)) for name in names]
+        return [self.filepath] if self.filepath else []
 
     def _options(self, transparent: bool) -> Options:
         paper = self.background == "PAPER" or (self.background == "AUTO" and not transparent)
@@ -311,6 +330,28 @@ def _anew(ob: bpy.types.Object, pointer: Pointer) -> tuple[Cutout, bpy.types.Ima
         image.reload()
     _, options = placing.recall(ob)
     return cut_out(images.pixels(image), options, pointer), image
+
+
+def _side_by_side(
+    paths: list[str], at: np.ndarray, transaction: Transaction, failures: list[str]
+) -> list[images.Picture]:
+    """Pictures of files, one beside the other, the first at a point."""
+    found: list[images.Picture] = []
+    for path in paths:
+        try:
+            picture = images.of_file(_loaded(path, transaction), at)
+        except PictureError as error:
+            if len(paths) == 1:
+                raise
+            failures.append(f"'{Path(path).name}': {error}")
+            continue
+        if found:
+            width = picture.matrix[0, 0]
+            at = at + [width / 2, 0, 0]
+            picture = images.of_file(picture.image, at)
+        found.append(picture)
+        at = at + [picture.matrix[0, 0] / 2 + _BETWEEN, 0, 0]
+    return found
 
 
 def _loaded(path: str, transaction: Transaction) -> bpy.types.Image:

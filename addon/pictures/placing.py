@@ -14,6 +14,7 @@ from ..data import meshes
 from ..data.placing import Transaction
 from .cutouts import Cutout, Options
 from .images import Picture
+from .weights import Kept
 
 LINK = "gridmesh_picture"
 """Custom property of an object made from a picture: how it was made."""
@@ -95,9 +96,12 @@ def recall(ob: bpy.types.Object) -> tuple[np.ndarray, Options]:
 
 
 def update(ob: bpy.types.Object, cutout: Cutout, image: bpy.types.Image) -> None:
-    """Replace the mesh of an object; all else of it stays."""
+    """Replace the mesh of an object; all else of it stays, weights at the places where they were."""
     width, height = image.size
-    meshes.refresh(ob, body_of(cutout, recall(ob)[0], width, height), CREASE)
+    matrix = recall(ob)[0]
+    kept = Kept(ob, matrix[:3, 2])
+    meshes.refresh(ob, body_of(cutout, matrix, width, height), CREASE)
+    kept.put(ob)
 
 
 def material_of(

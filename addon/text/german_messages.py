@@ -898,6 +898,23 @@ _LIBRARY_PARTS = {
     "the pixel in row {}, column {} of the picture is NaN or infinite; all values must be finite": (
         "das Pixel in Zeile {0}, Spalte {1} des Bildes ist NaN oder unendlich; alle Werte müssen endlich sein"
     ),
+    # Weights
+    "Select flat meshes, and then an armature": "Flache Meshes auswählen und dann eine Armature",
+    "Cancelled; nothing was changed": "Abgebrochen; nichts wurde geändert",
+    "the armature has no bones that deform": "die Armature hat keine Knochen, die verformen",
+    "it is not flat; Blender's automatic weights are for bodies": (
+        "es ist nicht flach; für Körper gibt es Blenders automatische Gewichte"
+    ),
+    "it has no faces": "es hat keine Flächen",
+    "{}: weights for {}": "{0}: Gewichte für {1}",
+    "{} bone": "{0} Knochen",
+    "{} bones": "{0} Knochen",
+    "one bone or more": "ein Knochen oder mehr",
+    "1 or more bones for a vertex": "1 oder mehr Knochen je Punkt",
+    "a number from 0.01 to 100": "eine Zahl von 0.01 bis 100",
+    "the picture cannot be read: {}; allowed: PNG, JPEG and WebP, each of one picture": (
+        "das Bild kann nicht gelesen werden: {0}; erlaubt: PNG, JPEG und WebP mit je einem Bild"
+    ),
     # Pictures
     "it has {} by {} pixels; allowed: 1 to {} pixels in all, scale it": (
         "es hat {0} mal {1} Pixel; erlaubt: insgesamt 1 bis {2} Pixel, das Bild verkleinern"

@@ -38,6 +38,16 @@ GERMAN = {
         "Den ausgewählten Körpern so viele Dreiecke geben, dass fünf quer über ihre dünnsten Glieder gehen"
     ),
     # Pictures
+    "Bones for a Vertex": "Knochen je Punkt",
+    "How far a joint reaches into the limbs that meet there, relative to half their width": (
+        "Wie weit ein Gelenk in die Glieder reicht, die sich dort treffen, im Verhältnis zu ihrer halben Breite"
+    ),
+    "Joint Reach": "Reichweite der Gelenke",
+    "Let the selected flat meshes follow the bones of the active armature, each bone within its own limb": (
+        "Die ausgewählten flachen Meshes den Knochen der aktiven Armature folgen lassen, jeder Knochen in seinem Glied"
+    ),
+    "The most bones that move a vertex": "Wie viele Knochen einen Punkt höchstens bewegen",
+    "Weights from Bones": "Gewichte von Knochen",
     "Background": "Hintergrund",
     "Give a Threshold": "Schwelle angeben",
     "Give the threshold, instead of the one that parts the pixels best on paper, and 0.5 elsewhere": (

@@ -18,6 +18,7 @@ ENTRIES = (
     ("Mesh", "object.gridmesh_cut"),
     ("Object Mode", "object.gridmesh_from_image"),
     ("Object Mode", "object.gridmesh_update_image"),
+    ("Object Mode", "object.gridmesh_bone_weights"),
 )
 
 _made: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []

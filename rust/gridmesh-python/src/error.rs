@@ -30,7 +30,9 @@ create_exception!(
          \"self_touching\", \"faces_on_both_sides\", \"non_manifold\", \"shared_edge\",\n    \
          \"fill_intersects\", \"not_a_disk\"; of cuts\n    \
          \"invalid_face\", \"stroke_too_short\", \"stroke_misses\", \"behind_eye\",\n    \
-         \"cut_failed\", \"still_joined\"; of pictures \"picture_size\"; or \"internal\" (a bug in gridmesh: please report it)."
+         \"cut_failed\", \"still_joined\"; of pictures \"picture_size\",
+    \
+         \"picture_format\"; or \"internal\" (a bug in gridmesh: please report it)."
 );
 
 /// A [`GridMeshError`] with its `kind`.

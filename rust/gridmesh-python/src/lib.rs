@@ -3,14 +3,16 @@
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `process` finds threads after a fork, `arrays`
 //! and `reports` hand results back, `patch`, `surface`, `fill` and `cut` are the classes, `sketch`, `body` and `map` make them
 //! of drawings, `batch` is the parallel map, `combine` unites drawings, `thickness` measures them, `picture`
-//! traces them, `harmonic` carries values on.
+//! traces them, `decode` reads their files, `harmonic` carries values on, `bones` weighs bones.
 #![forbid(unsafe_code)]
 
 mod arrays;
 mod batch;
 mod body;
+mod bones;
 mod combine;
 mod cut;
+mod decode;
 mod error;
 mod fill;
 mod harmonic;
@@ -53,6 +55,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(thickness::thickness, module)?)?;
     module.add_function(wrap_pyfunction!(harmonic::harmonic, module)?)?;
     module.add_function(wrap_pyfunction!(picture::trace_image, module)?)?;
+    module.add_function(wrap_pyfunction!(decode::decode_image, module)?)?;
+    module.add_function(wrap_pyfunction!(bones::bone_weights, module)?)?;
     module.add_class::<fill::Fill>()?;
     module.add_function(wrap_pyfunction!(fill::fill_hole, module)?)?;
     module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;

@@ -26,27 +26,7 @@ impl<'py> Mesh<'py> {
     /// Reads `vertices` and `triangles`; how far the numbers reach is for the library to check.
     pub fn read(vertices: &Bound<'py, PyAny>, triangles: &Bound<'py, PyAny>) -> PyResult<Self> {
         let positions = read_positions(&positions_argument(vertices))?;
-        let it =
-            Argument { name: "triangles", value: triangles, allowed: "an (m, 3) array of whole numbers" };
-        let array = it.array()?;
-        if array.len() > 0 && (array.ndim() != 2 || array.shape()[1] != 3) {
-            return Err(it.wrong_shape(&format!("has shape {:?}", array.shape())));
-        }
-        let faces = if array.len() == 0 {
-            Faces::Copied(vec![])
-        } else if array.dtype().kind() == b'f' {
-            return Err(it.wrong_type());
-        } else {
-            match array.extract::<PyReadonlyArray2<'py, i32>>() {
-                Ok(held) if held.is_c_contiguous() => Faces::Held(held),
-                _ => {
-                    let wide = array.extract::<PyArrayLike2<'_, i64, AllowTypeChange>>()?;
-                    let table = wide.as_array();
-                    let rows = table.rows().into_iter().map(|row| [0, 1, 2].map(|k| narrow(row[k])));
-                    Faces::Copied(rows.collect())
-                }
-            }
-        };
+        let faces = read_faces(triangles)?;
         Ok(Mesh { positions, faces })
     }
 
@@ -61,6 +41,37 @@ impl<'py> Mesh<'py> {
             Faces::Held(held) => Ok(Cow::Borrowed(bytemuck::cast_slice(held.as_slice()?))),
             Faces::Copied(faces) => Ok(Cow::Borrowed(faces)),
         }
+    }
+}
+
+fn read_faces<'py>(triangles: &Bound<'py, PyAny>) -> PyResult<Faces<'py>> {
+    let it = Argument { name: "triangles", value: triangles, allowed: "an (m, 3) array of whole numbers" };
+    let array = it.array()?;
+    if array.len() > 0 && (array.ndim() != 2 || array.shape()[1] != 3) {
+        return Err(it.wrong_shape(&format!("has shape {:?}", array.shape())));
+    }
+    if array.len() == 0 {
+        Ok(Faces::Copied(vec![]))
+    } else if array.dtype().kind() == b'f' {
+        Err(it.wrong_type())
+    } else {
+        match array.extract::<PyReadonlyArray2<'py, i32>>() {
+            Ok(held) if held.is_c_contiguous() => Ok(Faces::Held(held)),
+            _ => {
+                let wide = array.extract::<PyArrayLike2<'_, i64, AllowTypeChange>>()?;
+                let table = wide.as_array();
+                let rows = table.rows().into_iter().map(|row| [0, 1, 2].map(|k| narrow(row[k])));
+                Ok(Faces::Copied(rows.collect()))
+            }
+        }
+    }
+}
+
+/// The argument `triangles`, copied.
+pub fn triangles(value: &Bound<'_, PyAny>) -> PyResult<Vec<[u32; 3]>> {
+    match read_faces(value)? {
+        Faces::Held(held) => Ok(bytemuck::cast_slice(held.as_slice()?).to_vec()),
+        Faces::Copied(faces) => Ok(faces),
     }
 }
 

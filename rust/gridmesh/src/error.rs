@@ -357,6 +357,12 @@ pub enum Error {
         /// The most pixels allowed.
         limit: usize,
     },
+    /// A file of a picture cannot be read.
+    #[error("the picture cannot be read: {reason}; allowed: PNG, JPEG and WebP, each of one picture")]
+    PictureFormat {
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A value of a picture is NaN or infinite.
     #[error(
         "the pixel in row {row}, column {column} of the picture is NaN or infinite; all values must be \
@@ -420,6 +426,7 @@ impl Error {
             Error::CutFailed { .. } => "cut_failed",
             Error::StillJoined { .. } => "still_joined",
             Error::PictureSize { .. } => "picture_size",
+            Error::PictureFormat { .. } => "picture_format",
             Error::PixelNotFinite { .. } => "not_finite",
         }
     }

@@ -1,10 +1,12 @@
 //! Plain geometry that knows nothing of lattices: segments, intersections, measures of meshes.
 
+pub mod bones;
 pub(crate) mod cholesky;
 pub(crate) mod disjoint;
 pub mod embed;
 pub mod harmonic;
 pub(crate) mod laplace;
+pub(crate) mod march;
 pub mod metrics;
 pub(crate) mod segments;
 pub(crate) mod topology;

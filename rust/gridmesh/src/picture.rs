@@ -5,10 +5,11 @@
 //! (`heights`), corners are where lines through both sides meet (`corners`), the rest is smoothed within
 //! what pixels can tell apart (`smooth`), points that add nothing are dropped (`simplify`), and lines that
 //! came to cross go back to their crossings (`apart`). `margin` moves outlines outward, [`paper`] reads
-//! drawings on paper.
+//! drawings on paper, [`decode`] files.
 
 mod apart;
 mod corners;
+pub mod decode;
 mod field;
 mod heights;
 mod islands;

@@ -3,10 +3,10 @@
 ``mesh_sketch`` meshes the inside of a drawing, ``inflate`` makes a smooth watertight body of it, ``stitch``
 a flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. ``combine`` unites drawings or
 cuts one from another, ``thickness`` measures their limbs; ``trace_image`` finds
-the outlines in a picture. ``fill_hole`` and ``fill_holes`` close holes of a
+the outlines in a picture, ``decode_image`` reads its file. ``fill_hole`` and ``fill_holes`` close holes of a
 mesh with patches that fit their boundaries vertex for vertex, ``regrid`` replaces a region by one. ``cut``
 divides a mesh along a stroke and caps it; ``cut_reach`` tells how far a stroke's ends go. ``harmonic``
-carries values on over a mesh.
+carries values on over a mesh, ``bone_weights`` makes a flat one follow bones.
 Positions are float64, indices int32, angles radians, options keyword-only. The same input gives the same
 bytes. The one exception for what cannot be done is ``GridMeshError``.
 """
@@ -20,9 +20,11 @@ from gridmesh._native import (
     Regrid,
     Surface,
     __version__,
+    bone_weights,
     combine,
     cut,
     cut_reach,
+    decode_image,
     fill_hole,
     fill_holes,
     flat,
@@ -47,9 +49,11 @@ __all__ = [
     "Surface",
     "Traced",
     "__version__",
+    "bone_weights",
     "combine",
     "cut",
     "cut_reach",
+    "decode_image",
     "fill_hole",
     "fill_holes",
     "flat",

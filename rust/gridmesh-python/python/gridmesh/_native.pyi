@@ -22,9 +22,11 @@ __all__ = [
     "_piece",
     "_regrid",
     "_surface",
+    "bone_weights",
     "combine",
     "cut",
     "cut_reach",
+    "decode_image",
     "fill_hole",
     "fill_holes",
     "flat",
@@ -169,6 +171,16 @@ def thickness(outline: _Points, holes: Sequence[_Points] = ()) -> npt.NDArray[np
 def harmonic(
     vertices: npt.ArrayLike, triangles: npt.ArrayLike, free: npt.ArrayLike, values: npt.ArrayLike
 ) -> npt.NDArray[np.float64]: ...
+def bone_weights(
+    vertices: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    bones: npt.ArrayLike,
+    *,
+    most: int = 4,
+    reach: float = 1.0,
+    progress: _Progress | None = None,
+) -> npt.NDArray[np.float64]: ...
+def decode_image(data: bytes) -> npt.NDArray[np.uint8]: ...
 def trace_image(
     image: npt.ArrayLike,
     *,

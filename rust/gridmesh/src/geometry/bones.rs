@@ -1,0 +1,290 @@
+//! Weights of the vertices of a flat mesh for the bones that are to bend it.
+
+use glam::DVec2;
+
+use super::cholesky::Pattern;
+use super::disjoint::Disjoint;
+use super::march::{Around, march};
+use crate::error::{Error, Result};
+use crate::progress::Progress;
+
+/// Options of [`bone_weights`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WeightOptions {
+    /// The most bones that move a vertex, 1 or more.
+    pub most: usize,
+    /// How far a joint reaches into the limbs, relative to half their width, 0.01 to 100.
+    pub reach: f64,
+}
+
+impl Default for WeightOptions {
+    fn default() -> Self {
+        Self { most: 4, reach: 1.0 }
+    }
+}
+
+/// Bones whose distances differ by less than this share of the limb's half width are equally near.
+const EQUALLY_NEAR: f64 = 0.1;
+
+/// Weights below this are dropped.
+const LEAST: f64 = 1e-4;
+
+/// How much each bone moves each vertex of a flat mesh: a row for each vertex, a number for each bone.
+///
+/// Rows sum to 1 up to rounding, have no negative numbers, and at most `most` that are not 0. Distances are measured within the mesh, so that a
+/// bone has no hold on a limb that is near in the plane but far in the drawing. Away from joints the
+/// nearest bone has nearly all of the weight; at joints it passes from bone to bone over `reach` times half the
+/// width of the limb, which is the distance to the bone and to the rim together. Parts of the mesh that no bone
+/// meets follow the bone that is nearest to them as a whole. O(b n log n) in practice.
+///
+/// # Errors
+/// [`Error::NotFinite`], [`Error::IndexOutOfRange`], [`Error::InvalidOption`] (also without bones), [`Error::Solver`], [`Error::Cancelled`].
+///
+/// Source: the heat equilibrium of Baran and Popović, *Automatic rigging and animation of 3D characters*, 2007, with a
+/// heat transfer that depends on the limb's width alone and distances within the drawing.
+pub fn bone_weights(
+    vertices: &[DVec2],
+    triangles: &[[u32; 3]],
+    bones: &[[DVec2; 2]],
+    options: &WeightOptions,
+    progress: Progress<'_>,
+) -> Result<Vec<f64>> {
+    check(vertices, triangles, bones, options)?;
+    let (n, b) = (vertices.len(), bones.len());
+    let around = Around::new(n, triangles);
+    let mut near = Vec::with_capacity(b * n);
+    for (k, bone) in bones.iter().enumerate() {
+        progress.report(0.6 * k as f64 / b as f64)?;
+        near.extend(march(vertices, triangles, &around, seeds(vertices, triangles, bone)));
+    }
+    follow_as_a_whole(vertices, triangles, bones, &mut near);
+    let rim = rim(triangles).into_iter().map(|v| (v, 0.0));
+    let rim = march(vertices, triangles, &around, rim);
+    let finest = longest_edges(vertices, triangles);
+    let mut wanted = vec![0.0; b * n];
+    let mut transfer = vec![1.0; n];
+    for v in 0..n {
+        let least = (0..b).map(|k| near[k * n + v]).fold(f64::INFINITY, f64::min);
+        let half = (least + if rim[v].is_finite() { rim[v] } else { 0.0 }).max(finest[v]);
+        let mut sum = 0.0;
+        for k in 0..b {
+            let farther = near[k * n + v] - least;
+            wanted[k * n + v] = (1.0 - farther / (EQUALLY_NEAR * half)).max(0.0);
+            sum += wanted[k * n + v];
+        }
+        (0..b).for_each(|k| wanted[k * n + v] /= sum);
+        transfer[v] = (options.reach * half).powi(-2);
+    }
+    progress.report(0.7)?;
+    let mut weights = wanted;
+    settle(vertices, triangles, &transfer, &mut weights, b)?;
+    progress.report(1.0)?;
+    Ok(strongest(&weights, n, b, options.most))
+}
+
+fn check(
+    vertices: &[DVec2],
+    triangles: &[[u32; 3]],
+    bones: &[[DVec2; 2]],
+    options: &WeightOptions,
+) -> Result<()> {
+    if let Some(point) = vertices.iter().position(|p| !p.is_finite()) {
+        return Err(Error::NotFinite { what: "mesh".to_owned(), point });
+    }
+    if let Some(bone) = bones.iter().position(|ends| !ends.iter().all(|p| p.is_finite())) {
+        return Err(Error::NotFinite { what: "bones".to_owned(), point: bone });
+    }
+    if let Some(&v) = triangles.iter().flatten().find(|&&v| v as usize >= vertices.len()) {
+        let (what, index) = ("triangles".to_owned(), v as i32);
+        return Err(Error::IndexOutOfRange { what, index, vertices: vertices.len() });
+    }
+    let invalid = |name, value: String, allowed| Err(Error::InvalidOption { name, value, allowed });
+    if bones.is_empty() {
+        return invalid("bones", "empty".to_owned(), "one bone or more");
+    }
+    if options.most == 0 {
+        return invalid("most", options.most.to_string(), "1 or more bones for a vertex");
+    }
+    if !(0.01..=100.0).contains(&options.reach) {
+        return invalid("reach", options.reach.to_string(), "a number from 0.01 to 100");
+    }
+    Ok(())
+}
+
+/// Corners of the triangles that the bone meets, and their distances from it.
+fn seeds<'a>(
+    vertices: &'a [DVec2],
+    triangles: &'a [[u32; 3]],
+    &[head, tail]: &'a [DVec2; 2],
+) -> impl Iterator<Item = (u32, f64)> + 'a {
+    let (low, high) = (head.min(tail), head.max(tail));
+    let is_met = move |corners: &[u32; 3]| {
+        let corners = corners.map(|v| vertices[v as usize]);
+        let (least, most) =
+            (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+        least.cmple(high).all() && most.cmpge(low).all() && meets(corners, head, tail)
+    };
+    let met = triangles.iter().filter(move |corners| is_met(corners));
+    met.flatten().map(move |&v| (v, to_segment(vertices[v as usize], head, tail)))
+}
+
+/// Whether a segment meets a triangle of either orientation: what is left of it when all three sides have cut it.
+fn meets(corners: [DVec2; 3], head: DVec2, tail: DVec2) -> bool {
+    let turn = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).signum();
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for k in 0..3 {
+        let (p, side) = (corners[k], corners[(k + 1) % 3] - corners[k]);
+        let (a, b) = (turn * side.perp_dot(head - p), turn * side.perp_dot(tail - p));
+        if a < 0.0 && b < 0.0 {
+            return false;
+        }
+        if a < 0.0 {
+            from = from.max(a / (a - b));
+        } else if b < 0.0 {
+            to = to.min(a / (a - b));
+        }
+    }
+    from <= to
+}
+
+fn to_segment(p: DVec2, head: DVec2, tail: DVec2) -> f64 {
+    let along = tail - head;
+    let squared = along.length_squared();
+    let t = if squared > 0.0 { ((p - head).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    p.distance(head + t * along)
+}
+
+/// Gives each part of the mesh that no bone meets to the bone that is nearest to one of its vertices.
+fn follow_as_a_whole(vertices: &[DVec2], triangles: &[[u32; 3]], bones: &[[DVec2; 2]], near: &mut [f64]) {
+    let n = vertices.len();
+    let mut sets = Disjoint::new(n);
+    for t in triangles {
+        sets.join(t[0], t[1]);
+        sets.join(t[1], t[2]);
+    }
+    let mut nearest = vec![(f64::INFINITY, usize::MAX); n];
+    let is_left = |v: usize, near: &[f64]| (0..bones.len()).all(|k| near[k * n + v].is_infinite());
+    let left: Vec<usize> = (0..n).filter(|&v| is_left(v, near)).collect();
+    for &v in &left {
+        let part = &mut nearest[sets.root(v as u32) as usize];
+        for (k, &[head, tail]) in bones.iter().enumerate() {
+            let distance = to_segment(vertices[v], head, tail);
+            if distance < part.0 {
+                *part = (distance, k);
+            }
+        }
+    }
+    for &v in &left {
+        let (_, bone) = nearest[sets.root(v as u32) as usize];
+        if bone < bones.len() {
+            near[bone * n + v] = to_segment(vertices[v], bones[bone][0], bones[bone][1]);
+        }
+    }
+}
+
+/// Vertices of edges that have one triangle.
+fn rim(triangles: &[[u32; 3]]) -> Vec<u32> {
+    let mut edges: Vec<[u32; 2]> = triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    let single = edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
+    single.flat_map(|same| same[0]).collect()
+}
+
+/// The longest edge at each vertex, below which nothing changes gradually; above 0 everywhere.
+fn longest_edges(vertices: &[DVec2], triangles: &[[u32; 3]]) -> Vec<f64> {
+    let mut longest = vec![0.0_f64; vertices.len()];
+    for corners in triangles {
+        for k in 0..3 {
+            let [a, b] = [corners[k], corners[(k + 1) % 3]].map(|v| v as usize);
+            let length = vertices[a].distance(vertices[b]);
+            longest[a] = longest[a].max(length);
+            longest[b] = longest[b].max(length);
+        }
+    }
+    longest.iter_mut().for_each(|length| *length = if *length > 0.0 { *length } else { 1.0 });
+    longest
+}
+
+/// Replaces the wanted weights by the equilibrium of heat between them and the neighbours': `(L + T M) w = T M wanted`, with
+/// cotangents that are not negative, so that weights stay between 0 and 1 and sum to 1.
+fn settle(
+    vertices: &[DVec2],
+    triangles: &[[u32; 3]],
+    transfer: &[f64],
+    weights: &mut [f64],
+    bones: usize,
+) -> Result<()> {
+    let n = vertices.len();
+    let mut mass = vec![0.0; n];
+    let mut edges: Vec<(u32, u32, f64)> = Vec::with_capacity(3 * triangles.len());
+    for corners in triangles {
+        let points = corners.map(|v| vertices[v as usize]);
+        let doubled = (points[1] - points[0]).perp_dot(points[2] - points[0]).abs();
+        corners.iter().for_each(|&v| mass[v as usize] += doubled / 6.0);
+        for k in 0..3 {
+            let (a, b) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
+            let (u, v) = (points[(k + 1) % 3] - points[k], points[(k + 2) % 3] - points[k]);
+            let least = 1e-9 * (u.length_squared() + v.length_squared());
+            if doubled.max(least) > 0.0 {
+                edges.push((a.max(b), a.min(b), 0.5 * u.dot(v) / doubled.max(least)));
+            }
+        }
+    }
+    // Stable, so that the weights of an edge are added in the order of its triangles.
+    edges.sort_by_key(|&(i, j, _)| (i, j));
+    edges.dedup_by(|next, kept| {
+        let is_same = (next.0, next.1) == (kept.0, kept.1);
+        if is_same {
+            kept.2 += next.2;
+        }
+        is_same
+    });
+    edges.retain(|&(i, j, weight)| i != j && weight > 0.0);
+    // Vertices that belong to no area keep what is wanted.
+    let held: Vec<f64> = (0..n).map(|v| if mass[v] > 0.0 { mass[v] * transfer[v] } else { 1.0 }).collect();
+    let mut diagonal = held.clone();
+    for &(i, j, weight) in &edges {
+        diagonal[i as usize] += weight;
+        diagonal[j as usize] += weight;
+    }
+    let (mut col_ptr, mut row_idx, mut entries) = (vec![0], Vec::new(), Vec::new());
+    let mut rest = edges.as_slice();
+    for (v, &sum) in diagonal.iter().enumerate() {
+        let (column, after) = rest.split_at(rest.partition_point(|edge| edge.0 as usize <= v));
+        rest = after;
+        row_idx.extend(column.iter().map(|edge| edge.1 as usize));
+        entries.extend(column.iter().map(|edge| -edge.2));
+        row_idx.push(v);
+        entries.push(sum);
+        col_ptr.push(row_idx.len());
+    }
+    for k in 0..bones {
+        for v in 0..n {
+            weights[k * n + v] *= held[v];
+        }
+    }
+    Pattern::new("bone weights", col_ptr, row_idx)?.factor(&entries)?.solve(weights, bones)
+}
+
+/// By vertex, the strongest alone, summing to 1.
+fn strongest(weights: &[f64], n: usize, bones: usize, most: usize) -> Vec<f64> {
+    let mut kept = vec![0.0; n * bones];
+    let mut order: Vec<usize> = Vec::with_capacity(bones);
+    for v in 0..n {
+        order.clear();
+        order.extend(0..bones);
+        order.sort_by(|&j, &k| weights[k * n + v].total_cmp(&weights[j * n + v]));
+        order.truncate(most);
+        let strongest = weights[order[0] * n + v];
+        order.retain(|&k| weights[k * n + v] >= LEAST.min(strongest));
+        let sum: f64 = order.iter().map(|&k| weights[k * n + v]).sum();
+        for &k in &order {
+            kept[v * bones + k] = weights[k * n + v] / sum;
+        }
+    }
+    kept
+}
