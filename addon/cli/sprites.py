@@ -15,7 +15,7 @@ from ..data.placing import Transaction
 from ..native import native
 from ..pictures import images, placing
 from ..pictures.cutouts import Cutout, Options, cut_out
-from ..pictures.formats import godot, gltf, spine
+from ..pictures.formats import gltf, godot, spine
 from ..pictures.formats.sheet import Sheet
 from . import files, loading, outputs, params
 from .making import MakeError
@@ -83,7 +83,7 @@ class MadeSprite:
             loading.clear()
 
 
-def sprites(source: Path, _pattern: str | None, options: dict[str, Any], *, scripts: bool) -> MadeSprite:  # noqa: ARG001 (as all operations)
+def sprites(source: Path, _pattern: str | None, options: dict[str, Any], *, scripts: bool) -> MadeSprite:
     """Make a mesh of what a picture shows."""
     data = files.read_bytes(source)
     pixels = native("decode_image").decode_image(data)

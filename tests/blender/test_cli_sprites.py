@@ -14,7 +14,7 @@ from batches import ROOT, batch, command, results, run, write_jobs
 
 sys.path.append(str(ROOT / "tests" / "core"))
 
-from picture_files import disk, hostile, jpeg, png  # noqa: E402
+from picture_files import disk, hostile, jpeg, png
 
 TEXTS = ("glb", "gltf", "json", "tscn")
 """Formats of which the same meshes are the same bytes."""
@@ -185,7 +185,10 @@ def test_godot_reads_the_scene(folder):
     for head, body in nodes[1:]:
         assert (head["type"], head["parent"]) == ("Polygon2D", ".")
         assert body["texture"] == 'ExtResource("1")'
-        (points,), (uv,) = numbers(body["polygon"], "PackedVector2Array"), numbers(body["uv"], "PackedVector2Array")
+        (points,), (uv,) = (
+            numbers(body["polygon"], "PackedVector2Array"),
+            numbers(body["uv"], "PackedVector2Array"),
+        )
         points, uv = np.reshape(points, (-1, 2)), np.reshape(uv, (-1, 2))
         triangles = np.array(numbers(body["polygons"], "PackedInt32Array"), int)
         is_over_the_picture(points * [1, -1], uv / SIZE)
@@ -267,9 +270,7 @@ def many(folder, count=12):
 
 
 def all_files(folder):
-    return {
-        str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()
-    }
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 def test_a_killed_run_is_resumed_to_the_same_bytes(tmp_path):

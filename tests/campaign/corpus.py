@@ -30,7 +30,8 @@ from pathlib import Path
 import pyclipper
 from fontTools.pens.recordingPen import DecomposingRecordingPen
 from fontTools.ttLib import TTFont
-from svgelements import SVG, Arc, CubicBezier, Path as Drawn, QuadraticBezier, Shape
+from svgelements import SVG, Arc, CubicBezier, QuadraticBezier, Shape
+from svgelements import Path as Drawn
 
 ICONS = (
     "@iconify-json/game-icons@1.2.4",
@@ -217,10 +218,13 @@ def lands(archive: tarfile.TarFile) -> Iterator[tuple[str, dict]]:
                 ]
                 if not rings:
                     continue
-                xs, ys = zip(*((p.real, p.imag) for p in rings[0]), strict=True)
-                low, size = complex(min(xs), min(ys)), max(max(xs) - min(xs), max(ys) - min(ys))
-                for part in united([(rings, True)], low, size or 1):
-                    yield land["properties"]["name"], part
+                # Simple as they are.
+                if any(len(set(ring)) < max(3, len(ring)) for ring in rings):
+                    continue
+                low = complex(min(p.real for p in rings[0]), min(p.imag for p in rings[0]))
+                size = max(max((p - low).real, (p - low).imag) for p in rings[0])
+                outer, *holes = [[((p - low).real / size, (p - low).imag / size) for p in r] for r in rings]
+                yield land["properties"]["name"], {"outer": outer, "holes": holes}
 
 
 def main() -> None:

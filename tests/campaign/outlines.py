@@ -25,8 +25,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "core"))
 
-from checks import check_body, check_patch  # noqa: E402
-from quad_checks import check_quad_body, check_quad_patch  # noqa: E402
+from checks import check_body, check_patch
+from quad_checks import check_quad_body, check_quad_patch
 
 Task = tuple[str, list[list[float]], list[list[list[float]]], str, int]
 REASONS = ("too_coarse", "too_large")
@@ -115,8 +115,16 @@ def summed_up(rows: list[dict[str, Any]]) -> None:
         fine = [row for row in own if "angle" in row]
         refused = Counter(row["refused"] for row in own if "refused" in row)
         advised = sum("suggested" in row for row in own)
-        print(f"\n{count} {cells}: {len(own)} outlines, {len(fine)} meshed, refused {dict(refused)}, advised {advised}")
-        for key, unit in (("angle", 1), ("body_angle", 1), ("irregular", 100), ("deviation", 1), ("cpu", 1000)):
+        print(
+            f"\n{count} {cells}: {len(own)} outlines, {len(fine)} meshed, refused {dict(refused)}, advised {advised}"
+        )
+        for key, unit in (
+            ("angle", 1),
+            ("body_angle", 1),
+            ("irregular", 100),
+            ("deviation", 1),
+            ("cpu", 1000),
+        ):
             values = np.sort([unit * row[key] for row in fine])
             if not len(values):
                 continue
@@ -135,7 +143,9 @@ def summed_up(rows: list[dict[str, Any]]) -> None:
     for row in wrong[:50]:
         print(f"    {row['name']} {row['count']} {row['cells']}: {row['wrong']}")
     for row in sorted(rows, key=lambda row: -row["cpu"])[:10]:
-        print(f"{row['cpu']:8.2f} s CPU: {row['name']} {row['count']} {row['cells']} {row.get('refused', '')}")
+        print(
+            f"{row['cpu']:8.2f} s CPU: {row['name']} {row['count']} {row['cells']} {row.get('refused', '')}"
+        )
 
 
 def drawn(corpus: Path, worst: list[dict[str, Any]], file: Path) -> None:
@@ -162,7 +172,9 @@ def drawn(corpus: Path, worst: list[dict[str, Any]], file: Path) -> None:
             )
     rows = -(-len(pictures) // columns)
     head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{columns * size}" height="{rows * size}">'
-    style = "<style>path{fill:#eef;stroke:#226;stroke-width:.5}text{font:11px sans-serif}rect{fill:#fff}</style>"
+    style = (
+        "<style>path{fill:#eef;stroke:#226;stroke-width:.5}text{font:11px sans-serif}rect{fill:#fff}</style>"
+    )
     file.write_text(f'{head}{style}<rect width="100%" height="100%"/>{"".join(pictures)}</svg>')
 
 
@@ -178,7 +190,9 @@ def main() -> int:
     parser.add_argument("--worst", type=int, default=0)
     parser.add_argument("--summary", action="store_true")
     chosen = parser.parse_args()
-    kinds = [("triangles", count) for count in chosen.triangles] + [("quads", count) for count in chosen.quads]
+    kinds = [("triangles", count) for count in chosen.triangles] + [
+        ("quads", count) for count in chosen.quads
+    ]
     rows = rows_of(chosen.journal)
     if not chosen.summary:
         known = {(row["name"], row["cells"], row["count"]) for row in rows}
