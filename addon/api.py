@@ -33,6 +33,8 @@ class Body:
     """(f, 3) triangles, or (f, 4) quads."""
     uv: np.ndarray
     silhouette: list[np.ndarray]
+    corner: list[np.ndarray]
+    """Turning angle of the drawn corner at each vertex of the silhouette; 0 elsewhere."""
     report: dict[str, Any]
 
 
@@ -118,6 +120,7 @@ def build(
                 faces=faces_of(surface),
                 uv=surface.uv,
                 silhouette=list(surface.silhouette),
+                corner=list(surface.corner),
                 report=dict(surface.report),
             )
         )

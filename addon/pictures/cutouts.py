@@ -56,6 +56,8 @@ class Cutout:
     uv: np.ndarray
     """By corner, exactly over the picture."""
     silhouette: list[np.ndarray]
+    corner: list[np.ndarray]
+    """Turning angle of the corner of the outline at each vertex of the silhouette; 0 elsewhere."""
     parts: int
     dropped: int
     """Islands that were too small."""
@@ -124,6 +126,7 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
             for surface, start in zip(meshed, starts, strict=False)
             for loop in surface.silhouette
         ],
+        corner=[row for surface in meshed for row in surface.corner],
         parts=len(meshed),
         dropped=traced.dropped,
         refused=refused,

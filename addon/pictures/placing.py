@@ -46,6 +46,7 @@ def body_of(cutout: Cutout, matrix: np.ndarray, width: int, height: int) -> Body
         faces=cutout.faces,
         uv=cutout.uv,
         silhouette=cutout.silhouette,
+        corner=cutout.corner,
         report={},
     )
 
