@@ -29,7 +29,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
 NAMES = ["whale", "guitar", "octopus"]
-COLUMN, ROW = 1.16, 1.2
+COLUMN, ROW = 1.16, 1.36
 
 
 def made(points: np.ndarray, at: tuple[float, float], **options):
@@ -104,7 +104,7 @@ def build(paths: list[Path], pixels: int, samples: int) -> None:
         y = ((len(paths) - 1) / 2 - row) * ROW
         for column in range(columns):
             x = (column - (columns - 1) / 2) * COLUMN
-            body = made(points, (x, y + 0.06), **({"triangles": 1800} if column < 2 else {"quads": 900}))
+            body = made(points, (x, y - 0.02), **({"triangles": 1800} if column < 2 else {"quads": 900}))
             text = f"{len(body.data.polygons)} triangles"
             if column == 1:
                 text = quadriflow(body)
@@ -122,7 +122,7 @@ def build(paths: list[Path], pixels: int, samples: int) -> None:
                     text = f"{text or str(len(body.data.polygons)) + ' quads'}, {poles} poles"
                     if column == 2:
                         text = f"{len(body.data.polygons)} quads, {poles} poles"
-            gallery.label(text, (x, y - 0.56), 0.055, ink)
+            gallery.label(text, (x, y - 0.6), 0.055, ink)
     gallery.set_stage(width, height, pixels, samples)
 
 

@@ -318,7 +318,11 @@ def test_an_edge_loop_runs_around_a_limb():
     bpy.ops.mesh.select_all(action="DESELECT")
     bm = bmesh.from_edit_mesh(ob.data)
     middle = min(
-        (edge for edge in bm.edges if abs(edge.verts[0].co.x - edge.verts[1].co.x) < 0.3 * edge.calc_length()),
+        (
+            edge
+            for edge in bm.edges
+            if abs(edge.verts[0].co.x - edge.verts[1].co.x) < 0.3 * edge.calc_length()
+        ),
         key=lambda edge: sum(vertex.co.xy.length - 10 * vertex.co.z for vertex in edge.verts),
     )
     middle.select_set(True)

@@ -175,7 +175,9 @@ def main():
             continue
         rows["Grid Fill"].append({**measured(points, faces, outline), "seconds": seconds, "same": True})
     print(f"\nBlender {bpy.app.version_string}; {len(paths)} drawings, medians and (worst)")
-    print(f"{'way':16} {'n':>3} {'faces':>6} {'quads %':>8} {'poles':>12} {'least':>14} {'greatest':>15} {'off':>12} {'same':>5} {'seconds':>8}")
+    print(
+        f"{'way':16} {'n':>3} {'faces':>6} {'quads %':>8} {'poles':>12} {'least':>14} {'greatest':>15} {'off':>12} {'same':>5} {'seconds':>8}"
+    )
     for way, found in rows.items():
         if not found:
             continue
@@ -190,7 +192,9 @@ def main():
     ]
     print(f"QuadriFlow's time over ours: least {ratio.min():.0f}, median {np.median(ratio):.0f}")
     for k, path in enumerate(paths):
-        print(f"{path.stem:12} poles: gridmesh {rows['gridmesh'][k]['poles']}, QuadriFlow {rows['QuadriFlow'][k]['poles']}")
+        print(
+            f"{path.stem:12} poles: gridmesh {rows['gridmesh'][k]['poles']}, QuadriFlow {rows['QuadriFlow'][k]['poles']}"
+        )
     sys.stdout.flush()
     os._exit(0)  # Blender 4.5 can crash in its own clean-up
 
