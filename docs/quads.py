@@ -18,7 +18,6 @@ Dots are poles, vertices with other than four edges.
 from __future__ import annotations
 
 import argparse
-import math
 import os
 import sys
 import tempfile

@@ -29,14 +29,25 @@ from pathlib import Path
 from time import perf_counter
 
 os.environ["BLENDER_USER_RESOURCES"] = tempfile.mkdtemp(prefix="gridmesh-blender-")
-ROOT = Path(__file__).resolve().parents[2]
 
 import bpy
 import gridmesh
 import numpy as np
 from mathutils.bvhtree import BVHTree
 
-NAMES = "whale guitar camel puzzle letter octopus frog brazil snowflake ampersand".split()
+ROOT = Path(__file__).resolve().parents[2]
+NAMES = [
+    "whale",
+    "guitar",
+    "camel",
+    "puzzle",
+    "letter",
+    "octopus",
+    "frog",
+    "brazil",
+    "snowflake",
+    "ampersand",
+]
 
 
 def outline_of(path):

@@ -318,7 +318,9 @@ def map_sketches(
 def _patch(
     vertices: Any, triangles: Any, contours: Any, inlets: Any, lattice: Any, report: Any, quads: Any
 ) -> Patch: ...
-def _surface(vertices: Any, triangles: Any, silhouette: Any, uv: Any, report: Any, quads: Any, corner: Any) -> Surface: ...
+def _surface(
+    vertices: Any, triangles: Any, silhouette: Any, uv: Any, report: Any, quads: Any, corner: Any
+) -> Surface: ...
 def _fill(
     loop: Any,
     backwards: Any,
