@@ -87,7 +87,15 @@ impl Surface {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let py = slf.py();
         let this = slf.get();
-        let fields = (&this.vertices, &this.triangles, &this.silhouette, &this.uv, &this.report, &this.quads, &this.corner);
+        let fields = (
+            &this.vertices,
+            &this.triangles,
+            &this.silhouette,
+            &this.uv,
+            &this.report,
+            &this.quads,
+            &this.corner,
+        );
         Ok((py.import("gridmesh._native")?.getattr("_surface")?, fields.into_pyobject(py)?.into_any()))
     }
 }
