@@ -33,6 +33,8 @@ class Body:
     """(f, 3) triangles, or (f, 4) quads."""
     uv: np.ndarray
     silhouette: list[np.ndarray]
+    corner: list[np.ndarray]
+    """Turning angle of the drawn corner at each vertex of the silhouette; 0 elsewhere."""
     report: dict[str, Any]
 
 
@@ -78,11 +80,12 @@ TOO_THIN_FOR_QUADS = (
 )
 
 
-def reason_of(error: Any, sketch_options: dict[str, Any]) -> str:
+def reason_of(error: Any, sketch_options: dict[str, Any] | None = None) -> str:
     """What to say of an error of the module where the number of faces that would do was not searched for."""
     if error.kind != "too_coarse":
         return str(error)
-    return TOO_THIN_FOR_QUADS if sketch_options.get("cells") == "quads" else TOO_THIN
+    quads = sketch_options is not None and sketch_options.get("cells") == "quads"
+    return TOO_THIN_FOR_QUADS if quads else TOO_THIN
 
 
 def build(
@@ -118,6 +121,7 @@ def build(
                 faces=faces_of(surface),
                 uv=surface.uv,
                 silhouette=list(surface.silhouette),
+                corner=list(surface.corner),
                 report=dict(surface.report),
             )
         )

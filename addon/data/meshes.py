@@ -251,7 +251,10 @@ def fill(mesh: bpy.types.Mesh, body: Body, crease_angle: float) -> None:
 
 
 def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
-    """Mark the edges along the rim sharp where front and back meet at more than `angle`, and no others."""
+    """Mark the edges along the rim sharp where front and back meet at more than `angle`, and no others.
+
+    Of quads they are creased, too, and the corners of the drawing: a Subdivision Surface modifier keeps both.
+    """
     edges = np.empty(len(mesh.edges) * 2, np.int32)
     mesh.edges.foreach_get("vertices", edges)
     sides = np.empty(len(mesh.loops), np.int32)
@@ -260,6 +263,21 @@ def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
     sharp = rim_creases(body.vertices, body.faces, body.silhouette, edges, sides, angle)
     if sharp.any() or mesh.attributes.get("sharp_edge") is not None:
         mesh.edges.foreach_set("use_edge_sharp", sharp)
+    if np.shape(body.faces)[1] == 4:  # to be subdivided
+        corners = np.zeros(len(mesh.vertices), np.float32)
+        for loop, turn in zip(body.silhouette, body.corner, strict=True):
+            corners[loop] = np.asarray(turn) != 0
+        _put(mesh, "crease_vert", "POINT", corners)
+        _put(mesh, "crease_edge", "EDGE", sharp.astype(np.float32))
+
+
+def _put(mesh: bpy.types.Mesh, name: str, domain: str, values: np.ndarray) -> None:
+    """Set an attribute of numbers, which is not there where all are 0."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None and values.any():
+        attribute = mesh.attributes.new(name, "FLOAT", domain)
+    if attribute is not None:
+        attribute.data.foreach_set("value", values)
 
 
 def refresh(ob: bpy.types.Object, body: Body, crease_angle: float) -> None:

@@ -93,11 +93,11 @@ def carry_out(
     return made
 
 
-def _refused(error: Any) -> DrawError:
+def _refused(error: Any, sketch_options: dict[str, Any] | None = None) -> DrawError:
     """Say of a stroke what the library says of an outline."""
     if error.kind == "zero_area":
         return DrawError(NOTHING)
-    return DrawError(_of_stroke(api.reason_of(error)))
+    return DrawError(_of_stroke(api.reason_of(error, sketch_options)))
 
 
 def _of_stroke(text: str) -> str:
@@ -172,7 +172,7 @@ def refuse(parts: list[Part], options: Any) -> None:
         try:
             gridmesh.mesh_sketch(outline, holes, least=False, **wanted)
         except gridmesh.GridMeshError as error:
-            raise _refused(error) from error
+            raise _refused(error, wanted) from error
 
 
 def unmirrored(decisions: list[Decision], options: Any) -> str:

@@ -84,6 +84,7 @@ def solve(
         faces=faces_of(surface),
         uv=surface.uv,
         silhouette=list(surface.silhouette),
+        corner=list(surface.corner),
         report={**patch.report, **surface.report},
     )
     return body, Lattice(sketch.plane, patch.edge_length, patch.angle, np.array(patch.origin))

@@ -58,6 +58,8 @@ class Cutout:
     silhouette: list[np.ndarray]
     starts: np.ndarray
     """First vertex of each part."""
+    corner: list[np.ndarray]
+    """Turning angle of the corner of the outline at each vertex of the silhouette; 0 elsewhere."""
     parts: int
     dropped: int
     """Islands that were too small."""
@@ -127,6 +129,7 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
             for loop in surface.silhouette
         ],
         starts=starts[:-1],
+        corner=[row for surface in meshed for row in surface.corner],
         parts=len(meshed),
         dropped=traced.dropped,
         refused=refused,

@@ -47,6 +47,7 @@ def body_of(cutout: Cutout, matrix: np.ndarray, width: int, height: int) -> Body
         faces=cutout.faces,
         uv=cutout.uv,
         silhouette=cutout.silhouette,
+        corner=cutout.corner,
         report={},
     )
 

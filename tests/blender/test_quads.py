@@ -1,8 +1,10 @@
 """Bodies of quads in Blender: every operator, live bodies, what is shown of them, and what is refused."""
 
 import json
+from collections import Counter
 from pathlib import Path
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from drawings import (
     uv_of,
     vertices,
 )
+from mathutils.bvhtree import BVHTree
 
 from addon import api
 from addon.live import engine
@@ -260,3 +263,75 @@ def test_a_quad_counts_as_two_triangles_in_what_is_expected():
     assert api.expected_triangles(sketches, {"cells": "quads", "quads": 300}) == 600
     assert api.expected_triangles(sketches, {"cells": "quads", "edge_length": 0.1}) == pytest.approx(800)
     assert api.suggested_edge_length(sketches, 400, "quads") == pytest.approx(0.1)
+
+
+class TestSubdivision:
+    def subdivided(self, ob):
+        """Distance of the rim's vertices, in edges, from the surface after two subdivisions, and which are corners."""
+        crease = ob.data.attributes.get("crease_vert")
+        corners = np.zeros(len(ob.data.vertices), np.float32)
+        if crease is not None:
+            crease.data.foreach_get("value", corners)
+        points = vertices(ob.data)
+        rim = np.flatnonzero(np.abs(points[:, 2]) < 1e-6)
+        quads = points[faces_of(ob.data)]
+        edge = np.median(np.linalg.norm(quads - np.roll(quads, 1, axis=1), axis=2))
+        ob.modifiers.new("Subdivision", "SUBSURF").levels = 2
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        tree = BVHTree.FromObject(ob, depsgraph)
+        off = np.array([tree.find_nearest(place)[3] for place in points[rim].tolist()]) / edge
+        return off, corners[rim] > 0
+
+    @pytest.mark.parametrize("name", ["whale", "guitar", "camel"])
+    def test_corners_of_the_drawing_stay_and_the_rim_nearly_so(self, name):
+        grease_pencil([drawing(name)])
+        off, corners = self.subdivided(run_one(quads=1000))
+        assert corners.sum() >= 2
+        assert off[corners].max() < 1e-3
+        assert np.median(off) < 0.03
+
+    def test_sharp_rims_stay(self):
+        grease_pencil([circle(80, 1.0)])
+        off, _ = self.subdivided(run_one(quads=1000, profile="PEAK"))
+        assert off.max() < 0.02
+
+    def test_a_live_body_that_loses_its_corner_loses_the_crease(self):
+        grease_pencil([drawing("whale")])
+        ob = run_one(quads=500)
+        assert ob.data.attributes.get("crease_vert") is not None
+        bpy.ops.object.gridmesh_from_strokes(quads=500, corner_angle=3.1)
+        crease = ob.data.attributes.get("crease_vert")
+        assert crease is None or max(item.value for item in crease.data) == 0
+
+    def test_bodies_of_triangles_have_no_creases(self):
+        grease_pencil([drawing("whale")])
+        assert run_one().data.attributes.get("crease_vert") is None
+
+
+def test_an_edge_loop_runs_around_a_limb():
+    bar = np.array([[-4, -0.5, 0], [4, -0.5, 0], [4, 0.5, 0], [-4, 0.5, 0]], float)
+    grease_pencil([bar])
+    ob = run_one(quads=600)
+    activate(ob)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.tool_settings.mesh_select_mode = (False, True, False)
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bm = bmesh.from_edit_mesh(ob.data)
+    middle = min(
+        (
+            edge
+            for edge in bm.edges
+            if abs(edge.verts[0].co.x - edge.verts[1].co.x) < 0.3 * edge.calc_length()
+        ),
+        key=lambda edge: sum(vertex.co.xy.length - 10 * vertex.co.z for vertex in edge.verts),
+    )
+    middle.select_set(True)
+    bmesh.update_edit_mesh(ob.data)
+    bpy.ops.mesh.loop_multi_select(ring=False)
+    loop = [edge for edge in bm.edges if edge.select]
+    ends = Counter(vertex for edge in loop for vertex in edge.verts)
+    assert set(ends.values()) == {2}, "the loop is not closed"
+    assert len(loop) >= 8
+    assert all(len(vertex.link_edges) == 4 for vertex in ends)
+    assert np.ptp([vertex.co.x for vertex in ends]) < 1
+    assert min(vertex.co.z for vertex in ends) < -0.2 < 0.2 < max(vertex.co.z for vertex in ends)

@@ -103,5 +103,5 @@ def test_expected_triangles_are_about_right(options):
     stroke = Stroke(points=bean(), cyclic=True, source="", layer="", index=0, count=1)
     sketches, _, _ = api.sketches_of([stroke], close_gaps=0.2, holes=True)
     (body,), _ = api.build(sketches, options, None)
-    assert np.isclose(api.expected_triangles(sketches, options), len(body.triangles), rtol=0.15)
+    assert np.isclose(api.expected_triangles(sketches, options), len(body.faces), rtol=0.15)
     assert api.expected_triangles(sketches, {"edge_length": 0.0}) == 0

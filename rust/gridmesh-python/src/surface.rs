@@ -23,6 +23,8 @@ use crate::{arrays, reports};
 /// silhouette : list of (k,) int32
 ///     The vertices of the drawn contours, loop by loop, in the order of the patch's loops. Their x
 ///     and y are those of the patch, bit for bit; their z is 0.
+/// corner : list of (k,) float64
+///     For each of them the turning angle of the drawn corner that it lies on (radians, positive where convex), 0 elsewhere.
 /// uv : (3 t, 2) or (4 q, 2) float64
 ///     Texture coordinates in 0 to 1 of each face's corners, in the order of `triangles` or `quads`: the
 ///     front as drawn, the back beside it as seen from behind.
@@ -42,6 +44,8 @@ pub struct Surface {
     #[pyo3(get)]
     silhouette: Py<PyList>,
     #[pyo3(get)]
+    corner: Py<PyList>,
+    #[pyo3(get)]
     uv: Py<PyArray2<f64>>,
     #[pyo3(get)]
     report: Py<PyDict>,
@@ -56,6 +60,7 @@ impl Surface {
             silhouette: arrays::list(py, &core.silhouette, |contour| {
                 Ok(arrays::indices(py, contour.iter().copied()))
             })?,
+            corner: arrays::list(py, &core.corner, |contour| Ok(arrays::row(py, contour.clone())))?,
             uv: arrays::plane_points(py, &core.uv)?,
             report: reports::surface(py, &core.report)?,
         })
@@ -82,7 +87,15 @@ impl Surface {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let py = slf.py();
         let this = slf.get();
-        let fields = (&this.vertices, &this.triangles, &this.silhouette, &this.uv, &this.report, &this.quads);
+        let fields = (
+            &this.vertices,
+            &this.triangles,
+            &this.silhouette,
+            &this.uv,
+            &this.report,
+            &this.quads,
+            &this.corner,
+        );
         Ok((py.import("gridmesh._native")?.getattr("_surface")?, fields.into_pyobject(py)?.into_any()))
     }
 }
@@ -96,6 +109,7 @@ pub fn _surface(
     uv: Py<PyArray2<f64>>,
     report: Py<PyDict>,
     quads: Py<PyArray2<i32>>,
+    corner: Py<PyList>,
 ) -> Surface {
-    Surface { vertices, triangles, quads, silhouette, uv, report }
+    Surface { vertices, triangles, quads, silhouette, corner, uv, report }
 }

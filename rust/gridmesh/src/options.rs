@@ -283,13 +283,6 @@ impl SketchOptions {
                 allowed: "optimal, or triangles: growth is that of a triangular lattice",
             });
         }
-        if self.mirror.is_some() {
-            return Err(Error::InvalidOption {
-                name: "mirror",
-                value: "given, with quads".to_owned(),
-                allowed: "none, or triangles",
-            });
-        }
         Ok(())
     }
 }

@@ -91,7 +91,7 @@ pub fn mesh_sketch(
     check_origin(options, &contours[0], edge_length)?;
     let find = |mirror| Symmetry::find(&contours, mirror, edge_length);
     let symmetry = options.mirror.map(find).transpose()?;
-    mirror::check_angle(symmetry.as_ref(), options.angle)?;
+    mirror::check_angle(symmetry.as_ref(), options.angle, options.cells)?;
     let centre = centroid(contours[0].points());
     let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
     let mut job =

@@ -22,6 +22,8 @@ pub struct Surface {
     /// Vertex numbers of each contour of the patch. Their x and y are the patch's bit for bit,
     /// their z is zero.
     pub silhouette: Vec<Vec<u32>>,
+    /// For each of them the turning angle of the drawn corner that it lies on, as in [`Loop::corner`]; 0 elsewhere.
+    pub corner: Vec<Vec<f64>>,
     /// Texture coordinates in \[0, 1\], one per corner of each triangle, or of each quad, in
     /// their order.
     ///
@@ -122,11 +124,12 @@ impl Surface {
             ..SurfaceReport::default()
         };
         let silhouette = patch.loops.iter().map(|contour| contour.vertices().collect()).collect();
+        let corner = patch.loops.iter().map(|contour| contour.corner.clone()).collect();
         let uv = Texture::new(patch, closed, layout).coordinates(patch);
         if is_quads {
             triangles.clear();
         }
-        Surface { vertices, triangles, quads, silhouette, uv, report }
+        Surface { vertices, triangles, quads, silhouette, corner, uv, report }
     }
 
     /// The triangles, or each quad cut in two.

@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use crate::lattice::axial::Axial;
 use crate::lattice::dir::Dir;
+use crate::lattice::reflection::Reflection;
 
 /// A lattice of the plane whose points are pairs of integers and whose directions are numbered
 /// counter-clockwise.
@@ -27,6 +28,19 @@ pub trait Grid: Copy + Debug + Default + PartialEq + Eq + Send + Sync + 'static 
 
     /// A point of the lattice turned by one direction about the origin.
     fn rotated(point: Axial) -> Axial;
+
+    /// The mirror image of a point; the axis goes through (0, 0).
+    fn image(axis: Reflection, point: Axial) -> Axial;
+
+    /// The mirror image of a direction.
+    fn image_dir(axis: Reflection, dir: u32) -> u32;
+
+    /// On which side of the axis a point lies: 0 on it, else its distance in half steps across, or more, positive to
+    /// the left of direction 0 or on its side.
+    fn side(axis: Reflection, point: Axial) -> i32;
+
+    /// The direction of the edges that the axis cuts in the middle, from the positive side: those of points with side 1.
+    fn crossing(axis: Reflection) -> Option<u32>;
 
     /// The direction of a step to a neighbour.
     fn step(from: Axial, to: Axial) -> Option<u32> {
@@ -79,6 +93,22 @@ impl Grid for Triangular {
     fn rotated(point: Axial) -> Axial {
         Axial::new(-point.r, point.q + point.r)
     }
+
+    fn image(axis: Reflection, point: Axial) -> Axial {
+        axis.point(point)
+    }
+
+    fn image_dir(axis: Reflection, dir: u32) -> u32 {
+        axis.dir(Dir::new(dir as i32)).index() as u32
+    }
+
+    fn side(axis: Reflection, point: Axial) -> i32 {
+        axis.side(point)
+    }
+
+    fn crossing(axis: Reflection) -> Option<u32> {
+        axis.crossing().map(|dir| dir.index() as u32)
+    }
 }
 
 impl Grid for Square {
@@ -101,6 +131,31 @@ impl Grid for Square {
     fn rotated(point: Axial) -> Axial {
         Axial::new(-point.r, point.q)
     }
+
+    fn image(axis: Reflection, point: Axial) -> Axial {
+        match axis {
+            Reflection::Along => Axial::new(point.q, -point.r),
+            Reflection::Across => Axial::new(-point.q, point.r),
+        }
+    }
+
+    fn image_dir(axis: Reflection, dir: u32) -> u32 {
+        match axis {
+            Reflection::Along => (4 - dir) & 3,
+            Reflection::Across => (6 - dir) & 3,
+        }
+    }
+
+    fn side(axis: Reflection, point: Axial) -> i32 {
+        match axis {
+            Reflection::Along => 2 * point.r,
+            Reflection::Across => 2 * point.q,
+        }
+    }
+
+    fn crossing(_axis: Reflection) -> Option<u32> {
+        None
+    }
 }
 
 #[cfg(test)]
@@ -118,6 +173,36 @@ mod tests {
                 assert_eq!(G::turned(G::turned(dir, turn), -turn), dir);
             }
         }
+    }
+
+    fn images_are_reflections<G: Grid>() {
+        for axis in [Reflection::Along, Reflection::Across] {
+            for q in -3..4 {
+                for r in -3..4 {
+                    let p = Axial::new(q, r);
+                    assert_eq!(G::image(axis, G::image(axis, p)), p);
+                    assert_eq!(G::side(axis, G::image(axis, p)), -G::side(axis, p));
+                    assert_eq!(G::side(axis, p) == 0, G::image(axis, p) == p);
+                    for dir in 0..G::DIRECTIONS {
+                        let to = p + G::offset(dir);
+                        assert_eq!(
+                            G::image(axis, to),
+                            G::image(axis, p) + G::offset(G::image_dir(axis, dir))
+                        );
+                        if G::side(axis, p) > 0 {
+                            let crosses = G::side(axis, p) == 1 && Some(dir) == G::crossing(axis);
+                            assert_eq!(to == G::image(axis, p), crosses);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn images_are_reflections_on_both_grids() {
+        images_are_reflections::<Triangular>();
+        images_are_reflections::<Square>();
     }
 
     #[test]

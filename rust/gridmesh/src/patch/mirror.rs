@@ -7,7 +7,7 @@
 mod placing;
 mod sides;
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
+use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec2;
 
@@ -15,17 +15,20 @@ pub(crate) use self::placing::symmetrised;
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::symmetry::Symmetry;
 use crate::error::{Error, Result};
-use crate::options::SketchOptions;
+use crate::lattice::grid::{Square, Triangular};
+use crate::lattice::reflection::Reflection;
+use crate::options::{CellShape, SketchOptions};
 use crate::patch::mirror::sides::{Sides, arc_at, contours_of, reflection};
-use crate::path::outline::{Obstacle, Outline};
+use crate::path::outline::{Obstacle, Outline, of_quads};
 use crate::path::placement::{Lattice, ROW_HEIGHT};
+use crate::path::target::Target;
 use crate::path::trace::outcome::{TraceFailure, TraceOptions};
 use crate::path::trace::{Part, trace_mirrored};
 use crate::progress::Progress;
 
 /// The lattices to try: angle, and shift in edges along the lattice's own axes. With an angle given,
 /// those that lie that way.
-pub(crate) fn placements(symmetry: &Symmetry, angle: Option<f64>) -> Vec<(f64, DVec2)> {
+pub(crate) fn placements(symmetry: &Symmetry, angle: Option<f64>, cells: CellShape) -> Vec<(f64, DVec2)> {
     const SHIFTS: [f64; 4] = [0.0, 0.5, 0.25, 0.75];
     let direction = symmetry.axis.direction;
     let along = direction.y.atan2(direction.x);
@@ -33,26 +36,34 @@ pub(crate) fn placements(symmetry: &Symmetry, angle: Option<f64>) -> Vec<(f64, D
     // Rows lie across the axis: every other one has a point on it.
     let on_rows = SHIFTS.map(|shift| (along + FRAC_PI_2, DVec2::new(0.0, 2.0 * ROW_HEIGHT * shift)));
     let all = on_direction.into_iter().zip(on_rows).flat_map(|(a, b)| [a, b]);
-    all.filter(|(it, _)| angle.is_none_or(|angle| is_alike(*it, angle))).collect()
+    let fits = |(it, _): &(f64, DVec2)| angle.is_none_or(|angle| is_alike(*it, angle, cells));
+    match cells {
+        CellShape::Triangle => all.filter(fits).collect(),
+        // Turned by 90 degrees a square lattice is the same.
+        CellShape::Quad => on_direction.into_iter().filter(fits).collect(),
+    }
 }
 
 /// # Errors
 /// [`Error::InvalidOption`] if the lattice cannot be laid on the axis at the angle given.
-pub(crate) fn check_angle(symmetry: Option<&Symmetry>, angle: Option<f64>) -> Result<()> {
+pub(crate) fn check_angle(symmetry: Option<&Symmetry>, angle: Option<f64>, cells: CellShape) -> Result<()> {
     let Some((symmetry, angle)) = symmetry.zip(angle) else { return Ok(()) };
-    if placements(symmetry, Some(angle)).is_empty() {
+    if placements(symmetry, Some(angle), cells).is_empty() {
         let value = format!("{angle}, beside mirror");
-        let allowed = "none, or the angle of the axis or 30 degrees from it, modulo 60 degrees";
+        let allowed = match cells {
+            CellShape::Triangle => "none, or the angle of the axis or 30 degrees from it, modulo 60 degrees",
+            CellShape::Quad => "none, or the angle of the axis, modulo 90 degrees",
+        };
         return Err(Error::InvalidOption { name: "angle", value, allowed });
     }
     Ok(())
 }
 
 /// True if two angles are those of the same lattice.
-fn is_alike(a: f64, b: f64) -> bool {
+fn is_alike(a: f64, b: f64, cells: CellShape) -> bool {
     const NEAR: f64 = 1e-6;
-    let between = (a - b).rem_euclid(FRAC_PI_3);
-    between.min(FRAC_PI_3 - between) < NEAR
+    let between = (a - b).rem_euclid(cells.step());
+    between.min(cells.step() - between) < NEAR
 }
 
 /// The symmetric boundary of least cost for a lattice laid on the axis.
@@ -65,18 +76,27 @@ pub(crate) fn traced(
 ) -> Result<Result<Outline, Obstacle>> {
     let axis = reflection(symmetry, lattice);
     let sides = Sides { contours, lattice, axis, corner_angle: options.corner_angle };
-    let parts: Vec<Part> = symmetry.pairings.iter().map(|pairing| sides.part(pairing)).collect();
+    let mut parts: Vec<Part> = symmetry.pairings.iter().map(|pairing| sides.part(pairing)).collect();
+    if options.cells == CellShape::Quad {
+        drawn_in(&mut parts, axis);
+    }
     let wanted = TraceOptions {
         max_distance: options.max_distance,
         closeness: options.closeness,
         proof_nodes: options.proof_nodes,
     };
-    let traced = match trace_mirrored(&parts, axis, &wanted, progress) {
+    let found = match options.cells {
+        CellShape::Triangle => trace_mirrored::<Triangular>(&parts, axis, &wanted, progress),
+        CellShape::Quad => of_quads(&wanted, progress, |wanted, progress| {
+            trace_mirrored::<Square>(&parts, axis, wanted, progress)
+        }),
+    };
+    let traced = match found {
         Ok(traced) => traced,
         Err(TraceFailure::Cancelled) => return Err(Error::Cancelled),
         Err(failure) => {
             let near = contours[0].points()[0];
-            let at = failure.at().map_or(near, |at| lattice.from_units(Lattice::units(at)));
+            let at = failure.at().map_or(near, |at| lattice.from_units(options.cells.units(at)));
             return Ok(Err(Obstacle::new(failure.to_string(), at)));
         }
     };
@@ -102,4 +122,23 @@ pub(crate) fn traced(
         }
     }
     Ok(Ok(outline))
+}
+
+/// Moves the targets into the patch, where a belt is to come around it, alike on both sides.
+fn drawn_in(parts: &mut [Part], axis: Reflection) {
+    let targets: Vec<Target> = parts.iter().flat_map(|part| part.targets(axis)).collect();
+    let mut inset = Target::inset(&targets, 1.0).into_iter();
+    for part in parts {
+        let (own, image) = match part {
+            Part::Symmetric { .. } => (inset.next(), None),
+            Part::Pair(_) => (inset.next(), inset.next()),
+        };
+        let (Part::Symmetric { target, .. } | Part::Pair(target)) = part;
+        let Some(own) = own else { continue };
+        let other = image.as_ref().unwrap_or(&own);
+        let n = own.len();
+        target.points = (0..n)
+            .map(|i| 0.5 * (own.points[i] + Lattice::reflected(axis, other.points[(n - i) % n])))
+            .collect();
+    }
 }

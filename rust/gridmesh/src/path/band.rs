@@ -74,6 +74,12 @@ impl<G: Laid> Band<G> {
     pub(crate) fn beside(target: &Target, max_distance: f64) -> Self {
         Scan::new(&target.points, true, max_distance + SLACK).finish(max_distance)
     }
+
+    /// Likewise for the open line through some points: runs do not go round its ends, and no link
+    /// does.
+    pub(crate) fn along(points: &[DVec2], max_distance: f64) -> Self {
+        Scan::new(points, false, max_distance + SLACK).finish(max_distance)
+    }
 }
 
 impl<G: Grid> Band<G> {
@@ -115,12 +121,6 @@ impl Band {
     /// `max_distance + SLACK`.
     pub fn new(target: &Target, max_distance: f64) -> Self {
         Self::beside(target, max_distance)
-    }
-
-    /// Likewise for the open line through some points: runs do not go round its ends, and no link
-    /// does.
-    pub(crate) fn along(points: &[DVec2], max_distance: f64) -> Self {
-        Scan::new(points, false, max_distance + SLACK).finish(max_distance)
     }
 
     /// The neighbours of a node in one direction.

@@ -11,10 +11,10 @@ use crate::options::{CellShape, SketchOptions};
 use crate::path::band::Band;
 use crate::path::growth::{clear_chords, grow_inside, straighten};
 use crate::path::mapping::{complete, project};
-use crate::path::placement::{Laid, Lattice};
+use crate::path::placement::Lattice;
 use crate::path::raster::Raster;
 use crate::path::target::Target;
-use crate::path::trace::outcome::{TraceFailure, TraceOptions};
+use crate::path::trace::outcome::{TraceFailure, TraceOptions, Traced};
 use crate::path::trace::trace_on;
 use crate::progress::Progress;
 
@@ -158,6 +158,24 @@ pub(crate) fn grown(
     }))
 }
 
+/// Traces paths of quads: they may stray farther than those of triangles, or as far where that leads to none.
+pub(crate) fn of_quads(
+    wanted: &TraceOptions,
+    progress: Progress<'_>,
+    trace: impl Fn(&TraceOptions, Progress<'_>) -> Result<Traced, TraceFailure>,
+) -> Result<Traced, TraceFailure> {
+    let closeness = QUAD_SHARE * wanted.closeness;
+    let max_distance = QUAD_DISTANCE * wanted.max_distance;
+    let far = TraceOptions { max_distance, closeness, ..wanted.clone() };
+    match trace(&far, progress.part(0.0, 0.5)) {
+        // Paths that may stray less get less into each other's way.
+        Err(failure) if failure != TraceFailure::Cancelled => {
+            trace(&TraceOptions { closeness, ..wanted.clone() }, progress.part(0.5, 1.0))
+        }
+        found => found,
+    }
+}
+
 /// The boundary of least cost for this lattice: a shortest path for each contour.
 pub(crate) fn traced(
     contours: &[ClosedCurve],
@@ -177,28 +195,14 @@ pub(crate) fn traced(
     let found = match options.cells {
         CellShape::Triangle => trace_on::<Triangular>(&targets, &wanted, progress),
         CellShape::Quad => {
-            let closeness = QUAD_SHARE * wanted.closeness;
-            let max_distance = QUAD_DISTANCE * wanted.max_distance;
-            let far = TraceOptions { max_distance, closeness, ..wanted.clone() };
-            match trace_on::<Square>(&targets, &far, progress.part(0.0, 0.5)) {
-                // Paths that may stray less get less into each other's way.
-                Err(failure) if failure != TraceFailure::Cancelled => {
-                    let near = TraceOptions { closeness, ..wanted };
-                    trace_on::<Square>(&targets, &near, progress.part(0.5, 1.0))
-                }
-                found => found,
-            }
+            of_quads(&wanted, progress, |wanted, progress| trace_on::<Square>(&targets, wanted, progress))
         }
     };
     let traced = match found {
         Ok(traced) => traced,
         Err(TraceFailure::Cancelled) => return Err(Error::Cancelled),
         Err(failure) => {
-            let units = |point| match options.cells {
-                CellShape::Triangle => Triangular::units(point),
-                CellShape::Quad => Square::units(point),
-            };
-            let at = failure.at().map_or(targets[0].points[0], units);
+            let at = failure.at().map_or(targets[0].points[0], |at| options.cells.units(at));
             return Ok(Err(Obstacle::new(failure.to_string(), lattice.from_units(at))));
         }
     };

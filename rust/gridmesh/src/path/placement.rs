@@ -56,6 +56,14 @@ impl CellShape {
         }
     }
 
+    /// The position of a lattice point, in lattice units.
+    pub fn units(self, point: Axial) -> DVec2 {
+        match self {
+            CellShape::Triangle => Triangular::units(point),
+            CellShape::Quad => Square::units(point),
+        }
+    }
+
     /// The area of one cell with edges of length one.
     pub const fn area(self) -> f64 {
         match self {

@@ -22,7 +22,7 @@ impl Job<'_> {
     /// The lattices to try: angles, and shifts of the origin in edges.
     pub(super) fn placements_to_try(&self, asked: Asked, effort: Effort) -> Vec<(f64, DVec2)> {
         if let Some(symmetry) = &self.symmetry {
-            let mut lattices = mirror::placements(symmetry, self.options.angle);
+            let mut lattices = mirror::placements(symmetry, self.options.angle, self.options.cells);
             lattices.truncate(if effort == Effort::Full { MIRROR_CANDIDATES } else { MIRROR_CANDIDATES / 2 });
             return lattices;
         }
@@ -32,9 +32,10 @@ impl Job<'_> {
     /// The lattices to try where those do not do.
     pub(super) fn shifts(&self, tried: &[(f64, DVec2)]) -> Vec<(f64, DVec2)> {
         match &self.symmetry {
-            Some(symmetry) => {
-                mirror::placements(symmetry, self.options.angle).into_iter().skip(MIRROR_CANDIDATES).collect()
-            }
+            Some(symmetry) => mirror::placements(symmetry, self.options.angle, self.options.cells)
+                .into_iter()
+                .skip(MIRROR_CANDIDATES)
+                .collect(),
             None if self.options.origin.is_some() => Vec::new(),
             None => {
                 let of = |&(angle, _): &(f64, DVec2)| {

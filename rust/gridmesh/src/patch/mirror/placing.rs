@@ -6,10 +6,12 @@ use rustc_hash::FxHashMap;
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::symmetry::{Pairing, Symmetry};
 use crate::error::Result;
-use crate::lattice::assemble::{Region, assemble};
+use crate::lattice::assemble::assemble;
 use crate::lattice::axial::Axial;
+use crate::lattice::grid::{Grid, Square, Triangular};
 use crate::lattice::reflection::Reflection;
-use crate::options::SketchOptions;
+use crate::lattice::squares::assemble_squares;
+use crate::options::{CellShape, SketchOptions};
 use crate::patch::deviation::{beside, crossings, deviation};
 use crate::patch::mirror::sides::{arc_at, contours_of, reflection};
 use crate::patch::place::{INLET, Placed, STRAY, min_angle, nearest_drawn};
@@ -36,10 +38,16 @@ pub(crate) fn symmetrised(
 ) -> Result<(Placed, f64), Obstacle> {
     let lattice = placed.patch.lattice;
     let axis = reflection(symmetry, &lattice);
-    let region = assemble(&outline.paths);
     let at = contours[0].points()[0];
-    let partner = partners(&region, axis).ok_or(Obstacle::new("the boundary is not symmetric", at))?;
-    let both = Both { contours, symmetry, region: &region, axis, partner, placed: &placed };
+    let partners = match options.cells {
+        CellShape::Triangle => Partners::new::<Triangular>(&assemble(&outline.paths).points, 0, axis),
+        CellShape::Quad => {
+            let belted = assemble_squares(&outline.paths);
+            Partners::new::<Square>(&belted.points, belted.n_rim, axis)
+        }
+    };
+    let Partners { partner, side } = partners.ok_or(Obstacle::new("the boundary is not symmetric", at))?;
+    let both = Both { contours, symmetry, side: &side, partner, placed: &placed };
     let mut best: Option<(usize, f64, Placed)> = None;
     for side in [Side::Mean, Side::Left, Side::Right] {
         let Some(found) = both.placed_by(side, options) else { continue };
@@ -61,7 +69,7 @@ pub(crate) fn symmetrised(
         }
         None => placed.clone(),
     };
-    let error = (0..region.points.len())
+    let error = (0..side.len())
         .map(|v| {
             let image = placed.patch.vertices[both.partner[v]];
             symmetry.axis.reflected(placed.patch.vertices[v]).distance(image)
@@ -75,10 +83,27 @@ fn is_exact(symmetry: &Symmetry, edge_length: f64) -> bool {
     symmetry.difference <= 1e-9 * edge_length
 }
 
-/// The vertex at the mirror image of each vertex.
-fn partners(region: &Region, axis: Reflection) -> Option<Vec<usize>> {
-    let number: FxHashMap<Axial, usize> = region.points.iter().enumerate().map(|(v, &p)| (p, v)).collect();
-    region.points.iter().map(|&p| number.get(&axis.point(p)).copied()).collect()
+struct Partners {
+    /// The vertex at the mirror image of each vertex.
+    partner: Vec<usize>,
+    /// On which side of the axis each lies.
+    side: Vec<i32>,
+}
+
+impl Partners {
+    /// Of vertices at lattice points, before which there is one in a belt for each of the first `n_rim`; none if one has no
+    /// image.
+    fn new<G: Grid>(points: &[Axial], n_rim: usize, axis: Reflection) -> Option<Self> {
+        let number: FxHashMap<Axial, usize> = points.iter().enumerate().map(|(v, &p)| (p, v)).collect();
+        let images: Vec<usize> =
+            points.iter().map(|&p| number.get(&G::image(axis, p)).copied()).collect::<Option<_>>()?;
+        if images[..n_rim].iter().any(|&image| image >= n_rim) {
+            return None;
+        }
+        let partner = images[..n_rim].iter().copied().chain(images.iter().map(|image| n_rim + image));
+        let side = points[..n_rim].iter().chain(points).map(|&p| G::side(axis, p));
+        Some(Self { partner: partner.collect(), side: side.collect() })
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -91,8 +116,7 @@ enum Side {
 struct Both<'a> {
     contours: &'a [ClosedCurve],
     symmetry: &'a Symmetry,
-    region: &'a Region,
-    axis: Reflection,
+    side: &'a [i32],
     partner: Vec<usize>,
     placed: &'a Placed,
 }
@@ -109,7 +133,7 @@ impl Both<'_> {
                 arcs[contour] = self.rim(pairing, of, side, &mut loops[contour], &mut vertices)?;
             }
         }
-        if first_inverted(&vertices, &patch.triangles, patch.lattice.origin).is_some() {
+        if first_inverted(&vertices, &patch.corners(), patch.lattice.origin).is_some() {
             return None;
         }
         let h = patch.lattice.edge_length;
@@ -119,7 +143,7 @@ impl Both<'_> {
             return None;
         }
         let found =
-            pockets(&beside, &vertices, &mut Fans::new(vertices.len(), &patch.triangles), &arcs, INLET * h);
+            pockets(&beside, &vertices, &mut Fans::new(vertices.len(), &patch.corners()), &arcs, INLET * h);
         let crossing = if options.relax { crossings(&beside, &vertices, &arcs).len() } else { 0 };
         let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
         let triangles = patch.triangles.clone();
@@ -127,7 +151,7 @@ impl Both<'_> {
             patch: Patch {
                 vertices,
                 triangles,
-                quads: Vec::new(),
+                quads: patch.quads.clone(),
                 loops,
                 inlets: found.inlets,
                 lattice: patch.lattice,
@@ -147,7 +171,7 @@ impl Both<'_> {
         (0..at.len())
             .map(|v| {
                 let partner = self.partner[v];
-                let is_left = self.axis.side(self.region.points[v]) > 0;
+                let is_left = self.side[v] > 0;
                 match side {
                     _ if partner == v => axis.foot(at[v]),
                     Side::Mean if is_left => 0.5 * (at[v] + axis.reflected(at[partner])),
@@ -178,7 +202,7 @@ impl Both<'_> {
             let w = self.partner[v];
             let partner_loop = old.iter().find(|l| l.vertices().contains(&(w as u32)))?;
             let i = v - placed.start as usize;
-            let is_left = self.axis.side(self.region.points[v]) > 0;
+            let is_left = self.side[v] > 0;
             let own = self.left_turns(pairing, of, v);
             let other =
                 self.left_turns(pairing, if contours_of(pairing).len() == 2 { 1 - of } else { of }, w);
@@ -237,7 +261,7 @@ impl Both<'_> {
                 } else {
                     1.0 - 0.5 * matching.parameter(1, (length - along) / right)
                 };
-                if self.axis.side(self.region.points[v]) >= 0 { turns } else { 1.0 - turns }
+                if self.side[v] >= 0 { turns } else { 1.0 - turns }
             }
             Pairing::Two { contours: [a, b], start, matching } => {
                 if of == 0 {

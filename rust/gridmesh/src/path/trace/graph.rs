@@ -3,7 +3,6 @@
 use std::marker::PhantomData;
 
 use crate::lattice::axial::Axial;
-use crate::lattice::dir::Dir;
 use crate::lattice::grid::{Grid, Triangular};
 use crate::lattice::reflection::Reflection;
 use crate::path::band::Band;
@@ -143,15 +142,16 @@ impl<G: Grid> Graph<G> {
     }
 }
 
-impl Graph {
+impl<G: Grid> Graph<G> {
     /// Both sides of an axis, from the band beside the half of a symmetric curve that begins and ends
     /// on it: the nodes on the axis and on its positive side, then the mirror images of all of them.
     ///
     /// Only the first have links, and to each other only. Also returns their number, and for each
     /// the node of the band.
-    pub fn unfolded(band: &Band, axis: Reflection, closeness: f64) -> (Self, Vec<u32>) {
-        let kept: Vec<u32> =
-            (0..band.nodes.len() as u32).filter(|&i| axis.side(band.nodes[i as usize].point) >= 0).collect();
+    pub fn unfolded(band: &Band<G>, axis: Reflection, closeness: f64) -> (Self, Vec<u32>) {
+        let kept: Vec<u32> = (0..band.nodes.len() as u32)
+            .filter(|&i| G::side(axis, band.nodes[i as usize].point) >= 0)
+            .collect();
         let n = kept.len();
         let mut number = vec![u32::MAX; band.nodes.len()];
         for (new, &old) in (0..).zip(&kept) {
@@ -161,7 +161,7 @@ impl Graph {
         let nodes = || kept.iter().map(|&i| &band.nodes[i as usize]);
         let squared: Vec<f64> = nodes().map(|node| node.distance * node.distance).collect();
         let parameter = |image: bool| {
-            nodes().map(move |node| match (axis.side(node.point) == 0, image) {
+            nodes().map(move |node| match (G::side(axis, node.point) == 0, image) {
                 (true, _) if node.first == 0 => 0.0,
                 (true, _) => 0.5 * whole,
                 (false, true) => whole - node.parameter,
@@ -171,25 +171,25 @@ impl Graph {
         let mut graph = Self {
             points: nodes()
                 .map(|node| node.point)
-                .chain(nodes().map(|node| axis.point(node.point)))
+                .chain(nodes().map(|node| G::image(axis, node.point)))
                 .collect(),
             cost: squared.iter().chain(&squared).map(|&d| cost(d, closeness, 2 * n)).collect(),
             parameter: parameter(false).chain(parameter(true)).collect(),
             squared: squared.repeat(2),
-            starts: Vec::with_capacity(12 * n + 1),
-            links: Vec::with_capacity(6 * n),
+            starts: Vec::with_capacity(2 * G::DIRECTIONS as usize * n + 1),
+            links: Vec::with_capacity(G::DIRECTIONS as usize * n),
             n_second: 0,
             n_samples: 2 * band.n_samples(),
             grid: PhantomData,
         };
         for &old in &kept {
-            for dir in Dir::ALL {
+            for dir in 0..G::DIRECTIONS {
                 graph.starts.push(graph.links.len() as u32);
-                let known = band.links(old as usize, dir).iter().map(|link| number[link.node as usize]);
+                let known = band.links_in(old as usize, dir).iter().map(|link| number[link.node as usize]);
                 graph.links.extend(known.filter(|&to| to != u32::MAX).map(|to| 4 * to + 1));
             }
         }
-        graph.starts.resize(12 * n + 1, graph.links.len() as u32);
+        graph.starts.resize(2 * G::DIRECTIONS as usize * n + 1, graph.links.len() as u32);
         (graph, kept)
     }
 
@@ -197,11 +197,11 @@ impl Graph {
     pub fn image(&self, axis: Reflection) -> Self {
         let whole = self.n_samples as f64;
         Self {
-            points: self.points.iter().map(|&p| axis.point(p)).collect(),
+            points: self.points.iter().map(|&p| G::image(axis, p)).collect(),
             cost: self.cost.clone(),
             squared: self.squared.clone(),
             parameter: self.parameter.iter().map(|s| whole - s).collect(),
-            starts: vec![0; 6 * self.n_nodes() + 1],
+            starts: vec![0; G::DIRECTIONS as usize * self.n_nodes() + 1],
             links: Vec::new(),
             n_second: 0,
             n_samples: self.n_samples,

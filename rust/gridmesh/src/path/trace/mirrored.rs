@@ -10,10 +10,10 @@ use super::pulse::Pulse;
 use super::search::{Potential, Search, Step, Walk};
 use super::sides::wrong_sides;
 use super::totals::{failure, fewest, over_distances, squared_distances, total, turns};
-use crate::lattice::grid::{Grid, Triangular};
+use crate::lattice::grid::Grid;
 use crate::lattice::reflection::Reflection;
 use crate::path::band::Band;
-use crate::path::placement::Lattice;
+use crate::path::placement::{Laid, Lattice};
 use crate::path::target::Target;
 use crate::path::trace::contour::Contour;
 use crate::path::trace::outcome::{Path, Refusal, TraceFailure, TraceOptions, Traced};
@@ -59,50 +59,50 @@ impl Part {
 ///
 /// # Errors
 /// As [`trace`](super::trace()).
-pub fn trace_mirrored(
+pub fn trace_mirrored<G: Laid>(
     parts: &[Part],
     axis: Reflection,
     options: &TraceOptions,
     progress: Progress<'_>,
 ) -> Result<Traced, TraceFailure> {
     over_distances(options.max_distance, progress, |distance, progress| {
-        attempt(parts, axis, options, distance, progress)
+        attempt::<G>(parts, axis, options, distance, progress)
     })
 }
 
 /// How the path of a part is searched.
-enum Unit {
-    Half(Box<Half>),
+enum Unit<G> {
+    Half(Box<Half<G>>),
     /// The first contour of a pair, by its number.
     Pair,
 }
 
 /// All that a search needs; contours and walks number all contours, units and prices the parts.
-struct Job<'a> {
+struct Job<'a, G> {
     axis: Reflection,
-    units: Vec<Unit>,
+    units: Vec<Unit<G>>,
     /// The first contour of each unit.
     firsts: Vec<usize>,
-    contours: Vec<Contour>,
+    contours: Vec<Contour<G>>,
     prices: Vec<Prices>,
-    walks: Vec<Walk>,
+    walks: Vec<Walk<G>>,
     search: Search<'a>,
     memory: Memory<'a>,
 }
 
-fn attempt(
+fn attempt<G: Laid>(
     parts: &[Part],
     axis: Reflection,
     options: &TraceOptions,
     max_distance: f64,
     progress: Progress<'_>,
 ) -> Result<Traced, Refusal> {
-    let mut job = Job::new(parts, axis, options.closeness, max_distance, progress);
+    let mut job = Job::<G>::new(parts, axis, options.closeness, max_distance, progress);
     let result = job.attempt(parts, options, max_distance, progress);
     if job.is_stopped() { Err(TraceFailure::Cancelled.into()) } else { result }
 }
 
-impl<'a> Job<'a> {
+impl<'a, G: Laid> Job<'a, G> {
     fn attempt(
         &mut self,
         parts: &[Part],
@@ -115,9 +115,7 @@ impl<'a> Job<'a> {
             if !job.solve(unit) {
                 let (Part::Symmetric { target, .. } | Part::Pair(target)) = part;
                 let some = target.points.first().copied().unwrap_or_default();
-                return Err(
-                    TraceFailure::NoPath { contour: job.firsts[unit], at: Lattice::nearest(some) }.into()
-                );
+                return Err(TraceFailure::NoPath { contour: job.firsts[unit], at: G::nearest(some) }.into());
             }
         }
         let states = job.contours.iter().map(|contour| contour.graph.n_states()).sum();
@@ -144,7 +142,7 @@ impl<'a> Job<'a> {
             cost_bound: if optimal { cost } else { bound.min(cost) },
             turns,
             // Symmetric paths are paths beside the targets like others.
-            turns_bound: fewest::<Triangular>(&targets, max_distance, &mut job.search.pulse).unwrap_or(0),
+            turns_bound: fewest::<G>(&targets, max_distance, &mut job.search.pulse).unwrap_or(0),
             optimal,
             max_distance_used: max_distance,
             rounds: found.rounds,
@@ -171,19 +169,19 @@ impl<'a> Job<'a> {
     ) -> Self {
         let (mut search, mut memory) = (Search::new(Pulse::new(progress)), Memory::new(Pulse::new(progress)));
         let (mut units, mut firsts, mut prices) = (Vec::new(), Vec::new(), Vec::new());
-        let mut contours: Vec<Contour> = Vec::new();
+        let mut contours: Vec<Contour<G>> = Vec::new();
         for part in parts {
             firsts.push(contours.len());
             match part {
                 Part::Symmetric { target, corners } => {
                     let (half, graph) =
-                        Half::new(target, *corners, axis, (max_distance, closeness), &mut memory);
+                        Half::<G>::new(target, *corners, axis, (max_distance, closeness), &mut memory);
                     prices.push(Prices::none(graph.n_nodes()));
                     contours.push(Contour { graph, potential: Potential::default() });
                     units.push(Unit::Half(Box::new(half)));
                 }
                 Part::Pair(target) => {
-                    let graph = Graph::new(&Band::new(target, max_distance), closeness);
+                    let graph = Graph::new(&Band::<G>::beside(target, max_distance), closeness);
                     let image = graph.image(axis);
                     prices.push(fenced(&graph, axis));
                     let potential = search.potential(&graph);
@@ -240,7 +238,7 @@ impl<'a> Job<'a> {
             let mut hot = vec![false; self.units.len()];
             for &Conflict { a, b, chord } in &conflicts {
                 hot[self.raise(a, chord)] = true;
-                hot[self.raise(b, chord.map(|dir| Triangular::turned(dir, 3)))] = true;
+                hot[self.raise(b, chord.map(|dir| G::turned(dir, G::OPPOSITE as i32)))] = true;
             }
             for vertex in wrong {
                 hot[self.raise(vertex, None)] = true;
@@ -263,7 +261,7 @@ impl<'a> Job<'a> {
         let contour = vertex.contour as usize;
         let unit = self.firsts.partition_point(|&first| first <= contour) - 1;
         let node = self.walks[contour].node(vertex.index as usize);
-        let reflected = |dir: u32| self.axis.dir(crate::lattice::dir::Dir::new(dir as i32)).index() as u32;
+        let reflected = |dir: u32| G::image_dir(self.axis, dir);
         let is_image = match &self.units[unit] {
             Unit::Half(half) => node >= half.n_half,
             Unit::Pair => contour > self.firsts[unit],
@@ -315,13 +313,13 @@ impl<'a> Job<'a> {
             let whole = graph.n_samples as f64;
             match unit {
                 Unit::Half(_) => {
-                    symmetric(&points, self.axis, &mut parameters, whole);
+                    symmetric::<G>(&points, self.axis, &mut parameters, whole);
                     paths.push(Path { points, parameters });
                 }
                 Unit::Pair => {
                     let turns = parameters.last().map_or(0.0, |last| (last / whole).ceil());
                     let image = Path {
-                        points: points.iter().rev().map(|&p| self.axis.point(p)).collect(),
+                        points: points.iter().rev().map(|&p| G::image(self.axis, p)).collect(),
                         parameters: parameters.iter().rev().map(|s| turns * whole - s).collect(),
                     };
                     paths.push(Path { points, parameters });
@@ -334,11 +332,11 @@ impl<'a> Job<'a> {
 }
 
 /// Prices that keep a path on the positive side, and no edge across the axis inside the patch.
-fn fenced(graph: &Graph, axis: Reflection) -> Prices {
+fn fenced<G: Grid>(graph: &Graph<G>, axis: Reflection) -> Prices {
     let mut prices = Prices::none(graph.n_nodes());
     for (node, &point) in (0..).zip(&graph.points) {
-        match (axis.side(point), axis.crossing()) {
-            (1, Some(dir)) => prices.raise_inside(node, dir.index() as u32, BLOCKED),
+        match (G::side(axis, point), G::crossing(axis)) {
+            (1, Some(dir)) => prices.raise_inside(node, dir, BLOCKED),
             (1.., _) => {}
             _ => prices.raise_visit(node, BLOCKED),
         }
@@ -347,9 +345,8 @@ fn fenced(graph: &Graph, axis: Reflection) -> Prices {
 }
 
 /// The mirror image of a walk, run through backwards so that the patch stays on its left.
-fn image(walk: &Walk, axis: Reflection) -> Walk {
-    let back =
-        |dir: u32| Triangular::turned(axis.dir(crate::lattice::dir::Dir::new(dir as i32)).index() as u32, 3);
+fn image<G: Grid>(walk: &Walk<G>, axis: Reflection) -> Walk<G> {
+    let back = |dir: u32| G::turned(G::image_dir(axis, dir), G::OPPOSITE as i32);
     let steps = (0..walk.len()).rev().map(|i| {
         let Step { node, sheet, .. } = walk.step(i);
         Step { node, enter: back(walk.leave(i)) as u8, sheet: -sheet }

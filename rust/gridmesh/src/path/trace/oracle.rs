@@ -13,6 +13,7 @@ use super::search::Search;
 use super::straightest::fewest_turns;
 use crate::lattice::axial::Axial;
 use crate::lattice::dir::Dir;
+use crate::lattice::grid::Triangular;
 use crate::lattice::reflection::Reflection;
 use crate::path::band::Band;
 use crate::path::placement::Lattice;
@@ -378,8 +379,13 @@ fn the_symmetric_search_finds_what_brute_force_finds() {
             };
             let target = symmetric_target(&half, axis);
             for (max_distance, closeness) in [(1.5, 0.3), (1.0, 1.0), (2.0, 0.05)] {
-                let (search, graph) =
-                    Half::new(&target, [false; 2], axis, (max_distance, closeness), &mut memory);
+                let (search, graph) = Half::<Triangular>::new(
+                    &target,
+                    [false; 2],
+                    axis,
+                    (max_distance, closeness),
+                    &mut memory,
+                );
                 let walk = search.cheapest(&graph, &Prices::none(graph.n_nodes()), &mut memory);
                 let found = walk.as_ref().map(|walk| walk.cost);
                 let expected = brute_force_symmetric(&target, axis, max_distance, closeness);
