@@ -46,7 +46,8 @@ def main(argv: list[str]) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        "gridmesh", description="Bodies from drawings, filled holes, cut meshes and sprites, for any number of files."
+        "gridmesh",
+        description="Bodies from drawings, filled holes, cut meshes and sprites, for any number of files.",
     )
     verbs = parser.add_subparsers(required=True, metavar="COMMAND", dest="op")
     for op, known in params.OPS.items():

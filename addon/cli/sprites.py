@@ -15,7 +15,7 @@ from ..data.placing import Transaction
 from ..native import native
 from ..pictures import images, placing
 from ..pictures.cutouts import Cutout, Options, cut_out
-from ..pictures.formats import godot, gltf, spine
+from ..pictures.formats import gltf, godot, spine
 from ..pictures.formats.sheet import Sheet
 from . import files, loading, outputs, params
 from .making import MakeError
@@ -65,6 +65,10 @@ class MadeSprite:
 
     def write(self, out: Path, beside: Path | None) -> None:
         """Write the sprite, and the picture beside it if the format only names it."""
+        if beside is not None and not self.sheet.flat:
+            raise MakeError(
+                "params", f"{out.suffix} files are for flat sheets; write bodies to .glb, .gltf or .blend"
+            )
         if beside is not None:
             _copy(self.source, self.sheet.picture, beside)
         suffix = out.suffix.lower()
@@ -83,7 +87,7 @@ class MadeSprite:
             loading.clear()
 
 
-def sprites(source: Path, _pattern: str | None, options: dict[str, Any], *, scripts: bool) -> MadeSprite:  # noqa: ARG001 (as all operations)
+def sprites(source: Path, _pattern: str | None, options: dict[str, Any], *, scripts: bool) -> MadeSprite:
     """Make a mesh of what a picture shows."""
     data = files.read_bytes(source)
     pixels = native("decode_image").decode_image(data)

@@ -69,9 +69,7 @@ def paint(mesh: bpy.types.Mesh, silhouette: list[np.ndarray], colors: Colors) ->
     mesh.color_attributes.active_color = attribute
 
 
-def material(
-    name: str, surface: tuple[float, ...], transaction: Transaction
-) -> bpy.types.Material:
+def material(name: str, surface: tuple[float, ...], transaction: Transaction) -> bpy.types.Material:
     """Material that shows the colour attribute, made once and found by its name afterwards."""
     found = bpy.data.materials.get(name)
     if found is not None and not found.is_grease_pencil:

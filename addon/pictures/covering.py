@@ -68,9 +68,7 @@ def covered(
             np.minimum(far + spread(contour, need, reach), MOST * reach)
             for contour, far, need in zip(fine, moved, needs, strict=True)
         ]
-        wider = [
-            contour + far[:, None] * normals(contour) for contour, far in zip(fine, moved, strict=True)
-        ]
+        wider = [contour + far[:, None] * normals(contour) for contour, far in zip(fine, moved, strict=True)]
         try:
             patch = meshed(wider, at, {"angle": best.angle, "self_crossing": "union"})
         except gridmesh.GridMeshError as error:

@@ -67,9 +67,7 @@ class OBJECT_OT_gridmesh_bone_weights(bpy.types.Operator):  # noqa: N801
                             raise WeightError("the armature has no bones that deform")
                         if not ob.is_editable or not ob.data.is_editable:
                             raise WeightError("it is linked from another file; make it local")
-                        values = weights.for_bones(
-                            ob, ends, most=self.most, reach=self.reach, progress=part
-                        )
+                        values = weights.for_bones(ob, ends, most=self.most, reach=self.reach, progress=part)
                         found.append((ob, armature, names, values))
                     except WeightError as error:
                         failures.append(f"'{ob.name}': {error}")

@@ -1,5 +1,7 @@
 """Flat meshes follow bones: `object.gridmesh_bone_weights`, and weights that an update keeps."""
 
+import itertools
+
 import bpy
 import numpy as np
 import pytest
@@ -12,7 +14,11 @@ from addon.pictures import weights
 def hand():
     """Two fingers, a gap between them narrower than they are."""
     y, x = np.mgrid[: SIZE[1], : SIZE[0]] + 0.5
-    kept = (y > 8) & (y < 56) & (((x > 10) & (x < 30)) | ((x > 34) & (x < 54)) | ((x > 10) & (x < 54) & (y < 20)))
+    kept = (
+        (y > 8)
+        & (y < 56)
+        & (((x > 10) & (x < 30)) | ((x > 34) & (x < 54)) | ((x > 10) & (x < 54) & (y < 20)))
+    )
     return drawing(kept.astype(float))
 
 
@@ -158,7 +164,7 @@ def test_files_that_are_dropped_lie_side_by_side(tmp_path):
     made = bpy.context.selected_objects
     assert sorted(ob.name for ob in made) == ["a", "b", "c"]
     spans = sorted((min(p[0] for p in ob.bound_box), max(p[0] for p in ob.bound_box)) for ob in made)
-    assert all(one[1] < other[0] for one, other in zip(spans, spans[1:], strict=False))
+    assert all(one[1] < other[0] for one, other in itertools.pairwise(spans))
 
 
 def test_pictures_can_be_dropped_where_objects_are():

@@ -14,7 +14,7 @@ from batches import ROOT, batch, command, results, run, write_jobs
 
 sys.path.append(str(ROOT / "tests" / "core"))
 
-from picture_files import disk, hostile, jpeg, png  # noqa: E402
+from picture_files import disk, hostile, jpeg, png
 
 TEXTS = ("glb", "gltf", "json", "tscn")
 """Formats of which the same meshes are the same bytes."""
@@ -185,7 +185,10 @@ def test_godot_reads_the_scene(folder):
     for head, body in nodes[1:]:
         assert (head["type"], head["parent"]) == ("Polygon2D", ".")
         assert body["texture"] == 'ExtResource("1")'
-        (points,), (uv,) = numbers(body["polygon"], "PackedVector2Array"), numbers(body["uv"], "PackedVector2Array")
+        (points,), (uv,) = (
+            numbers(body["polygon"], "PackedVector2Array"),
+            numbers(body["uv"], "PackedVector2Array"),
+        )
         points, uv = np.reshape(points, (-1, 2)), np.reshape(uv, (-1, 2))
         triangles = np.array(numbers(body["polygons"], "PackedInt32Array"), int)
         is_over_the_picture(points * [1, -1], uv / SIZE)
@@ -267,9 +270,7 @@ def many(folder, count=12):
 
 
 def all_files(folder):
-    return {
-        str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()
-    }
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 def test_a_killed_run_is_resumed_to_the_same_bytes(tmp_path):
@@ -305,7 +306,11 @@ def test_what_does_not_fit_is_refused_before_the_first_runs(tmp_path):
     ):
         item = {"id": "a", "op": "sprites", "in": "a.png", "out": "a.glb"} | change
         assert batch(write_jobs(tmp_path, [item])).returncode == 2, change
-    item = {"id": "a", "op": "sprites", "in": "a.png", "out": "a.glb", "params": {"depth": 2}}
-    ran = batch(write_jobs(tmp_path, [item]))
-    assert ran.returncode == 1
-    assert "shape body" in ran.stdout
+    for change, said in (
+        ({"params": {"depth": 2}}, "shape body"),
+        ({"out": "a.tscn", "params": {"shape": "body"}}, "for flat sheets"),
+    ):
+        item = {"id": "a", "op": "sprites", "in": "a.png", "out": "a.glb"} | change
+        ran = batch(write_jobs(tmp_path, [item]))
+        assert ran.returncode == 1
+        assert said in ran.stdout

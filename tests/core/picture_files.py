@@ -67,7 +67,9 @@ def moving_webp():
     size = bytes(3)
     frame = bytes(3) + bytes(3) + size + size + struct.pack("<I", 100)[:3] + b"\0" + picture
     chunks = [(b"VP8X", b"\x12\0\0\0" + size + size), (b"ANIM", bytes(6)), (b"ANMF", frame)]
-    body = b"".join(name + struct.pack("<I", len(data)) + data + bytes(len(data) % 2) for name, data in chunks)
+    body = b"".join(
+        name + struct.pack("<I", len(data)) + data + bytes(len(data) % 2) for name, data in chunks
+    )
     return b"RIFF" + struct.pack("<I", len(body) + 4) + b"WEBP" + body
 
 

@@ -39,7 +39,9 @@ def test_sprites_cover_opaque_pixels_and_little_else(name):
     opaque = alpha >= 0.5
     outside = np.maximum(opaque - inside, 0).sum() / opaque.sum()
     assert outside < 0.002
-    assert outside < 0.2 * max(0.01, np.maximum(opaque - covered_by(sprite(alpha), 96), 0).sum() / opaque.sum())
+    assert outside < 0.2 * max(
+        0.01, np.maximum(opaque - covered_by(sprite(alpha), 96), 0).sum() / opaque.sum()
+    )
     assert inside[alpha < 0.02].sum() < 0.09 * inside.sum()
     assert (areas(cutout) > 0).all()
 

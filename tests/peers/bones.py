@@ -107,7 +107,7 @@ def automatic(points: np.ndarray, triangles: np.ndarray, bones: np.ndarray) -> n
 def quiet():
     """Keep Blender from printing a warning for each picture."""
     kept = os.dup(1)
-    with open(os.devnull, "w") as nothing:
+    with Path(os.devnull).open("w") as nothing:
         os.dup2(nothing.fileno(), 1)
         try:
             yield

@@ -25,7 +25,11 @@ def write(path: Path, sheet: Sheet, name: str) -> None:
         f'[node name={_quoted(_node(sheet.name))} type="Node2D"]',
     ]
     for label, part in parts:
-        lines += ["", f'[node name={_quoted(_node(label))} type="Polygon2D" parent="."]', *_polygon(part, sheet)]
+        lines += [
+            "",
+            f'[node name={_quoted(_node(label))} type="Polygon2D" parent="."]',
+            *_polygon(part, sheet),
+        ]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
 
