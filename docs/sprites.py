@@ -40,11 +40,13 @@ LIMBS = {
 """Ends and half widths, in pixels from the lower left corner."""
 BONES = [
     ("spine", (210, 205), (210, 345), None),
+    ("side.L", (166, 210), (160, 318), "spine"),
+    ("side.R", (254, 210), (260, 318), "spine"),
     ("head", (210, 365), (210, 490), "spine"),
-    ("arm.L", (165, 335), (118, 295), "spine"),
-    ("hand.L", (118, 295), (66, 246), "arm.L"),
-    ("arm.R", (255, 335), (302, 295), "spine"),
-    ("hand.R", (302, 295), (354, 246), "arm.R"),
+    ("arm.L", (152, 327), (113, 291), "spine"),
+    ("hand.L", (113, 291), (66, 246), "arm.L"),
+    ("arm.R", (268, 327), (307, 291), "spine"),
+    ("hand.R", (307, 291), (354, 246), "arm.R"),
     ("leg.L", (186, 225), (174, 150), "spine"),
     ("foot.L", (174, 150), (160, 62), "leg.L"),
     ("leg.R", (234, 225), (248, 150), "spine"),
@@ -254,8 +256,11 @@ def main() -> None:
             copied(figure, panel * step, wire=False)
         figure.hide_render = armature.hide_render = True
         render(ROOT / "docs" / "pictures" / "sprites.png", 5, step)
-        os.makedirs(ROOT / "out", exist_ok=True)
+        (ROOT / "out").mkdir(exist_ok=True)
         bpy.ops.wm.save_as_mainfile(filepath=str(ROOT / "out" / "sprites.blend"), copy=True)
+    addon.unregister()
+    sys.stdout.flush()
+    os._exit(0)  # Blender 4.5 can crash in its own clean-up
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::cholesky::Pattern;
 use super::disjoint::Disjoint;
-use super::march::{Around, Marched, march};
+use super::march::{Around, march};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 
@@ -23,7 +23,7 @@ impl Default for WeightOptions {
     }
 }
 
-/// Bones whose distances, relative to half the width of their limbs, differ by less than this are equally near.
+/// Bones whose distances differ by less than this share of the limb's half width are equally near.
 const EQUALLY_NEAR: f64 = 0.1;
 
 /// Weights below this are dropped.
@@ -32,8 +32,7 @@ const LEAST: f64 = 1e-4;
 /// How much each bone moves each vertex of a flat mesh: a row for each vertex, a number for each bone.
 ///
 /// Rows sum to 1 up to rounding, have no negative numbers, and at most `most` that are not 0. Distances are measured within the mesh, so that a
-/// bone has no hold on a limb that is near in the plane but far in the drawing, and relative to half the width of the limb that the
-/// bone is in, so that a thin arm has no hold on the flank beside it. Away from joints the
+/// bone has no hold on a limb that is near in the plane but far in the drawing. Away from joints the
 /// nearest bone has nearly all of the weight; at joints it passes from bone to bone over `reach` times half the
 /// width of the limb, which is the distance to the bone and to the rim together. Parts of the mesh that no bone
 /// meets follow the bone that is nearest to them as a whole. O(b n log n) in practice.
@@ -53,36 +52,28 @@ pub fn bone_weights(
     check(vertices, triangles, bones, options)?;
     let (n, b) = (vertices.len(), bones.len());
     let around = Around::new(n, triangles);
-    let rim = march(vertices, triangles, &around, rim(triangles).into_iter().map(|v| (v, 0.0))).distance;
-    let rim: Vec<f64> = rim.into_iter().map(|d| if d.is_finite() { d } else { 0.0 }).collect();
-    let finest = longest_edges(vertices, triangles);
-    // The width of a limb around a bone is measured where the bone meets the mesh.
-    let half = |v: usize, distance: f64| (distance + rim[v]).max(finest[v]);
-    let (mut near, mut relative) = (Vec::with_capacity(b * n), Vec::with_capacity(b * n));
+    let mut near = Vec::with_capacity(b * n);
     for (k, bone) in bones.iter().enumerate() {
         progress.report(0.6 * k as f64 / b as f64)?;
-        let Marched { distance, origin } =
-            march(vertices, triangles, &around, seeds(vertices, triangles, bone));
-        let to_bone = |v: usize| to_segment(vertices[v], bone[0], bone[1]);
-        relative.extend(distance.iter().zip(&origin).map(|(d, &s)| {
-            let seed = s as usize;
-            d / half(seed, to_bone(seed))
-        }));
-        near.extend(distance);
+        near.extend(march(vertices, triangles, &around, seeds(vertices, triangles, bone)));
     }
-    follow_as_a_whole(vertices, triangles, bones, &mut near, &mut relative);
+    follow_as_a_whole(vertices, triangles, bones, &mut near);
+    let rim = rim(triangles).into_iter().map(|v| (v, 0.0));
+    let rim = march(vertices, triangles, &around, rim);
+    let finest = longest_edges(vertices, triangles);
     let mut wanted = vec![0.0; b * n];
     let mut transfer = vec![1.0; n];
     for v in 0..n {
-        let at = |k: &usize| relative[k * n + v];
-        let nearest = (0..b).min_by(|j, k| at(j).total_cmp(&at(k))).unwrap_or(0);
+        let least = (0..b).map(|k| near[k * n + v]).fold(f64::INFINITY, f64::min);
+        let half = (least + if rim[v].is_finite() { rim[v] } else { 0.0 }).max(finest[v]);
         let mut sum = 0.0;
         for k in 0..b {
-            wanted[k * n + v] = (1.0 - (at(&k) - at(&nearest)) / EQUALLY_NEAR).max(0.0);
+            let farther = near[k * n + v] - least;
+            wanted[k * n + v] = (1.0 - farther / (EQUALLY_NEAR * half)).max(0.0);
             sum += wanted[k * n + v];
         }
         (0..b).for_each(|k| wanted[k * n + v] /= sum);
-        transfer[v] = (options.reach * half(v, near[nearest * n + v])).powi(-2);
+        transfer[v] = (options.reach * half).powi(-2);
     }
     progress.report(0.7)?;
     let mut weights = wanted;
@@ -164,13 +155,7 @@ fn to_segment(p: DVec2, head: DVec2, tail: DVec2) -> f64 {
 }
 
 /// Gives each part of the mesh that no bone meets to the bone that is nearest to one of its vertices.
-fn follow_as_a_whole(
-    vertices: &[DVec2],
-    triangles: &[[u32; 3]],
-    bones: &[[DVec2; 2]],
-    near: &mut [f64],
-    relative: &mut [f64],
-) {
+fn follow_as_a_whole(vertices: &[DVec2], triangles: &[[u32; 3]], bones: &[[DVec2; 2]], near: &mut [f64]) {
     let n = vertices.len();
     let mut sets = Disjoint::new(n);
     for t in triangles {
@@ -193,7 +178,6 @@ fn follow_as_a_whole(
         let (_, bone) = nearest[sets.root(v as u32) as usize];
         if bone < bones.len() {
             near[bone * n + v] = to_segment(vertices[v], bones[bone][0], bones[bone][1]);
-            relative[bone * n + v] = 0.0;
         }
     }
 }

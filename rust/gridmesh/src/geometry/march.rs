@@ -34,15 +34,7 @@ impl Around {
     }
 }
 
-/// Ways over a mesh from seeds.
-pub(crate) struct Marched {
-    /// Length of the shortest way to each vertex; infinite where there is none.
-    pub distance: Vec<f64>,
-    /// The seed that it comes from; the vertex itself where there is none.
-    pub origin: Vec<u32>,
-}
-
-/// The shortest ways from any of the seeds to each vertex, without leaving the mesh.
+/// The shortest way from any of the seeds to each vertex, without leaving the mesh; infinite where there is none.
 ///
 /// `seeds` are vertices and their own distances. A straight way over the triangles from a point is exact, one from a line
 /// nearly so; at concave corners ways bend around vertices. O(n log n).
@@ -53,9 +45,8 @@ pub(crate) fn march(
     triangles: &[[u32; 3]],
     around: &Around,
     seeds: impl IntoIterator<Item = (u32, f64)>,
-) -> Marched {
+) -> Vec<f64> {
     let mut distance = vec![f64::INFINITY; vertices.len()];
-    let mut origin: Vec<u32> = (0..vertices.len() as u32).collect();
     // Distances are not negative, so that their bits are ordered as they are.
     let mut queue: BinaryHeap<Reverse<(u64, u32)>> = BinaryHeap::new();
     for (v, value) in seeds {
@@ -80,13 +71,12 @@ pub(crate) fn march(
                 let found = through(p, distance[a], q, distance[b], r);
                 if found < distance[c] {
                     distance[c] = found;
-                    origin[c] = origin[if distance[a] <= distance[b] { a } else { b }];
                     queue.push(Reverse((found.to_bits(), c as u32)));
                 }
             }
         }
     }
-    Marched { distance, origin }
+    distance
 }
 
 /// Distance of `r` from the point that is `a` from `p` and `b` from `q`, on the other side of the line between them, if the
@@ -132,8 +122,7 @@ mod tests {
         let (vertices, triangles) = cells(12, |_, _| true);
         let around = Around::new(vertices.len(), &triangles);
         let found = march(&vertices, &triangles, &around, [(0, 0.0)]);
-        assert!(found.origin.iter().all(|&v| v == 0));
-        for (p, d) in vertices.iter().zip(found.distance) {
+        for (p, d) in vertices.iter().zip(found) {
             assert!((d - p.length()).abs() < 0.05 * p.length() + 1e-12, "{p} {d}");
         }
     }
@@ -142,9 +131,9 @@ mod tests {
     fn ways_go_around_a_wall() {
         let (vertices, triangles) = cells(12, |x, y| x != 5 || y > 9);
         let around = Around::new(vertices.len(), &triangles);
-        let found = march(&vertices, &triangles, &around, [(4, 0.0)]).distance;
+        let found = march(&vertices, &triangles, &around, [(4, 0.0)]);
         assert!(found[7] > 20.0 && found[7] < 22.0, "{}", found[7]);
-        let alone = march(&vertices, &triangles, &around, []).distance;
+        let alone = march(&vertices, &triangles, &around, []);
         assert!(alone.iter().all(|d| d.is_infinite()));
     }
 }
