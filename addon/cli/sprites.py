@@ -65,6 +65,10 @@ class MadeSprite:
 
     def write(self, out: Path, beside: Path | None) -> None:
         """Write the sprite, and the picture beside it if the format only names it."""
+        if beside is not None and not self.sheet.flat:
+            raise MakeError(
+                "params", f"{out.suffix} files are for flat sheets; write bodies to .glb, .gltf or .blend"
+            )
         if beside is not None:
             _copy(self.source, self.sheet.picture, beside)
         suffix = out.suffix.lower()

@@ -14,7 +14,7 @@ from ..api import Body, Failure
 from ..bodies.outlines import Sketch, transformed
 from ..bodies.strokes import selected
 from ..fill.creases import rim_creases
-from . import frames
+from . import colors, frames
 from .placing import Collections, Transaction
 from .written import by_hand, sign
 
@@ -216,6 +216,10 @@ def _new_object(
     )
     fill(mesh, body, crease_angle)
     material = surface_material(stroke.material, stroke.filled, transaction)
+    painted = colors.of_sketch(body.sketch, surface_color(stroke.material, stroke.filled))
+    if painted is not None and painted.several:
+        name = _shortened(stroke.material.name, " Colors")
+        material = colors.material(name, painted.surface, transaction)
     if material is not None:
         mesh.materials.append(material)
     ob = transaction.new(bpy.data.objects, f"{stroke.source}.mesh", mesh)
@@ -247,7 +251,18 @@ def fill(mesh: bpy.types.Mesh, body: Body, crease_angle: float) -> None:
     layer = mesh.uv_layers.new(name=UV_MAP, do_init=False)
     layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
     mark_creases(mesh, body, crease_angle)
+    _paint(mesh, body)
     sign(mesh)
+
+
+def _paint(mesh: bpy.types.Mesh, body: Body) -> None:
+    """Give the vertices the colours of the drawing, if it has more than one."""
+    if body.sketch is None:
+        return
+    stroke = body.sketch.stroke
+    painted = colors.of_sketch(body.sketch, surface_color(stroke.material, stroke.filled))
+    if painted is not None:
+        colors.paint(mesh, body.silhouette, painted)
 
 
 def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
@@ -322,11 +337,10 @@ def surface_material(
     """
     if material is None or not material.is_grease_pencil:
         return material
-    style = material.grease_pencil
-    filled = _shows_fill(style, filled)
-    color = (*(style.fill_color if filled else style.color)[:3], 1.0)
-    if not filled and max(color[:3]) < BLACK:
+    color = surface_color(material, filled)
+    if color is None:
         return None
+    filled = filled or colors.shows(material.grease_pencil, "show_fill", False)
     name = _shortened(material.name, " Fill" if filled else " Surface")
     twin = bpy.data.materials.get(name)
     if twin is not None and not twin.is_grease_pencil:
@@ -343,17 +357,19 @@ def surface_material(
     return twin
 
 
+def surface_color(material: bpy.types.Material | None, filled: bool) -> tuple[float, ...] | None:
+    """Return the colour of a body drawn with a grease pencil material; None for black ink and for other materials."""
+    if material is None or not material.is_grease_pencil:
+        return None
+    style = material.grease_pencil
+    filled = filled or colors.shows(style, "show_fill", False)
+    color = (*(style.fill_color if filled else style.color)[:3], 1.0)
+    return None if not filled and max(color[:3]) < BLACK else color
+
+
 def _shortened(name: str, suffix: str) -> str:
     """Return the name with a suffix, cut so that every Blender version can hold it."""
     return name.encode()[: 63 - len(suffix)].decode(errors="ignore") + suffix
-
-
-def _shows_fill(style: bpy.types.MaterialGPencilStyle, filled: bool) -> bool:
-    """Whether strokes of this material are seen with a fill, where the stroke itself says `filled`."""
-    option = style.bl_rna.properties.get("show_fill")  # deprecated in 5.2, where strokes have fills
-    if option is None or getattr(option, "is_deprecated", False):
-        return filled
-    return filled or style.show_fill
 
 
 def _show(context: bpy.types.Context, objects: list[bpy.types.Object]) -> None:

@@ -11,12 +11,19 @@ import numpy as np
 
 from ..api import FACE_AREA, CancelledError, Progress, faces_of
 from ..native import native
+from .covering import covered, stretched
 
 PIXELS = 100_000_000
 """The most pixels of a picture, as the module has it; asked for before they are read."""
 
 FINER = (1.0, 0.7, 0.5, 0.35, 0.25)
 """Edge lengths tried for parts that are too thin, relative to that of the others."""
+
+_SQUARE = 0.75
+"""How far whole pixels may reach over the outline of what they cover, at most."""
+
+CUT_OFF = 0.5
+"""Parts of which this many pixels stay outside are meshed finer."""
 
 _TRACING = 0.3
 """Part of the time that tracing takes; the rest is meshing."""
@@ -87,7 +94,7 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
     NativeError
         Without the module.
     """
-    gridmesh = native("trace_image", "map_sketches", "mesh_sketch", "flat")
+    gridmesh = native("trace_image", "mesh_sketch", "flat", "inflate")
     height, width = pixels.shape[:2]
     check_size(width, height)
     try:
@@ -162,7 +169,7 @@ def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progres
             gridmesh,
             [parts[k] for k in left],
             {"cells": cells, "edge_length": finer * length, "least": False},
-            options.body,
+            options,
             _part(progress, step / len(FINER), (step + 1) / len(FINER)),
         )
         for k, surface in zip(left, found, strict=True):
@@ -180,21 +187,70 @@ def _surfaces(
     gridmesh: Any,
     parts: list[Any],
     options: dict[str, Any],
-    body: dict[str, Any] | None,
+    chosen: Options,
     progress: Progress | None,
 ) -> list[Any]:
     """Surface or GridMeshError for each part."""
-    if body is not None:
-        return list(gridmesh.map_sketches(parts, progress=progress, **options, **body))
+    body = chosen.body
+    if body is not None and "corner_angle" in body:
+        options = {**options, "corner_angle": body["corner_angle"]}
 
-    def sheet(at: int, outline: np.ndarray, holes: list[np.ndarray]) -> Any:
+    slack = max(0.0, chosen.margin - _SQUARE)
+
+    def surface(at: int, outline: np.ndarray, holes: list[np.ndarray]) -> Any:
         part = _part(progress, at / len(parts), (at + 1) / len(parts))
         try:
-            return gridmesh.flat(gridmesh.mesh_sketch(outline, holes, progress=part, **options))
+            if chosen.margin <= 0:
+                patch = gridmesh.mesh_sketch(outline, holes, progress=_part(part, 0.0, 0.7), **options)
+                return _of_patch(gridmesh, patch, {}, body, _part(part, 0.7, 1.0))
+            patch, moved, left = _covering(gridmesh, outline, holes, slack, options, _part(part, 0.0, 0.5))
+            if left > CUT_OFF:
+                finer = {**options, "edge_length": FINER[1] * options["edge_length"]}
+                other = _covering(gridmesh, outline, holes, slack, finer, _part(part, 0.5, 0.7))
+                patch, moved, _ = min((patch, moved, left), other, key=lambda one: one[2])
+            return _of_patch(gridmesh, patch, moved, body, _part(part, 0.7, 1.0))
         except gridmesh.GridMeshError as error:
             return error
 
-    return [sheet(at, *part) for at, part in enumerate(parts)]
+    return [surface(at, *part) for at, part in enumerate(parts)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Made:
+    """The surface of a part, whose vertices may be moved."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    quads: np.ndarray
+    silhouette: list[np.ndarray]
+    corner: list[np.ndarray]
+
+
+def _covering(
+    gridmesh: Any,
+    outline: np.ndarray,
+    holes: list[np.ndarray],
+    slack: float,
+    options: dict[str, Any],
+    progress: Callable[[float], object] | None,
+) -> tuple[Any, dict[int, np.ndarray], float]:
+    """Patch that covers a part, new places of some of its vertices, and what is left outside."""
+    patch = covered(gridmesh, outline, holes, slack, options, progress)
+    return patch, *stretched(patch, outline, holes, slack)
+
+
+def _of_patch(
+    gridmesh: Any,
+    patch: Any,
+    moved: dict[int, np.ndarray],
+    body: dict[str, Any] | None,
+    progress: Callable[[float], object] | None,
+) -> _Made:
+    surface = gridmesh.flat(patch) if body is None else gridmesh.inflate(patch, progress=progress, **body)
+    vertices = np.array(surface.vertices)
+    for vertex, place in moved.items():
+        vertices[vertex, :2] = place
+    return _Made(vertices, surface.triangles, surface.quads, surface.silhouette, surface.corner)
 
 
 def _filled(traced: list[tuple[np.ndarray, list[np.ndarray]]]) -> list[tuple[np.ndarray, list[np.ndarray]]]:

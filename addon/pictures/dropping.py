@@ -9,7 +9,7 @@ ENDINGS = (".png", ".jpg", ".jpeg", ".webp", ".tga", ".tif", ".tiff", ".bmp", ".
 """Of the files that are read."""
 
 _AREAS = {"VIEW_3D", "OUTLINER"}
-"""Where they can be dropped, unless Blender takes them for itself."""
+"""Where they can be dropped; Blender asks which of those that take them is meant."""
 
 
 class OBJECT_FH_gridmesh_picture(bpy.types.FileHandler):  # noqa: N801

@@ -104,7 +104,7 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
     )
     margin: FloatProperty(
         name="Margin",
-        description="How far the outline is moved outward, in pixels; from 1 on the outline cuts no pixel, but edges of a coarse mesh may",
+        description="How far the outline is moved outward, in pixels; from 1 on the mesh covers pixels whole, but for the finest tips",
         default=1.0,
         min=0.0,
         soft_max=20.0,

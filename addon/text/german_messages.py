@@ -898,7 +898,17 @@ _LIBRARY_PARTS = {
     "the pixel in row {}, column {} of the picture is NaN or infinite; all values must be finite": (
         "das Pixel in Zeile {0}, Spalte {1} des Bildes ist NaN oder unendlich; alle Werte müssen endlich sein"
     ),
+    # Files of pictures
+    "it breaks the decoder": "der Dekoder scheitert daran",
+    "it has more than one frame; save the one that is meant as a picture": (
+        "es hat mehr als ein Einzelbild; das gemeinte als Bild speichern"
+    ),
+    "it is cut off": "es ist abgeschnitten",
+    "it is damaged ({})": "es ist beschädigt ({0})",
+    "it is empty": "es ist leer",
+    "it is no PNG, JPEG or WebP": "es ist weder PNG noch JPEG noch WebP",
     # Weights
+    "bone weights": "Knochengewichte",
     "Select flat meshes, and then an armature": "Flache Meshes auswählen und dann eine Armature",
     "Cancelled; nothing was changed": "Abgebrochen; nichts wurde geändert",
     "the armature has no bones that deform": "die Armature hat keine Knochen, die verformen",

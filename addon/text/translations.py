@@ -63,8 +63,8 @@ GERMAN = {
     "How far along the outline is looked to remove what pixels put in; 0 keeps it as it is": (
         "Wie weit am Umriss entlang geschaut wird, um zu entfernen, was von den Pixeln kommt; 0 lässt ihn, wie er ist"
     ),
-    "How far the outline is moved outward, in pixels; from 1 on the outline cuts no pixel, but edges of a coarse mesh may": (
-        "Wie weit der Umriss nach außen rückt, in Pixeln; ab 1 schneidet der Umriss kein Pixel an, Kanten eines groben Meshes aber vielleicht"
+    "How far the outline is moved outward, in pixels; from 1 on the mesh covers pixels whole, but for the finest tips": (
+        "Wie weit der Umriss nach außen rückt, in Pixeln; ab 1 bedeckt das Mesh ganze Pixel, bis auf die feinsten Spitzen"
     ),
     "Islands and holes of fewer pixels are left out": "Inseln und Löcher mit weniger Pixeln werden weggelassen",
     "Least Area": "Kleinste Fläche",

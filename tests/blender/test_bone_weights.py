@@ -1,5 +1,7 @@
 """Flat meshes follow bones: `object.gridmesh_bone_weights`, and weights that an update keeps."""
 
+import itertools
+
 import bpy
 import numpy as np
 import pytest
@@ -7,7 +9,6 @@ from mathutils import Matrix, Vector
 from test_pictures import SIZE, arrays, disk, drawing, empty, picture, run, select, write
 
 from addon.pictures import weights
-import itertools
 
 
 def hand():

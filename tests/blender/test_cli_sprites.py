@@ -306,7 +306,11 @@ def test_what_does_not_fit_is_refused_before_the_first_runs(tmp_path):
     ):
         item = {"id": "a", "op": "sprites", "in": "a.png", "out": "a.glb"} | change
         assert batch(write_jobs(tmp_path, [item])).returncode == 2, change
-    item = {"id": "a", "op": "sprites", "in": "a.png", "out": "a.glb", "params": {"depth": 2}}
-    ran = batch(write_jobs(tmp_path, [item]))
-    assert ran.returncode == 1
-    assert "shape body" in ran.stdout
+    for change, said in (
+        ({"params": {"depth": 2}}, "shape body"),
+        ({"out": "a.tscn", "params": {"shape": "body"}}, "for flat sheets"),
+    ):
+        item = {"id": "a", "op": "sprites", "in": "a.png", "out": "a.glb"} | change
+        ran = batch(write_jobs(tmp_path, [item]))
+        assert ran.returncode == 1
+        assert said in ran.stdout

@@ -54,7 +54,7 @@ TOLD = {"report": 1, "status_text_set": 0, "header_text_set": 0, "poll_message_s
 
 def sources():
     for path in sorted(ADDON.rglob("*.py")):
-        if path.name not in TABLES and "cli" not in path.parts:
+        if path.name not in TABLES and not {"cli", "formats"} & set(path.parts):
             yield path.relative_to(ADDON).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
 
 

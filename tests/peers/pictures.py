@@ -39,6 +39,12 @@ from addon.pictures.cutouts import Options, PictureError, cut_out  # noqa: E402
 PACKAGE, FOLDER = "emoji-datasource-twitter@16.0.0", "package/img/twitter/64/"
 
 
+def packed(into: Path) -> Path:
+    """Download the package of the pictures."""
+    ran = subprocess.run(["npm", "pack", "-s", PACKAGE], cwd=into, check=True, capture_output=True, text=True)
+    return into / ran.stdout.strip().splitlines()[-1]
+
+
 def pictures(archive: Path, count: int, into: Path) -> list[Path]:
     """Unpack this many pictures, evenly spread over the names."""
     with tarfile.open(archive) as tar:
@@ -87,12 +93,7 @@ def main() -> None:
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         into = Path(folder)
-        archive = chosen.archive
-        if archive is None:
-            packed = subprocess.run(
-                ["npm", "pack", "-s", PACKAGE], cwd=into, check=True, capture_output=True, text=True
-            )
-            archive = into / packed.stdout.strip().splitlines()[-1]
+        archive = chosen.archive or packed(into)
         files = pictures(archive, chosen.count, into)
         for body in (False, True):
             results, refused = {}, {}
