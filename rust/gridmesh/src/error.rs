@@ -373,7 +373,7 @@ impl fmt::Display for Error {
                     Needed::Least(least) => write!(f, "{least} work (or a smaller edge length)"),
                     Needed::MoreThan(tried) => write!(
                         f,
-                        "numbers up to {tried} were tried and do not work either, use more or draw its thin parts wider"
+                        "none that work were found up to {tried}, use more or draw its thin parts wider"
                     ),
                     Needed::Unknown => write!(f, "use more (or a smaller edge length)"),
                 }

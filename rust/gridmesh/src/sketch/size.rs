@@ -13,7 +13,7 @@ use crate::sketch::job::{Asked, Effort, Job, Miss};
 /// States that pricing conflicts may take on one lattice, over all corrections of its edge length, beside six for each
 /// state there is: a second or two. And where only the least number of cells that works is looked for.
 const MOST_STATES: u64 = 14_000_000;
-const MOST_STATES_QUICK: u64 = 3_000_000;
+const MOST_STATES_QUICK: u64 = 4_000_000;
 
 impl Job<'_> {
     /// The outline for one placement, its work noted.
