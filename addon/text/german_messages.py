@@ -713,8 +713,8 @@ _LIBRARY = {
     "a bug in gridmesh, please report it with this input: {}": (
         "ein Fehler in gridmesh, bitte mit dieser Eingabe melden: {0}"
     ),
-    "numbers up to {} were tried and do not work either, use more or draw its thin parts wider": (
-        "auch Zahlen bis {0} reichen nicht, mehr nehmen oder die dünnen Teile breiter zeichnen"
+    "none that work were found up to {}, use more or draw its thin parts wider": (
+        "bis {0} wurden keine gefunden, die reichen; mehr nehmen oder die dünnen Teile breiter zeichnen"
     ),
     "use more (or a smaller edge length)": "mehr nehmen (oder eine kleinere Kantenlänge)",
     "{} work (or a smaller edge length)": "{0} reichen (oder eine kleinere Kantenlänge)",

@@ -463,10 +463,9 @@ fn too_coarse(triangles: &usize, cells: &str, needed: &Needed, f: &mut fmt::Form
     }
     match needed {
         Needed::Least(least) => write!(f, "{least} work (or a smaller edge length)"),
-        Needed::MoreThan(tried) => write!(
-            f,
-            "numbers up to {tried} were tried and do not work either, use more or draw its thin parts wider"
-        ),
+        Needed::MoreThan(tried) => {
+            write!(f, "none that work were found up to {tried}, use more or draw its thin parts wider")
+        }
         Needed::Unknown => write!(f, "use more (or a smaller edge length)"),
     }
 }

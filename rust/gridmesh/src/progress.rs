@@ -1,5 +1,6 @@
 //! Progress reports and cancelling.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use crate::error::{Error, Result};
@@ -13,15 +14,45 @@ pub struct Progress<'a> {
     callback: Option<&'a (dyn Fn(f64) -> bool + Sync)>,
     start: f64,
     length: f64,
+    meter: Option<&'a Meter>,
+}
+
+/// Counts work in steps of an algorithm, which unlike time are the same for the same input, and bounds it.
+#[derive(Debug)]
+pub(crate) struct Meter {
+    taken: AtomicU64,
+    most: u64,
+}
+
+impl Meter {
+    /// For at most so many steps.
+    pub(crate) fn new(most: u64) -> Self {
+        Self { taken: AtomicU64::new(0), most }
+    }
+
+    /// Notes steps.
+    pub(crate) fn add(&self, steps: u64) {
+        self.taken.fetch_add(steps, Ordering::Relaxed);
+    }
+
+    /// The steps so far. Of work side by side only the sum at its end is determined.
+    pub(crate) fn taken(&self) -> u64 {
+        self.taken.load(Ordering::Relaxed)
+    }
+
+    /// How many steps are left.
+    pub(crate) fn left(&self) -> u64 {
+        self.most.saturating_sub(self.taken())
+    }
 }
 
 impl<'a> Progress<'a> {
     /// Reports to nobody and is never cancelled.
-    pub const NONE: Progress<'static> = Progress { callback: None, start: 0.0, length: 1.0 };
+    pub const NONE: Progress<'static> = Progress { callback: None, start: 0.0, length: 1.0, meter: None };
 
     /// Reports to `callback`, which returns false to cancel.
     pub fn new(callback: &'a (dyn Fn(f64) -> bool + Sync)) -> Self {
-        Progress { callback: Some(callback), start: 0.0, length: 1.0 }
+        Progress { callback: Some(callback), start: 0.0, length: 1.0, meter: None }
     }
 
     /// The share from `start` to `end` (both 0 to 1) of this progress.
@@ -30,7 +61,18 @@ impl<'a> Progress<'a> {
             callback: self.callback,
             start: self.start + start * self.length,
             length: (end - start) * self.length,
+            meter: self.meter,
         }
+    }
+
+    /// The same, whose work is counted and bounded by a meter.
+    pub(crate) fn metered(&self, meter: &'a Meter) -> Progress<'a> {
+        Progress { meter: Some(meter), ..*self }
+    }
+
+    /// The meter of this work, if there is one.
+    pub(crate) fn meter(&self) -> Option<&'a Meter> {
+        self.meter
     }
 
     /// Reports that `fraction` (0 to 1) of this part is done.

@@ -23,7 +23,7 @@ use crate::options::{
 };
 use crate::patch::{Patch, mirror};
 use crate::path::outline::Obstacle;
-use crate::progress::{Progress, Rising};
+use crate::progress::{Meter, Progress, Rising};
 pub use crate::sketch::job::Sketch;
 use crate::sketch::job::{Asked, Effort, Job};
 
@@ -94,8 +94,17 @@ pub fn mesh_sketch(
     mirror::check_angle(symmetry.as_ref(), options.angle, options.cells)?;
     let centre = centroid(contours[0].points());
     let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
-    let mut job =
-        Job { contours, symmetry, options, area, centre, thinnest, seconds: Vec::new(), placements: 0 };
+    let mut job = Job {
+        contours,
+        symmetry,
+        options,
+        area,
+        centre,
+        thinnest,
+        seconds: Vec::new(),
+        placements: 0,
+        states: Meter::new(u64::MAX),
+    };
     job.lap("curve", started);
     let asked = match options.edge_length {
         Some(h) => Asked::EdgeLength(h),

@@ -10,6 +10,7 @@ mod polish;
 mod section;
 mod side;
 mod spread;
+mod twins;
 
 use std::time::Instant;
 
@@ -31,6 +32,7 @@ use height::{Flat, bends, squared_height};
 use inlets::Inlets;
 use section::Section;
 use spread::spread;
+use twins::Twins;
 
 /// Inflates a patch to a closed body: two copies of it glued along its contours, the front at
 /// z > 0, the back at z < 0.
@@ -43,6 +45,7 @@ use spread::spread;
 /// Guaranteed:
 /// * the silhouette's x and y are the patch's bit for bit, its z is zero;
 /// * front and back have the same x and y, and if their depths agree are exact mirror images;
+/// * the body of a patch that is its own mirror image is one too, up to rounding;
 /// * all vertices lie inside the drawing; every triangle is positive in projection, so that the
 ///   body is embedded. Exact predicates check this in the end, also after rounding to `f32`; should
 ///   it fail (a patch that breaks its own promises), intersections are counted and reported;
@@ -76,7 +79,9 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
     progress.report(0.0)?;
     let sheet = patch.of_triangles();
     let topology = Topology::new(patch.vertices.len(), &sheet.triangles);
+    progress.report(0.05)?;
     let pattern = Pattern::new(&topology, first)?;
+    progress.report(0.1)?;
     let (low, high) = patch
         .vertices
         .iter()
@@ -104,12 +109,15 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
     progress.report(0.4)?;
 
     let mut front = Front::new(&field, first);
+    progress.report(0.4)?;
+    let twins = Twins::find(patch, &vertices);
+    progress.report(0.4)?;
+    let corners = patch.corners();
     if options.profile != Profile::Peak {
         // Far above what rounding to f32 can turn over.
         let extent = (high - low).max_element();
         let least_area = 4.0 * f64::from(f32::EPSILON) * extent * patch.lattice.edge_length;
         let bends = bends(&flat, &field.value, &field.gradient, depth);
-        let corners = patch.corners();
         let around = match patch.cells() {
             CellShape::Triangle => None,
             CellShape::Quad => Some(Topology::new(patch.vertices.len(), &corners)),
@@ -123,6 +131,12 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
             least_area,
         );
         spread(&mut front, &guide, patch.cells(), progress.part(0.4, 0.8))?;
+        if let Some(twins) = &twins {
+            progress.report(0.8)?;
+            twins.even(&mut front, &field, (&corners, least_area), |p| guide.inlets.hold(p));
+        }
+    } else if let Some(twins) = &twins {
+        twins.even(&mut front, &field, (&corners, 0.0), |_| false);
     }
     clock.stage("spread");
 
@@ -140,6 +154,7 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
     if !top.iter().chain(&bottom).all(|p| p.is_finite()) {
         return Err(Error::Solver { stage: "inflation", reason: "a height is not a number".into() });
     }
+    progress.report(0.85)?;
     let apart = top[first..].iter().zip(&bottom).all(|(a, b)| a.z >= 0.0 && b.z <= 0.0 && a.z > b.z);
     let mut surface = Surface::assemble(patch, top, Some(bottom), options.uv);
     surface.report.shortened = front.shortened;

@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::options::{BoundaryMethod, Mirror, SketchOptions};
 use crate::path::outline::Outline;
 use crate::path::placement::Lattice;
-use crate::progress::Progress;
+use crate::progress::{Meter, Progress};
 use crate::sketch::job::{Asked, Effort, Found, Job, SLIGHT, faults};
 
 /// So many bends are traced.
@@ -129,6 +129,7 @@ impl Job<'_> {
             thinnest: None,
             seconds: Vec::new(),
             placements: 0,
+            states: Meter::new(u64::MAX),
         };
         let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick).first() else {
             return Ok(None);

@@ -18,7 +18,7 @@ use crate::patch::place::{Placed, min_angle, min_angle_off_corners, place};
 use crate::patch::{Patch, mirror};
 use crate::path::outline::{Obstacle, Outline};
 use crate::path::placement::{Laid, Lattice};
-use crate::progress::Progress;
+use crate::progress::{Meter, Progress};
 
 #[derive(Clone, Copy)]
 pub(crate) enum Asked {
@@ -78,6 +78,8 @@ pub(crate) struct Job<'a> {
     pub(crate) thinnest: Option<Limb>,
     pub(crate) seconds: Vec<(&'static str, f64)>,
     pub(crate) placements: usize,
+    /// States that the searches of boundaries took.
+    pub(crate) states: Meter,
 }
 
 impl Job<'_> {
@@ -121,6 +123,7 @@ impl Job<'_> {
         }
         let mut best: Option<Found> = None;
         let started = Instant::now();
+        let begun = self.states.taken();
         let lattices = self.placements_to_try(asked, effort);
         let found: Vec<Result<Result<(Lattice, Outline), Miss>>> = lattices
             .par_iter()
@@ -158,6 +161,7 @@ impl Job<'_> {
             let (lattice, outline) = match outlines.next() {
                 Some(next) => next,
                 None if best.as_ref().is_some_and(|best| best.placed.fault(self.options).is_none()) => break,
+                None if self.states.taken() - begun > STATES_BEFORE_SHIFTS => break,
                 None => {
                     let Some((k, (angle, shift))) = shifts.next() else { break };
                     let started = Instant::now();
@@ -305,6 +309,9 @@ pub(crate) const TURNS_OF_FAULT: f64 = 12.0;
 pub(crate) const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
 pub(crate) const TURNS_OF_ANGLE: f64 = 16.0;
+
+/// After so many states no more shifts of the lattice are tried.
+const STATES_BEFORE_SHIFTS: u64 = 30_000_000;
 
 /// A flat patch with the numbers of its making.
 #[derive(Clone, Debug)]

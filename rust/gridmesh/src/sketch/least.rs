@@ -12,9 +12,11 @@ use crate::progress::Progress;
 use crate::sketch::job::{Asked, Effort, Job};
 
 /// Work that the search may take, in triangles; an edge of the boundary counts as `EDGE` of them. Some
-/// seconds, whatever the drawing.
+/// seconds, whatever the drawing. Where walls get in each other's way the states that searches take count, so many
+/// as a triangle.
 const WORK: f64 = 2e6;
 const EDGE: f64 = 20.0;
+const STATES: f64 = 15.0;
 
 /// Sizes are tried in steps of this factor.
 const STEP: f64 = 1.1;
@@ -44,15 +46,17 @@ impl Job<'_> {
         while works.is_none() && fails < last {
             // Small steps first, for drawings that nearly fit; larger ones after them.
             let step = (fails + 1 + (fails - first) / 3).min(last);
-            work -= at(step) as f64 + EDGE * self.boundary_edges(at(step));
-            if work < 0.0 {
+            let ahead = at(step) as f64 + EDGE * self.boundary_edges(at(step));
+            if work < ahead {
                 return Ok(Error::TooCoarse {
                     triangles,
                     cells: self.options.cells.plural(),
                     needed: Needed::MoreThan(at(fails)),
                 });
             }
-            if self.works(at(step), progress)? {
+            let (does, spent) = self.works(at(step), progress)?;
+            work -= spent.max(ahead);
+            if does {
                 works = Some(step);
             } else {
                 fails = step;
@@ -64,9 +68,11 @@ impl Job<'_> {
                 _ => Ok(Error::NoPatch { reason: obstacle.reason, at: obstacle.at.to_array() }),
             };
         };
-        while works - fails > 1 {
+        while works - fails > 1 && work > 0.0 {
             let step = (works + fails) / 2;
-            if self.works(at(step), progress)? {
+            let (does, spent) = self.works(at(step), progress)?;
+            work -= spent;
+            if does {
                 works = step;
             } else {
                 fails = step;
@@ -114,10 +120,12 @@ impl Job<'_> {
         }
     }
 
-    /// Whether the first placement at `n` triangles gives a valid patch.
-    fn works(&mut self, n: usize, progress: Progress<'_>) -> Result<bool> {
+    /// Whether the first placement at `n` triangles gives a valid patch, and the work that its searches took.
+    fn works(&mut self, n: usize, progress: Progress<'_>) -> Result<(bool, f64)> {
         progress.report(0.9)?;
-        Ok(self.attempt(Asked::Cells(n), Effort::Quick, progress)?.is_ok())
+        let begun = self.states.taken();
+        let does = self.attempt(Asked::Cells(n), Effort::Quick, progress)?.is_ok();
+        Ok((does, (self.states.taken() - begun) as f64 / STATES))
     }
 
     /// Length of the drawing in edges at about `n` triangles.

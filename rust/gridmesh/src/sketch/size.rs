@@ -7,14 +7,34 @@ use crate::options::{BoundaryMethod, SketchOptions};
 use crate::patch::mirror;
 use crate::path::outline::{Obstacle, Outline, grown, traced};
 use crate::path::placement::Lattice;
-use crate::progress::Progress;
+use crate::progress::{Meter, Progress};
 use crate::sketch::job::{Asked, Effort, Job, Miss};
 
+/// States that pricing conflicts may take on one lattice, over all corrections of its edge length, beside six for each
+/// state there is: a second or two. And where only the least number of cells that works is looked for.
+const MOST_STATES: u64 = 14_000_000;
+const MOST_STATES_QUICK: u64 = 4_000_000;
+
 impl Job<'_> {
+    /// The outline for one placement, its work noted.
+    pub(super) fn outline(
+        &self,
+        asked: Asked,
+        effort: Effort,
+        angle: f64,
+        shift: DVec2,
+        progress: Progress<'_>,
+    ) -> Result<Result<(Lattice, Outline), Miss>> {
+        let meter = Meter::new(if effort == Effort::Full { MOST_STATES } else { MOST_STATES_QUICK });
+        let found = self.sized(asked, effort, angle, shift, progress.metered(&meter));
+        self.states.add(meter.taken());
+        found
+    }
+
     /// The outline for one placement; with a number of triangles asked for, the edge length is
     /// corrected until the number of cells is reached within 5 % (10 % are accepted in the end). Only then
     /// is a proof worth its time.
-    pub(super) fn outline(
+    fn sized(
         &self,
         asked: Asked,
         effort: Effort,
@@ -31,6 +51,7 @@ impl Job<'_> {
         let mut best: Option<(f64, Lattice, Outline)> = None;
         let mut obstacle =
             Obstacle::new("the number of triangles is not reached", self.contours[0].points()[0]);
+        let mut before = None;
         for _ in 0..CORRECTIONS {
             progress.report(0.0)?;
             let lattice = self.lattice(edge_length, angle, shift);
@@ -38,6 +59,10 @@ impl Job<'_> {
                 Ok(outline) => outline,
                 Err(found) => {
                     obstacle = found;
+                    if effort == Effort::Quick && progress.meter().is_some_and(|meter| meter.left() == 0) {
+                        // With more effort it may end otherwise.
+                        best = None;
+                    }
                     break;
                 }
             };
@@ -53,7 +78,11 @@ impl Job<'_> {
             if off <= 0.05 {
                 break;
             }
-            edge_length *= ratio.sqrt().clamp(0.7, 1.4);
+            // Of a drawing that is all outline the number changes less than by the square.
+            let here = (edge_length.ln(), ratio.ln());
+            let power = before.map_or(2.0, |(h, r): (f64, f64)| (r - here.1) / (here.0 - h));
+            edge_length *= ratio.powf(1.0 / power.clamp(1.0, 2.0)).clamp(0.7, 1.4);
+            before = Some(here);
         }
         let allowed = match asked {
             Asked::EdgeLength(_) => 0.0,

@@ -114,6 +114,7 @@ pub(crate) fn squared_height(flat: &Flat<'_>, profile: Profile, corner_angle: f6
     let mut lifted = 0;
     let gradient = match profile {
         Profile::Round | Profile::Even => {
+            flat.progress.report(0.5)?;
             let slope = gradients(flat, &value, &|_| 1.0, corner_angle);
             let bends = bends(flat, &value, &slope, 1.0);
             let share = |v: usize| if profile == Profile::Even { 1.0 / (1.0 + bends[v].limb) } else { 1.0 };
@@ -146,6 +147,7 @@ type Terms<'a> = (&'a dyn Fn(usize) -> f64, &'a dyn Fn(usize) -> f64);
 fn torsion(flat: &Flat<'_>, terms: Option<Terms<'_>>) -> Result<(Vec<f64>, bool)> {
     let (share, drag) = terms.unwrap_or((&|_| 1.0, &|_| 0.0));
     let areas = lumped_areas(flat.vertices, &flat.patch.triangles);
+    flat.progress.report(0.5)?;
     let factor = flat.pattern.factor(flat.topology, &flat.cotangent, |v| drag(v) * areas[v])?;
     let value = flat.solve(&factor, |v| flat.load(v) * share(v))?;
     if flat.is_positive(&value) {

@@ -84,12 +84,11 @@ fn slide(front: &mut Front, guide: &Guide<'_>, share: f64, progress: Progress<'_
             Ok(point)
         })
         .collect::<Result<Vec<_>>>()?;
-    settle(front, guide, &target);
-    Ok(())
+    settle(front, guide, &target, progress)
 }
 
 /// Moves the vertices in the plane as far towards `target` as the triangles allow.
-fn settle(front: &mut Front, guide: &Guide<'_>, target: &[DVec2]) {
+fn settle(front: &mut Front, guide: &Guide<'_>, target: &[DVec2], progress: Progress<'_>) -> Result<()> {
     const HALVINGS: u32 = 6;
     let field = guide.field;
     let first = front.first;
@@ -99,7 +98,10 @@ fn settle(front: &mut Front, guide: &Guide<'_>, target: &[DVec2]) {
     let mut place = front.place.clone();
     let mut moved: Vec<u32> = (0..n as u32).collect();
     for round in 0.. {
-        for &slot in &moved {
+        for (k, &slot) in moved.iter().enumerate() {
+            if k % ASK_EVERY == 0 {
+                progress.report(0.0)?;
+            }
             let slot = slot as usize;
             let v = first + slot;
             (flat[v], place[slot]) = (front.flat[v], front.place[slot]);
@@ -135,8 +137,12 @@ fn settle(front: &mut Front, guide: &Guide<'_>, target: &[DVec2]) {
         moved = bad;
     }
     for slot in 0..n {
+        if slot % ASK_EVERY == 0 {
+            progress.report(0.0)?;
+        }
         front.height[first + slot] = field.at(flat[first + slot], place[slot]).0.sqrt();
     }
     front.flat = flat;
     front.place = place;
+    Ok(())
 }

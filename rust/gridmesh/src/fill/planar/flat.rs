@@ -225,7 +225,8 @@ impl Contest<'_> {
             }
         }
         let mut made = None;
-        if n > LARGE && !self.even {
+        // With one thread the caller would wait for the other in the middle, deaf.
+        if n > LARGE && !self.even && rayon::current_num_threads() > 1 {
             // Often the lattice does not fit, and both take their time: side by side.
             made = beside(
                 |progress| graded(points, wanted, taken, progress),

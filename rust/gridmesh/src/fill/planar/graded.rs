@@ -28,7 +28,7 @@ pub(in crate::fill) fn graded(
     let n = polygon.len();
     let field = SizeField::new(polygon);
     let mut positions = polygon.to_vec();
-    positions.extend(field.points(polygon));
+    positions.extend(field.points(polygon, progress)?);
     let mut triangles = triangulate(&positions, n, progress)?;
     // An edge that the mesh has already is split, and whatever edges that brings.
     for _ in 0..16 {
@@ -155,7 +155,7 @@ impl SizeField {
 
     /// Vertices of a triangular lattice that is halved until it is as fine as wished, inside the
     /// polygon and not too near its edges; in a fixed order.
-    fn points(&self, polygon: &[DVec2]) -> Vec<DVec2> {
+    fn points(&self, polygon: &[DVec2], progress: Progress<'_>) -> Result<Vec<DVec2>> {
         let low = polygon.iter().fold(DVec2::INFINITY, |a, &b| a.min(b));
         let high = polygon.iter().fold(DVec2::NEG_INFINITY, |a, &b| a.max(b));
         let across = (high - low).max_element();
@@ -164,17 +164,22 @@ impl SizeField {
         let fine = least.max(across * 1e-5).max(f64::MIN_POSITIVE);
         let levels = (4.0 * across / fine).log2().ceil().clamp(1.0, 24.0) as u32;
         let origin = low - DVec2::new(across, 0.5 * across);
-        let descent = Descent { field: self, low, high, origin, fine };
+        let descent = Descent { field: self, low, high, origin, fine, progress };
         let all: Vec<u32> = (0..polygon.len() as u32).collect();
         let mut found = Vec::new();
-        descent.visit(Axial::default(), 1 << levels, 1, &all, &mut found);
+        descent.visit(Axial::default(), 1 << levels, 1, &all, &mut found)?;
         found.sort_unstable_by_key(|f| f.0);
         found.dedup_by_key(|f| f.0);
         let walls = Walls::new(polygon);
         let place = |p: Axial| origin + fine * Lattice::units(p);
         let clear = |(p, size): (Axial, f64)| (walls.depth(place(p)) > CLEARANCE * size).then(|| place(p));
-        let points = found.into_par_iter().with_min_len(256).filter_map(clear).collect();
-        outside_lenses(points, polygon)
+        let mut points = Vec::new();
+        for some in found.chunks(ASK_EVERY) {
+            progress.report(0.0)?;
+            let clear: Vec<DVec2> = some.par_iter().with_min_len(256).copied().filter_map(clear).collect();
+            points.extend(clear);
+        }
+        Ok(outside_lenses(points, polygon))
     }
 }
 
@@ -208,7 +213,11 @@ struct Descent<'a> {
     high: DVec2,
     origin: DVec2,
     fine: f64,
+    progress: Progress<'a>,
 }
+
+/// Points between two questions whether to go on.
+const ASK_EVERY: usize = 1 << 14;
 
 /// With more edges near by, the quarters of a triangle are worth a thread each.
 const MANY: usize = 64;
@@ -217,7 +226,14 @@ impl Descent<'_> {
     /// The triangle with a corner and edges of `edge` steps of the finest lattice, pointing up or
     /// down (`up` = -1); `near` are the edges of the loop that may ask for the least size in it. Found are
     /// corners of the triangles that are small enough, with the size wished there.
-    fn visit(&self, corner: Axial, edge: i32, up: i32, near: &[u32], found: &mut Vec<(Axial, f64)>) {
+    fn visit(
+        &self,
+        corner: Axial,
+        edge: i32,
+        up: i32,
+        near: &[u32],
+        found: &mut Vec<(Axial, f64)>,
+    ) -> Result<()> {
         let place = |p: Axial| self.origin + self.fine * Lattice::units(p);
         let (a, b) = (Axial::new(edge * up, 0), Axial::new(0, edge * up));
         let corners = [corner, corner + a, corner + b];
@@ -225,7 +241,7 @@ impl Descent<'_> {
         let length = f64::from(edge) * self.fine;
         let reach = 0.6 * length;
         if (centre.clamp(self.low, self.high) - centre).length() > reach {
-            return;
+            return Ok(());
         }
         let asked: Vec<f64> = near.iter().map(|&e| self.field.asked(e, centre)).collect();
         let wished = asked.iter().copied().fold(f64::INFINITY, f64::min);
@@ -235,20 +251,22 @@ impl Descent<'_> {
             let size = |p| near.iter().map(|&e| self.field.asked(e, p)).fold(f64::INFINITY, f64::min);
             let sized = corners.map(|p| (p, size(place(p))));
             found.extend(sized);
-            return;
+            return Ok(());
         }
         let half = edge / 2;
         let (a, b) = (Axial::new(half * up, 0), Axial::new(0, half * up));
         let quarters = [(corner, up), (corner + a, up), (corner + b, up), (corner + a + b, -up)];
         if near.len() > MANY {
+            self.progress.report(0.0)?;
             let visited = quarters.into_par_iter().map(|(corner, up)| {
                 let mut own = Vec::new();
-                self.visit(corner, half, up, &near, &mut own);
-                own
+                self.visit(corner, half, up, &near, &mut own).map(|()| own)
             });
-            visited.collect::<Vec<_>>().into_iter().for_each(|own| found.extend(own));
-        } else {
-            quarters.into_iter().for_each(|(corner, up)| self.visit(corner, half, up, &near, found));
+            for own in visited.collect::<Vec<Result<_>>>() {
+                found.extend(own?);
+            }
+            return Ok(());
         }
+        quarters.into_iter().try_for_each(|(corner, up)| self.visit(corner, half, up, &near, found))
     }
 }

@@ -22,10 +22,12 @@ pub(in crate::fill) fn off_lattice(
     let mut positions: Vec<DVec2> = patch.points.iter().map(|&p| Lattice::units(p)).collect();
     let fit = Similarity::between(&positions[..n], points);
     positions.iter_mut().for_each(|p| *p = fit.apply(*p));
+    progress.report(0.0)?;
     let Some(rings) = Rings::new(&patch.triangles, n, positions.len()) else { return Ok(None) };
     let mut moved: Vec<DVec2> = points.iter().zip(&positions).map(|(p, q)| *p - *q).collect();
     moved.extend(spread(&patch.points[..n], &moved, &patch.points[n..]));
-    extend(&rings, &mut positions, moved, f64::from(step(n)), SWEEPS);
+    progress.report(0.0)?;
+    extend(&rings, &mut positions, moved, f64::from(step(n)), SWEEPS, progress)?;
     positions[..n].copy_from_slice(points);
     settle(&rings, &mut positions, progress)?;
     Ok(Some(positions.split_off(n)))
@@ -92,7 +94,7 @@ pub(in crate::fill) fn carried_over(
         let mean = moved.iter().sum::<DVec2>() / n as f64;
         moved.resize(positions.len(), mean);
         let across = (rings.len() as f64).sqrt();
-        extend(&rings, &mut positions, moved, across, 60);
+        extend(&rings, &mut positions, moved, across, 60, progress)?;
         positions[..n].copy_from_slice(points);
         untangle(&rings, &mut positions, 30, progress)?;
     }

@@ -11,6 +11,9 @@ use crate::error::Result;
 use crate::path::placement::ROW_HEIGHT;
 use crate::progress::Progress;
 
+/// Vertices between two questions whether to go on.
+const ASK_EVERY: usize = 1 << 14;
+
 /// The neighbours of each interior vertex, counter-clockwise, the first repeated at the end.
 pub(in crate::fill) struct Rings {
     n_loop: usize,
@@ -76,11 +79,13 @@ pub(in crate::fill) fn extend(
     mut moved: Vec<DVec2>,
     wave: f64,
     sweeps: usize,
-) {
+    progress: Progress<'_>,
+) -> Result<()> {
     let n = rings.n_loop;
     // The best factor for a grid of this diameter.
     let factor = 2.0 / (1.0 + (std::f64::consts::PI / wave.max(2.0)).sin());
     for sweep in 0..sweeps {
+        progress.report(0.0)?;
         let mut largest = 0.0f64;
         let mut visit = |i: usize| {
             let ring = &rings.ring(i)[1..];
@@ -101,6 +106,7 @@ pub(in crate::fill) fn extend(
     for (x, d) in positions[n..].iter_mut().zip(&moved[n..]) {
         *x += *d;
     }
+    Ok(())
 }
 
 /// Sweeps around inverted triangles until there is none; false if some stay.
@@ -159,9 +165,11 @@ pub(in crate::fill) fn even_out(
 ) -> Result<usize> {
     let n = rings.n_loop;
     for sweep in 0..sweeps {
-        progress.report(sweep as f64 / sweeps as f64)?;
         let mut moved = 0;
         for i in 0..rings.len() {
+            if i % ASK_EVERY == 0 {
+                progress.report(sweep as f64 / sweeps as f64)?;
+            }
             if !std::mem::take(&mut active[i]) {
                 continue;
             }

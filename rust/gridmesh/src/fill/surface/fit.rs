@@ -93,7 +93,7 @@ impl Shape {
         for (k, &v) in work.outer.iter().enumerate() {
             positions[work.end + k] = mesh[v as usize];
         }
-        let membrane = if work.inner().is_empty() { None } else { self.film(&mut positions)? };
+        let membrane = if work.inner().is_empty() { None } else { self.film(&mut positions, progress)? };
         let rim_angle = rim_angle(work, &positions);
         progress.report(0.2)?;
         let mut solved = Solved { positions, faults: Faults::default(), repaired: 0, rim_angle };
@@ -167,7 +167,7 @@ impl Shape {
     }
 
     /// Places the new vertices on a film in the loop.
-    fn film(&self, positions: &mut [DVec3]) -> Result<Option<Membrane<'_>>> {
+    fn film(&self, positions: &mut [DVec3], progress: Progress<'_>) -> Result<Option<Membrane<'_>>> {
         let work = &self.work;
         let around = &positions[..work.n];
         if let Some(lift) = lift(around, &self.flat) {
@@ -177,7 +177,9 @@ impl Shape {
             return Ok(None);
         }
         let weights = work.cotangents(&self.laid_out());
+        progress.report(0.05)?;
         let membrane = Membrane::new(work)?;
+        progress.report(0.1)?;
         let film = membrane.harmonic(&weights, |v| positions[v].to_array())?;
         for (v, p) in work.inner().zip(film) {
             positions[v] = p.into();
@@ -198,6 +200,7 @@ impl Shape {
         progress.report(0.1)?;
         bending.positions(positions)?;
         sound(positions)?;
+        progress.report(0.15)?;
         let membrane = match (self.smooth, membrane) {
             (Smooth::Curvature, None) => Some(Membrane::new(work)?),
             (Smooth::Curvature, some) => some,

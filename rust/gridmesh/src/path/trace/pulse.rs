@@ -1,6 +1,6 @@
 //! Counts the work of searches, and asks from time to time whether to go on.
 
-use crate::progress::Progress;
+use crate::progress::{Meter, Progress};
 
 /// States between two questions: about a millisecond.
 const EVERY: u64 = 1 << 14;
@@ -30,9 +30,11 @@ impl<'a> Pulse<'a> {
     }
 
     /// From now on so much work is allowed as a boundary with so many states may be worth. Of the drawings
-    /// that were measured one with a result, a long sliver, took more than half of it, all others less.
+    /// that were measured one with a result, a long sliver, took more than half of it, all others less. Where the
+    /// meter has less left than that, it is less.
     pub fn limit(&mut self, states: usize) {
-        self.limit = self.taken + 12_000_000 + 6 * states as u64;
+        let left = self.progress.meter().map_or(u64::MAX, Meter::left);
+        self.limit = self.taken + left.min(12_000_000) + 6 * states as u64;
     }
 
     /// Takes the limit back.
@@ -53,6 +55,14 @@ impl<'a> Pulse<'a> {
     fn ask(&mut self) {
         self.next = self.taken + EVERY;
         self.is_stopped = self.is_stopped || self.progress.report(0.0).is_err();
+    }
+}
+
+impl Drop for Pulse<'_> {
+    fn drop(&mut self) {
+        if let Some(meter) = self.progress.meter() {
+            meter.add(self.taken);
+        }
     }
 }
 
