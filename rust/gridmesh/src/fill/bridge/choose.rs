@@ -3,7 +3,7 @@
 use super::align::Ring;
 use super::loft::Loft;
 use super::rings::Rings;
-use super::route::{Path, Side, Target, Wishes, route};
+use super::route::{NEVER, Path, Side, Target, Wishes, route, straight};
 use super::tube::{Bound, Tube, is_tube, stacked, tube};
 use crate::error::{Error, Result};
 use crate::path::placement::ROW_HEIGHT;
@@ -13,14 +13,20 @@ use crate::progress::Progress;
 const SAMPLES: usize = 64;
 
 /// Cost of a squared ring, and of a squared step along it, off the target, where there are few rows.
-const ACROSS: f64 = 0.3;
-const ALONG: f64 = 0.08;
+const ACROSS: f64 = 0.6;
+const ALONG: f64 = 0.2;
 
 /// So many rows are few: with more of them the same distance off matters less.
 const FEW: f64 = 4.0;
 
 /// A choice that costs less than this share of a triangle per loop vertex ends the search.
 const ENOUGH: f64 = 0.02;
+
+/// Of its steps a path rises by at most this share, and falls as often.
+const MOST_RISES: f64 = 0.33;
+
+/// Loops count as differently uneven if a vertex is this many steps further than by its number.
+const UNEVEN: f64 = 1.5;
 
 /// Triangles at most.
 const LIMIT: f64 = 2e7;
@@ -148,7 +154,7 @@ impl<'a> Chooser<'a> {
         let candidates = self.candidates();
         for (k, candidate) in candidates.iter().enumerate() {
             let progress = progress.part(k as f64 / candidates.len() as f64, 1.0);
-            let bound = best.as_ref().map_or(f64::INFINITY, |best| best.0);
+            let bound = best.as_ref().map_or(NEVER, |best| best.0);
             if 2.0 * candidate.growth as f64 >= bound + 2.0 * self.spared(candidate.growth) {
                 continue;
             }
@@ -198,8 +204,9 @@ impl<'a> Chooser<'a> {
         let varied = (0..SAMPLES).map(rise).sum::<f64>();
         let mut found: Vec<Candidate> = vec![];
         for growth in growths {
-            let both = (0.5 * (varied - (more - growth * mean))).clamp(0.0, 0.25 * self.lower.len() as f64);
-            for part in [0.0, 0.5, 1.0] {
+            let both =
+                (0.5 * (varied - (more - growth * mean))).clamp(0.0, MOST_RISES * self.lower.len() as f64);
+            for part in [0.0, 1.0] {
                 let rises = (part * both).round();
                 let share = if rises > 0.0 { (rises / varied).min(1.0) } else { 0.0 };
                 let it = Candidate { growth: growth as usize, rises: rises as usize, share };
@@ -238,21 +245,26 @@ impl<'a> Chooser<'a> {
         let below = targets(self.lower, &own, 0.0, -it.share);
         let least = rings.first;
         let wishes = Wishes { rings: &rings, side: Side::Above, least, most: split, targets: &below };
-        let Some(lower) = route(&wishes, progress.part(0.0, 0.3))? else { return Ok(None) };
+        let lower = match it.rises {
+            0 => Some(straight(&wishes)),
+            _ => route(&wishes, bound, progress.part(0.0, 0.3))?,
+        };
+        let Some(lower) = lower else { return Ok(None) };
         if lower.cost >= bound {
             return Ok(None);
         }
         let mut found = None;
+        let (n, start) = (self.upper.len(), self.places[0]);
+        let off = |k: usize| (start + k as f64 / n as f64 - self.places[k]).abs();
+        let uneven = (0..n).map(off).fold(0.0, f64::max) * n as f64 > UNEVEN;
         // Loops that are uneven in different ways are matched by numbers, as far as it needs.
-        for evenly in [0.0, 0.5, 1.0] {
-            let n = self.upper.len();
-            let start = self.places[0];
+        for evenly in if uneven { &[0.0, 0.5, 1.0][..] } else { &[0.0] } {
             let place = |k: usize| self.places[k] + evenly * (start + k as f64 / n as f64 - self.places[k]);
             let places = (0..n).map(place).collect::<Vec<_>>();
             let above = targets(self.upper, &places, mean, 1.0 - it.share);
             let (least, most) = (split + self.least, i64::MAX / 4);
             let wishes = Wishes { rings: &rings, side: Side::Below, least, most, targets: &above };
-            found = route(&wishes, progress.part(0.3, 1.0))?;
+            found = route(&wishes, bound - lower.cost, progress.part(0.3, 1.0))?;
             if found.is_some() {
                 break;
             }

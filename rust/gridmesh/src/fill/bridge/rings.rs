@@ -23,6 +23,19 @@ pub(super) struct Place {
     pub corners: i64,
 }
 
+impl Place {
+    /// The neighbours on the next ring: the first and the last.
+    pub fn up(self, node: Node) -> [Node; 2] {
+        let up = |more: i64| Node { ring: node.ring + 1, at: node.at + self.before + more };
+        [up(0), up(1 + self.corners)]
+    }
+
+    /// The last neighbour on the ring before.
+    pub fn down(self, node: Node) -> Node {
+        Node { ring: node.ring - 1, at: node.at - self.before - self.corners }
+    }
+}
+
 /// The rings from `first` on.
 #[derive(Clone, Debug)]
 pub(super) struct Rings {
@@ -89,15 +102,7 @@ impl Rings {
 
     /// The neighbours on the next ring: the first and the last.
     pub fn up(&self, node: Node) -> [Node; 2] {
-        let Place { before, corners } = self.place(node);
-        let up = |more: i64| Node { ring: node.ring + 1, at: node.at + before + more };
-        [up(0), up(1 + corners)]
-    }
-
-    /// The last neighbour on the ring before.
-    pub fn down(&self, node: Node) -> Node {
-        let Place { before, corners } = self.place(node);
-        Node { ring: node.ring - 1, at: node.at - before - corners }
+        self.place(node).up(node)
     }
 
     /// The vertex as numbered within one round.
@@ -173,7 +178,7 @@ mod tests {
                     let node = Node { ring, at };
                     let [first, last] = rings.up(node);
                     assert_eq!(last.at - first.at + 1 + below[at as usize], 4);
-                    let down = rings.down(node);
+                    let down = rings.place(node).down(node);
                     let [first, last] = rings.up(down);
                     assert!((first.at..=last.at).contains(&at), "{node:?} {down:?}");
                 }

@@ -11,10 +11,10 @@ use crate::progress::Progress;
 /// Cost of a triangle too many or too few at a vertex.
 pub(super) const TURN: f64 = 1.0;
 
-const NEVER: f64 = 1e18;
+pub(super) const NEVER: f64 = 1e18;
 
 /// Steps along a ring and rings that a vertex may be off its target.
-const ALONG: i64 = 3;
+const ALONG: i64 = 2;
 const ACROSS: i64 = 2;
 const WIDTH: usize = 2 * ALONG as usize + 1;
 const CELLS: usize = WIDTH * (2 * ACROSS as usize + 1);
@@ -68,18 +68,31 @@ struct Layers<'a> {
     middles: Vec<[i64; 2 * ACROSS as usize + 1]>,
 }
 
-/// The cheapest path, if there is one.
+/// The path along ring 0, which is the only one of its length.
+pub(super) fn straight(wishes: &Wishes<'_>) -> Path {
+    let layers = Layers::new(wishes);
+    let nodes = (0..wishes.targets.len() as i64).map(|at| Node { ring: 0, at }).collect::<Vec<_>>();
+    let cost = |(layer, &node): (usize, &Node)| {
+        let corners = wishes.rings.place(node).corners;
+        let turn = layers.turn(layer, corners, LEVEL, LEVEL).unwrap_or(NEVER);
+        turn + layers.off(layer, node, wishes.rings.around(node))
+    };
+    let cost = nodes.iter().enumerate().map(cost).sum();
+    Path { nodes, cost }
+}
+
+/// The cheapest path, if there is one that costs less than `most`.
 ///
-/// The start is that of the cheapest path twice around which need not close; from there all is exact.
-pub(super) fn route(wishes: &Wishes<'_>, progress: Progress<'_>) -> Result<Option<Path>> {
+/// The start is that of the cheapest path a little more than once around which need not close; from there all is exact.
+pub(super) fn route(wishes: &Wishes<'_>, most: f64, progress: Progress<'_>) -> Result<Option<Path>> {
     let n = wishes.targets.len();
     let layers = Layers::new(wishes);
     progress.report(0.0)?;
-    let Some(start) = layers.start() else { return Ok(None) };
+    let Some(start) = layers.start(most) else { return Ok(None) };
     progress.report(0.5)?;
     let mut open = vec![NEVER; STATES];
     open[start] = 0.0;
-    let (last, came) = layers.run(open, 0, n);
+    let (last, came) = layers.run(open, 0, n, most);
     if last[start] >= NEVER {
         return Ok(None);
     }
@@ -133,39 +146,46 @@ impl<'a> Layers<'a> {
     }
 
     /// Cost of a vertex off its target.
-    fn off(&self, layer: usize, node: Node) -> f64 {
+    fn off(&self, layer: usize, node: Node, around: f64) -> f64 {
         let target = &self.wishes.targets[layer % self.len()];
         let round = (layer / self.len()) as f64;
-        let rings = self.wishes.rings;
-        let along = (rings.around(node) - round - target.around) * rings.len(node.ring) as f64;
+        let along = (around - round - target.around) * self.wishes.rings.len(node.ring) as f64;
         let across = node.ring as f64 - target.ring;
         target.along * along * along + target.across * across * across
     }
 
     /// Costs of all states `steps` layers after `layer`, and for each layer and state the one before.
-    fn run(&self, open: Vec<f64>, layer: usize, steps: usize) -> (Vec<f64>, Vec<Vec<u16>>) {
+    fn run(&self, open: Vec<f64>, layer: usize, steps: usize, most: f64) -> (Vec<f64>, Vec<Vec<u16>>) {
+        let rings = self.wishes.rings;
         let (mut here, mut came) = (open, Vec::with_capacity(steps));
         for layer in layer..layer + steps {
             let mut there = vec![NEVER; STATES];
             let mut from = vec![0u16; STATES];
             let mut offs = [f64::NAN; CELLS];
             for cell in 0..CELLS {
-                if here[3 * cell..3 * cell + 3].iter().all(|&cost| cost >= NEVER) {
+                if here[3 * cell..3 * cell + 3].iter().all(|&cost| cost >= most) {
                     continue;
                 }
                 let node = self.node(layer, 3 * cell);
+                let place = rings.place(node);
                 for way in [LEVEL, RISING, FALLING] {
-                    let Some(next) = self.step(node, way) else { continue };
+                    let next = match way {
+                        LEVEL => Node { at: node.at + 1, ..node },
+                        RISING => place.up(node)[1],
+                        // From a corner down is the ray itself, which would be entered from no side.
+                        _ if node.ring > rings.first && place.corners == 0 => place.down(node),
+                        _ => continue,
+                    };
                     let Some(to) = self.cell(layer + 1, next) else { continue };
                     if offs[to].is_nan() {
-                        offs[to] = self.off(layer + 1, next);
+                        offs[to] = self.off(layer + 1, next, rings.around(next));
                     }
                     for entered in [LEVEL, RISING, FALLING] {
                         let so_far = here[3 * cell + entered];
-                        if so_far >= NEVER {
+                        if so_far >= most {
                             continue;
                         }
-                        let Some(turn) = self.turn(layer, node, entered, way) else { continue };
+                        let Some(turn) = self.turn(layer, place.corners, entered, way) else { continue };
                         let cost = so_far + turn + offs[to];
                         if cost < there[3 * to + way] {
                             there[3 * to + way] = cost;
@@ -180,20 +200,8 @@ impl<'a> Layers<'a> {
         (here, came)
     }
 
-    fn step(&self, node: Node, way: usize) -> Option<Node> {
-        let rings = self.wishes.rings;
-        match way {
-            RISING => Some(rings.up(node)[1]),
-            // From a corner down is the ray itself, which would be entered from no side.
-            FALLING if node.ring > rings.first && rings.place(node).corners == 0 => Some(rings.down(node)),
-            FALLING => None,
-            _ => Some(Node { at: node.at + 1, ..node }),
-        }
-    }
-
     /// The cost of the triangles at a vertex.
-    fn turn(&self, layer: usize, node: Node, entered: usize, left: usize) -> Option<f64> {
-        let corners = self.wishes.rings.place(node).corners;
+    fn turn(&self, layer: usize, corners: i64, entered: usize, left: usize) -> Option<f64> {
         // Edges up, and in all; sides are counted counter-clockwise from the step along the ring.
         let up = 2 + corners;
         let came = match entered {
@@ -215,22 +223,23 @@ impl<'a> Layers<'a> {
     }
 
     /// The state in which a path that need not close is after a round.
-    fn start(&self) -> Option<usize> {
+    fn start(&self, most: f64) -> Option<usize> {
         let n = self.len();
+        let more = (n / 3).clamp(3, 30);
         let mut open = vec![NEVER; STATES];
         for cell in 0..CELLS {
             let node = self.node(0, 3 * cell);
             if self.cell(0, node).is_some() {
-                open[3 * cell] = self.off(0, node);
+                open[3 * cell] = self.off(0, node, self.wishes.rings.around(node));
             }
         }
-        let (last, came) = self.run(open, 0, 2 * n);
+        let (last, came) = self.run(open, 0, n + more, 2.0 * most.min(0.4 * NEVER));
         let best = (0..STATES).min_by(|&a, &b| last[a].total_cmp(&last[b]))?;
         if last[best] >= NEVER {
             return None;
         }
         let mut state = best;
-        for layer in (n + 1..=2 * n).rev() {
+        for layer in (n + 1..=n + more).rev() {
             state = came[layer - 1][state] as usize;
         }
         Some(state)
@@ -261,7 +270,7 @@ mod tests {
     fn path(rings: &Rings, n: usize, ring: impl Fn(f64) -> f64, least: i64) -> Option<Path> {
         let targets = targets(n, ring);
         let wishes = Wishes { rings, side: Side::Below, least, most: 30, targets: &targets };
-        route(&wishes, Progress::NONE).unwrap()
+        route(&wishes, NEVER, Progress::NONE).unwrap()
     }
 
     #[test]

@@ -15,7 +15,10 @@ const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
 const HALVINGS: usize = 4;
 
 /// Sweeps end when a mean vertex gains less than this share of a good triangle.
-const SETTLED: f64 = 2e-3;
+const SETTLED: f64 = 1e-3;
+
+/// The badness of a triangle counts to this power, and one: the worst ones most.
+const POWER: i32 = 6;
 
 /// Moves the vertices between the loops. `flat`: where all vertices are on the loft; those of the loops stay.
 pub(super) fn settle(
@@ -68,8 +71,9 @@ fn moved(work: &Patchwork, loft: &Loft, flat: &mut [DVec2], positions: &mut [DVe
         let (sides, area, widen) = shape(a, b, normal);
         let ds = -2.0 * (a + b);
         let (ds, da) = (DVec2::new(ds.dot(e), ds.dot(f)), DVec2::new(widen.dot(e), widen.dot(f)));
-        present += sides / area / EQUILATERAL;
-        let weight = 1.0 / area;
+        let badness = sides / area / EQUILATERAL;
+        present += badness.powi(POWER + 1);
+        let weight = badness.powi(POWER) / area;
         slope += weight * (ds - da * (sides / area));
         let (m, n) = (1.0 / area, 2.0 * sides / (area * area));
         xx += weight * (4.0 - 2.0 * m * ds.x * da.x + n * da.x * da.x);
@@ -93,7 +97,7 @@ fn moved(work: &Patchwork, loft: &Loft, flat: &mut [DVec2], positions: &mut [DVe
             let sum = fan.iter().filter(own).map(|&[_, i, j]| {
                 let (sides, area, _) =
                     shape(positions[i as usize] - point, positions[j as usize] - point, normal);
-                sides / area / EQUILATERAL
+                (sides / area / EQUILATERAL).powi(POWER + 1)
             });
             let sum = sum.sum::<f64>();
             if sum < present {
