@@ -50,6 +50,7 @@ def unregister() -> None:
 
 def _classes() -> tuple[type, ...]:
     from .bodies import operator as strokes
+    from .bridge import operator as bridge
     from .cut import operator as cut
     from .draw import operator as draw
     from .fill import operator as fill
@@ -63,6 +64,7 @@ def _classes() -> tuple[type, ...]:
     return (
         *strokes.classes,
         *fill.classes,
+        *bridge.classes,
         *cut.classes,
         *pictures.classes,
         *overlay.classes,

@@ -13,6 +13,7 @@ ENTRIES = (
     ("Grease Pencil Paint Mode", "object.gridmesh_from_strokes"),
     ("Grease Pencil Edit Mode", "object.gridmesh_from_strokes"),
     ("Mesh", "mesh.gridmesh_fill"),
+    ("Mesh", "mesh.gridmesh_bridge"),
     ("Object Mode", "object.gridmesh_cut"),
     ("Mesh", "object.gridmesh_cut"),
     ("Object Mode", "object.gridmesh_from_image"),

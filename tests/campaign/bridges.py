@@ -98,7 +98,7 @@ def faults(case, fill):
         found.append("the loops are not those given")
     everything = np.r_[case.triangles, fill.triangles].astype(np.int64)
     sides = everything[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    edges, counts = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
+    _, counts = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
     own = np.sort(fill.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     own, times = np.unique(own, axis=0, return_counts=True)
     wanted = np.sort(np.vstack([np.c_[loop, np.roll(loop, -1)] for loop in case.loops]), axis=1)
