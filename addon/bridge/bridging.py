@@ -99,5 +99,7 @@ def warnings_of(report: dict) -> list[str]:
         faces = counted(report["winding_conflicts"], "face")
         warnings.append(f"{faces} at the loops look the other way than the tube; recalculate the normals")
     if report["grid"] == "graded":
-        warnings.append("No regular lattice suits these numbers of edges; choose other rows or subdivide a loop")
+        warnings.append(
+            "No regular lattice suits these numbers of edges; choose other rows or subdivide a loop"
+        )
     return warnings

@@ -106,13 +106,14 @@ class MESH_OT_gridmesh_bridge(bpy.types.Operator):  # noqa: N801
         made = f"{counted(quads, 'quad')} and {made}" if quads else made
         irregular = sum(job.report["irregular"] for job in jobs)
         rows = max(job.report["rows"] for job in jobs)
-        self.result = (
-            f"Joined by {counted(rows, 'row')}: {made}, {counted(irregular, 'irregular vertex')}, {1000 * seconds:.0f} ms"
-        )
+        self.result = f"Joined by {counted(rows, 'row')}: {made}, {counted(irregular, 'irregular vertex')}, {1000 * seconds:.0f} ms"
         self.report({"INFO"}, told(self.result))
         torn = sum(job.added.torn for job in jobs)
         if torn:
-            self.report({"INFO"}, told("UVs or colours are torn at the loops: continued from the longest stretch of each"))
+            self.report(
+                {"INFO"},
+                told("UVs or colours are torn at the loops: continued from the longest stretch of each"),
+            )
         for job in jobs:
             for warning in warnings_of(job.report):
                 self.report({"WARNING"}, told(warning))

@@ -133,7 +133,9 @@ class Measure:
 def measure(case, fill, seconds):
     """Regularity and shape, from the mesh alone."""
     loops = np.concatenate(case.loops)
-    valence = np.bincount(np.unique(np.sort(all_sides(case.triangles, fill.triangles), axis=1), axis=0).ravel())
+    valence = np.bincount(
+        np.unique(np.sort(all_sides(case.triangles, fill.triangles), axis=1), axis=0).ravel()
+    )
     outside = np.full(len(case.vertices), 4)
     if len(case.triangles):
         around = np.unique(np.sort(all_sides(case.triangles), axis=1), axis=0)
@@ -199,7 +201,14 @@ def main():
         return
     wrong, measures = campaign(options.cases, options.seed)
     print(f"{options.cases} pairs of loops, seed {options.seed}: {len(wrong)} broken {wrong or ''}")
-    for name, best in [("irregular", 0), ("excess", 0), ("angle", 1), ("ratio", 1), ("meetings", 0), ("seconds", 0)]:
+    for name, best in [
+        ("irregular", 0),
+        ("excess", 0),
+        ("angle", 1),
+        ("ratio", 1),
+        ("meetings", 0),
+        ("seconds", 0),
+    ]:
         values = np.array([getattr(it, name) for it in measures])
         tail = np.percentile(values, 10 if best else 90)
         print(f"{name:10} median {np.median(values):.4f}  mean {values.mean():.4f}  one in ten {tail:.4f}")

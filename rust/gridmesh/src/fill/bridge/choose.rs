@@ -28,6 +28,9 @@ const MOST_RISES: f64 = 0.33;
 /// Loops count as differently uneven if a vertex is this many steps further than by its number.
 const UNEVEN: f64 = 1.5;
 
+/// Rows are even if they differ by no more from a whole number.
+const EVEN: f64 = 0.4;
+
 /// Triangles at most.
 const LIMIT: f64 = 2e7;
 
@@ -150,6 +153,9 @@ impl<'a> Chooser<'a> {
     /// [`Error::Cancelled`].
     pub fn lattice(&self, progress: Progress<'_>) -> Result<Option<Chosen>> {
         let enough = ENOUGH * (self.lower.len() + self.upper.len()) as f64;
+        if let Some(tube) = self.even(progress)? {
+            return Ok(Some(Chosen { tube, lattice: true }));
+        }
         let mut best: Option<(f64, Chosen)> = None;
         let candidates = self.candidates();
         for (k, candidate) in candidates.iter().enumerate() {
@@ -166,6 +172,19 @@ impl<'a> Chooser<'a> {
             }
         }
         Ok(best.map(|best| best.1))
+    }
+
+    /// The tube of as many rows everywhere, if they are to be even and the counts differ by as much in each.
+    fn even(&self, progress: Progress<'_>) -> Result<Option<Tube>> {
+        let rows = self.mean().round();
+        let more = self.upper.len() - self.lower.len();
+        let uneven = self.rows.iter().any(|own| (own - rows).abs() > EVEN);
+        if uneven || !more.is_multiple_of(rows as usize) {
+            return Ok(None);
+        }
+        let it = Candidate { growth: more / rows as usize, rises: 0, share: 0.0 };
+        let found = self.tried(it, NEVER, progress)?;
+        Ok(found.map(|found| found.1).filter(|tube| tube.least == rows && tube.most == rows))
     }
 
     /// Corners that vertices may want.

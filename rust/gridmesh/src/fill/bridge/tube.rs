@@ -22,6 +22,9 @@ pub(super) struct Tube {
     pub height: Vec<f64>,
     /// Rings between the paths, on average.
     pub rows: f64,
+    /// The least and the most rings from the lowest place of the lower path to the upper one.
+    pub least: f64,
+    pub most: f64,
 }
 
 /// Triangles of the strip above a ring that a path leaves on its lower side, by the sum of the numbers of their first edge's ends.
@@ -80,7 +83,8 @@ pub(super) fn tube(rings: &Rings, lower: &Bound<'_>, upper: &Bound<'_>) -> Resul
     }
     let least = lower.iter().map(|node| node.ring).min().unwrap_or(0);
     let most = upper.iter().map(|node| node.ring).max().unwrap_or(0);
-    let mut tube = Tube { triangles: vec![], around: vec![], height: vec![], rows: 0.0 };
+    let mut tube =
+        Tube { triangles: vec![], around: vec![], height: vec![], rows: 0.0, least: 0.0, most: 0.0 };
     for ring in least..most {
         let (under, over) = (Below::new(rings, lower, ring), Below::new(rings, upper, ring));
         let mut enter = |corners: [Node; 3]| {
@@ -113,6 +117,8 @@ pub(super) fn tube(rings: &Rings, lower: &Bound<'_>, upper: &Bound<'_>) -> Resul
         }
     }
     tube.rows = top.mean() - bottom.mean();
+    let nearest = upper.iter().map(|node| node.ring).min().unwrap_or(0);
+    (tube.least, tube.most) = ((nearest - least) as f64, (most - least) as f64);
     Ok(tube)
 }
 
@@ -161,7 +167,14 @@ impl Profile {
 pub(super) fn stacked(lengths: &[usize]) -> Tube {
     let (m, n) = (lengths[0], lengths[lengths.len() - 1]);
     let rows = lengths.len() - 1;
-    let mut tube = Tube { triangles: vec![], around: vec![], height: vec![], rows: rows as f64 };
+    let mut tube = Tube {
+        triangles: vec![],
+        around: vec![],
+        height: vec![],
+        rows: rows as f64,
+        least: rows as f64,
+        most: rows as f64,
+    };
     let mut first = vec![0u32];
     for (row, &length) in lengths.iter().enumerate().take(rows).skip(1) {
         first.push((m + n + tube.around.len()) as u32);
