@@ -93,13 +93,13 @@ def joined(make, *, ours: bool):
         face.smooth = True
     loops = [e for e in bm.edges if e.is_boundary]
     # Of a pipe's two ends the inner one.
-    middle = sum((v.co for v in bm.verts), Vector()) / len(bm.verts)
-    if make is not spheres:
-        near = []
-        for piece in pieces(loops):
-            near.append((sum((v.co for e in piece for v in e.verts), Vector()) / (2 * len(piece)), piece))
-        near.sort(key=lambda item: (item[0] - middle).length)
-        loops = [e for _, piece in near[:2] for e in piece]
+    centres = [
+        (sum((v.co for e in piece for v in e.verts), Vector()) / (2 * len(piece)), piece)
+        for piece in pieces(loops)
+    ]
+    middle = sum((centre for centre, _ in centres), Vector()) / len(centres)
+    centres.sort(key=lambda item: (item[0] - middle).length)
+    loops = [edge for _, piece in centres[:2] for edge in piece]
     for edge in loops:
         edge.select_set(True)
     bm.to_mesh(mesh)
@@ -155,7 +155,7 @@ def main() -> None:
                 ob.data.materials.append(material)
             ob.rotation_euler = (0.35, 0, 0)
             ob.location = ((k - 1) * STEP, 0, (row - 0.5) * RISE)
-    fills.stage(3 * STEP, 2 * RISE + 0.1, 1000, 24)
+    fills.stage(3 * STEP, 2 * RISE + 0.1, 1000, 12)
     bpy.context.scene.render.filepath = str(picture)
     with gallery.quiet():
         bpy.ops.render.render(write_still=True)
