@@ -51,6 +51,7 @@ def unregister() -> None:
 
 def _classes() -> tuple[type, ...]:
     from .bodies import operator as strokes
+    from .bridge import operator as bridge
     from .cut import operator as cut
     from .draw import operator as draw
     from .fill import operator as fill
@@ -67,6 +68,7 @@ def _classes() -> tuple[type, ...]:
         *strokes.classes,
         *fill.classes,
         *regrid.classes,
+        *bridge.classes,
         *cut.classes,
         *pictures.classes,
         *weights_operator.classes,

@@ -209,15 +209,6 @@ def fill(
     gridmesh = native("fill_holes")
     indices = [np.asarray(loop, np.int32) for loop in loops]
 
-    def filled(fill: Any) -> Filled | str:
-        if isinstance(fill, gridmesh.GridMeshError):
-            return str(fill)
-        try:
-            solved = [fill.vertices if pose is vertices else fill.refit(pose) for pose in poses]
-        except gridmesh.GridMeshError as error:
-            return f"in another shape key {error}"
-        return Filled(fill.vertices, fill.triangles, fill.creases, solved, dict(fill.report), fill.extend)
-
     try:
         fills = gridmesh.fill_holes(
             vertices,
@@ -229,7 +220,7 @@ def fill(
             creases=creases,
             progress=progress,
         )
-        return [filled(fill) for fill in fills]
+        return [_filled(gridmesh, fill, vertices, poses) for fill in fills]
     except KeyboardInterrupt as error:
         raise CancelledError from error
     except gridmesh.GridMeshError as error:
@@ -296,6 +287,56 @@ def regrid(
         unused=done.unused,
         report={**done.fill.report, "off": done.off},
     )
+
+
+def bridge(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    loop: Sequence[int],
+    other: Sequence[int],
+    *,
+    smooth: str,
+    rows: int | None = None,
+    twist: float = 0.0,
+    polygons: np.ndarray | None = None,
+    poses: Sequence[np.ndarray] = (),
+    progress: Progress | None = None,
+) -> Filled | str:
+    """Join two loops of a mesh by a tube: the patch, or the reason why there is none.
+
+    rows : of triangles, None for as many as suit. twist : radians from the best fit. The others are as of `fill`. Raises
+    NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
+    """
+    gridmesh = native("bridge")
+    try:
+        made = gridmesh.bridge(
+            vertices,
+            triangles,
+            np.asarray(loop, np.int32),
+            np.asarray(other, np.int32),
+            smooth=smooth,
+            rows=rows,
+            twist=twist,
+            polygons=polygons,
+            progress=progress,
+        )
+        return _filled(gridmesh, made, vertices, poses)
+    except KeyboardInterrupt as error:
+        raise CancelledError from error
+    except gridmesh.GridMeshError as error:
+        if error.kind == "cancelled":
+            raise CancelledError from error
+        return str(error)
+
+
+def _filled(gridmesh: Any, fill: Any, vertices: np.ndarray, poses: Sequence[np.ndarray]) -> Filled | str:
+    if isinstance(fill, gridmesh.GridMeshError):
+        return str(fill)
+    try:
+        solved = [fill.vertices if pose is vertices else fill.refit(pose) for pose in poses]
+    except gridmesh.GridMeshError as error:
+        return f"in another shape key {error}"
+    return Filled(fill.vertices, fill.triangles, fill.creases, solved, dict(fill.report), fill.extend)
 
 
 AUTOMATIC = 4000.0

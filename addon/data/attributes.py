@@ -31,23 +31,23 @@ _OF_GEOMETRY = ("crease", "bevel_weight", "custom_normal")
 
 
 class Surroundings:
-    """Data at a loop, read before the patch is there."""
+    """Data at the loops of a patch, read before the patch is there."""
 
-    def __init__(self, bm: Any, loop: Sequence[Any]) -> None:
+    def __init__(self, bm: Any, *loops: Sequence[Any]) -> None:
         """Read it.
 
-        bm : BMesh. loop : its BMVerts in order.
+        bm : BMesh. loops : BMVerts in order, of the one loop of a patch or of both.
         """
-        self.loop = list(loop)
-        neighbours = [_neighbour(a, b) for a, b in _edges(loop)]
-        self.faces = [corners[0].face for corners in neighbours if corners is not None]
-        """The face at each edge of the loop that has one."""
+        self.loop = loop = [vertex for loop in loops for vertex in loop]
+        neighbours = [[_neighbour(a, b) for a, b in _edges(loop)] for loop in loops]
+        self.faces = [corners[0].face for part in neighbours for corners in part if corners is not None]
+        """The face at each edge of the loops that has one."""
         parts: list[Any] = [_Vertices(layer, loop) for layer in layers_of(bm.verts.layers, _FLOATS)]
         deform = bm.verts.layers.deform.active
         if deform is not None:
             parts += [_Weights(deform, group, loop) for group in groups_of(loop, deform)]
-        arc = np.array([(a.co - b.co).length for a, b in _edges(loop)])
-        corners = [_Corners(layer, neighbours, arc) for layer in layers_of(bm.loops.layers, _CORNERS)]
+        arcs = [np.array([(a.co - b.co).length for a, b in _edges(loop)]) for loop in loops]
+        corners = [_Corners(layer, neighbours, arcs) for layer in layers_of(bm.loops.layers, _CORNERS)]
         parts += [part for part in corners if part.values is not None]
         self._parts = [part for part in parts if np.isfinite(part.values).all()]
         self._common = [
@@ -168,22 +168,36 @@ class _Weights:
 class _Corners:
     """A layer of floats, vectors or colours of face corners, UV maps among them."""
 
-    def __init__(self, layer: Any, neighbours: Sequence[Any], arc: np.ndarray) -> None:
+    def __init__(self, layer: Any, loops: Sequence[Sequence[Any]], arcs: Sequence[np.ndarray]) -> None:
         self.layer = layer
-        known = next((corners for corners in neighbours if corners is not None), None)
+        known = next((corners for loop in loops for corners in loop if corners is not None), None)
         self.values, self.torn = None, False
         if known is None:
             return
         self.is_uv = hasattr(known[0][layer], "uv")
         self.scalar = isinstance(known[0][layer], float)
         width = len(self._read(known[0]))
+        found = [self._settled(loop, arc, width) for loop, arc in zip(loops, arcs, strict=True)]
+        self.torn = any(torn for _, torn in found)
+        # A loop of wires has what the other has in the mean.
+        mean = np.concatenate([values for values, _ in found if values is not None]).mean(axis=0)
+        self.values = np.concatenate(
+            [
+                np.broadcast_to(mean, (len(arc), width)) if values is None else values
+                for (values, _), arc in zip(found, arcs, strict=True)
+            ]
+        )
+
+    def _settled(
+        self, neighbours: Sequence[Any], arc: np.ndarray, width: int
+    ) -> tuple[np.ndarray | None, bool]:
         after = np.full((len(neighbours), width), np.nan)
         before = after.copy()
         for at, corners in enumerate(neighbours):
             if corners is not None:
                 after[at] = self._read(corners[0])
                 before[(at + 1) % len(neighbours)] = self._read(corners[1])
-        self.values, self.torn = settle(before, after, arc)
+        return settle(before, after, arc)
 
     def _read(self, corner: Any) -> np.ndarray:
         value = corner[self.layer]

@@ -143,7 +143,8 @@ class EditMesh:
         """Put patches into the mesh, and write into `added` what was made."""
         bm = self.bm
         surroundings = [
-            attributes.Surroundings(bm, [bm.verts[index] for index in patch.loop]) for patch in patches
+            attributes.Surroundings(bm, *([bm.verts[index] for index in loop] for loop in patch.loops))
+            for patch in patches
         ]
         face_set = attributes.new_face_set(bm)
         for patch, around in zip(patches, surroundings, strict=True):
@@ -294,6 +295,13 @@ class Patch:
     poses: list[np.ndarray]
     """(j, 3) new vertices for every shape key."""
     extend: attributes.Extend
+    split: int = 0
+    """Vertices of `loop` that belong to the first of two loops; 0 if it is one."""
+
+    @property
+    def loops(self) -> list[Sequence[int]]:
+        """The loops that the patch bounds."""
+        return [self.loop[: self.split], self.loop[self.split :]] if self.split else [self.loop]
 
 
 @dataclass

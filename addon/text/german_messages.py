@@ -455,6 +455,40 @@ _CUTS = {
     ),
 }
 
+_BRIDGES = {
+    "Cancelled; nothing was joined": "Abgebrochen; nichts wurde verbunden",
+    "Edit a mesh and select two loops of open edges": "Ein Mesh bearbeiten und zwei Schleifen offener Kanten auswählen",
+    "Joined by {}: {}, {}, {} ms": "Verbunden durch {0}: {1}, {2}, {3} ms",
+    "No regular lattice suits these numbers of edges; choose other rows or subdivide a loop": (
+        "Kein regelmäßiges Gitter passt zu diesen Anzahlen von Kanten; andere Reihen wählen oder eine Schleife unterteilen"
+    ),
+    "The tube meets the mesh or itself; check the shape, or choose less smoothness": (
+        "Die Röhre trifft das Mesh oder sich selbst; die Form prüfen oder weniger Glätte wählen"
+    ),
+    "UVs or colours are torn at the loops: continued from the longest stretch of each": (
+        "UVs oder Farben sind an den Schleifen gerissen: vom jeweils längsten Stück fortgesetzt"
+    ),
+    "both loops pass through vertex {}; split it, or choose loops that are apart": (
+        "beide Schleifen gehen durch Punkt {0}; ihn trennen oder Schleifen wählen, die getrennt sind"
+    ),
+    "every tube repeats an edge of the mesh": "jede Röhre wiederholt eine Kante des Meshs",
+    "{} at the loops look the other way than the tube; recalculate the normals": (
+        "{0} an den Schleifen schauen anders herum als die Röhre; die Normalen neu berechnen"
+    ),
+    "{} loop": "{0} Schleife",
+    "{} loops": "{0} Schleifen",
+    "{} of open edges selected; select two to join": (
+        "{0} offener Kanten ausgewählt; zwei zum Verbinden auswählen"
+    ),
+    "{} row": "{0} Reihe",
+    "{} rows": "{0} Reihen",
+    # Of the library
+    "a finite angle in radians": "ein endlicher Winkel im Bogenmaß",
+    "a vertex is not finite": "ein Punkt ist nicht endlich",
+    "a whole number above 0, or nothing": "eine ganze Zahl über 0, oder nichts",
+    "two paths of a tube meet": "zwei Wege einer Röhre treffen sich",
+}
+
 _FILLS = {
     "Cancelled; nothing was filled": "Abgebrochen; nichts wurde gefüllt",
     "Edit a mesh and select the edges of a hole": "Ein Mesh bearbeiten und die Kanten eines Lochs auswählen",
@@ -1005,6 +1039,7 @@ MESSAGES = (
     | _DRAW
     | _CUTS
     | _FILLS
+    | _BRIDGES
     | _QUALITY
     | _MODULE
     | _LIBRARY

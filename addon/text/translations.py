@@ -534,6 +534,21 @@ GERMAN = {
     "Where the cut runs": "Wo der Schnitt verläuft",
     "Which side of the stroke is kept": "Welche Seite des Strichs behalten wird",
     "Width of what is taken away along the cut": "Breite dessen, was am Schnitt weggenommen wird",
+    # Joining loops
+    "Grid Bridge": "Schleifen mit Gitter verbinden",
+    "How the tube continues the surfaces at its ends": "Wie die Röhre die Flächen an ihren Enden fortsetzt",
+    "Join two selected loops by a regular tube, whatever their numbers of edges": (
+        "Zwei ausgewählte Schleifen durch eine regelmäßige Röhre verbinden, wie viele Kanten sie auch haben"
+    ),
+    "Rows": "Reihen",
+    "Rows of triangles between the loops; 0 for as many as the lengths of the edges ask for": (
+        "Reihen von Dreiecken zwischen den Schleifen; 0 für so viele, wie zu den Längen der Kanten passen"
+    ),
+    "Straight from loop to loop": "Gerade von Schleife zu Schleife",
+    "Turn of one loop against the other, from where they fit best": (
+        "Drehung der einen Schleife gegen die andere, von dort, wo sie am besten passen"
+    ),
+    "Twist": "Verdrehung",
     # Filling holes
     "All holes that are not hidden, up to a number of edges": (
         "Alle Löcher, die nicht ausgeblendet sind, bis zu einer Anzahl von Kanten"

@@ -14,6 +14,7 @@ ENTRIES = (
     ("Grease Pencil Edit Mode", "object.gridmesh_from_strokes"),
     ("Mesh", "mesh.gridmesh_fill"),
     ("Mesh", "mesh.gridmesh_regrid"),
+    ("Mesh", "mesh.gridmesh_bridge"),
     ("Object Mode", "object.gridmesh_cut"),
     ("Mesh", "object.gridmesh_cut"),
     ("Object Mode", "object.gridmesh_from_image"),

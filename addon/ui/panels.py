@@ -10,6 +10,7 @@ import bpy
 
 from ..bodies import strokes
 from ..bodies.operator import OBJECT_OT_gridmesh_from_strokes
+from ..bridge.operator import MESH_OT_gridmesh_bridge
 from ..cut import cutline
 from ..cut.operator import OBJECT_OT_gridmesh_cut
 from ..data import meshes
@@ -31,6 +32,8 @@ STROKE_MENUS = (
 )
 CUT_MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh")
 FILL_MENUS = ("VIEW3D_MT_edit_mesh_faces", "VIEW3D_MT_edit_mesh_context_menu")
+
+BRIDGE_MENUS = ("VIEW3D_MT_edit_mesh_edges",)
 
 
 class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
@@ -55,6 +58,7 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
         column = self.layout.column()
         column.operator(idname, icon="MESH_GRID").holes = "SELECTED"
         column.operator(idname, text="Fill All Holes").holes = "ALL"
+        column.operator(MESH_OT_gridmesh_bridge.bl_idname)
         column.operator(MESH_OT_gridmesh_regrid.bl_idname, icon="MOD_REMESH")
 
     def _draw_strokes(self, context: bpy.types.Context) -> None:
@@ -118,6 +122,11 @@ def _fill_entry(menu: Any, _context: bpy.types.Context) -> None:
     menu.layout.operator(MESH_OT_gridmesh_regrid.bl_idname)
 
 
+def _bridge_entry(menu: Any, _context: bpy.types.Context) -> None:
+    menu.layout.separator()
+    menu.layout.operator(MESH_OT_gridmesh_bridge.bl_idname)
+
+
 def _cut_entry(menu: Any, context: bpy.types.Context) -> None:
     if not OBJECT_OT_gridmesh_cut.poll(context):
         return
@@ -131,7 +140,12 @@ def _cut_entry(menu: Any, context: bpy.types.Context) -> None:
 
 def _entries() -> Iterator[tuple[Any, Any]]:
     """Menus of this version, and what is drawn at their end."""
-    for names, entry in ((STROKE_MENUS, _stroke_entry), (FILL_MENUS, _fill_entry), (CUT_MENUS, _cut_entry)):
+    for names, entry in (
+        (STROKE_MENUS, _stroke_entry),
+        (FILL_MENUS, _fill_entry),
+        (BRIDGE_MENUS, _bridge_entry),
+        (CUT_MENUS, _cut_entry),
+    ):
         for name in names:
             menu = getattr(bpy.types, name, None)
             if menu is not None:

@@ -95,7 +95,8 @@ def test_panel_with_a_drawing_and_with_a_body():
 
 def test_panel_in_edit_mode():
     edit(cylinder())
-    assert panel() == ["mesh.gridmesh_fill"] * 2 + ["mesh.gridmesh_regrid"] + ["object.gridmesh_cut"] * 2
+    own = ["mesh.gridmesh_fill"] * 2 + ["mesh.gridmesh_bridge", "mesh.gridmesh_regrid"]
+    assert panel() == own + ["object.gridmesh_cut"] * 2
 
 
 def test_menu_of_presets():
@@ -104,7 +105,7 @@ def test_menu_of_presets():
     assert len(menu.layout.drawn) >= 6
 
 
-@pytest.mark.parametrize("entry", [ui._fill_entry, ui._stroke_entry])
+@pytest.mark.parametrize("entry", [ui._fill_entry, ui._bridge_entry, ui._stroke_entry])
 def test_menu_entries(entry):
     grease_pencil([circle()])
     menu = types.SimpleNamespace(layout=Layout())

@@ -1,7 +1,7 @@
 //! `fill_hole`, `fill_holes` and the Python class `Fill`.
 
 use glam::{DVec2, DVec3};
-use gridmesh::fill::{Fill as CoreFill, FillOptions, FillParts, FillReport, Smooth};
+use gridmesh::fill::{Bridged, Fill as CoreFill, FillOptions, FillParts, FillReport, Smooth};
 use numpy::{
     AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods, PyReadonlyArray1,
     PyReadonlyArray2, PyUntypedArrayMethods,
@@ -190,14 +190,14 @@ pub fn fill_holes(
     Ok(items.unbind())
 }
 
-/// A filled hole; made by `fill_hole` and `fill_holes`.
+/// A filled hole, or a tube between two; made by `fill_hole`, `fill_holes` and `bridge`.
 ///
 /// All arrays are read-only and C-contiguous; copy them to change them. A fill can be pickled.
 ///
 /// Attributes
 /// ----------
 /// loop : (k,) int32
-///     The loop, as it was given.
+///     The loop, as it was given; for a tube the first loop, then the second.
 /// vertices : (j, 3) float64
 ///     The new vertices only.
 /// triangles : (t, 3) int32
@@ -207,7 +207,7 @@ pub fn fill_holes(
 /// report : dict
 ///     Plain numbers: "triangles", "vertices", "irregular" (new vertices whose valence is not 6),
 ///     "irregular_loop" (loop vertices whose valence is not 6 now), "grid" ("lattice", "grown", "graded",
-///     "centre" or "no_interior": how the patch was made), "folded" (True if it could not be laid out in the
+///     "centre" or "no_interior": how the patch was made), "rows" (of triangles between two loops; 0 for one), "folded" (True if it could not be laid out in the
 ///     plane), "rim_angle" (mean angle between the surface and a film in the loop, radians: near zero where
 ///     the surface goes on, about pi / 2 at the end of a tube), "unrolling" ("projected", "developed",
 ///     "evened" or "circle": how the loop was laid out in the plane), "distortion" (largest relative change
@@ -336,6 +336,7 @@ impl Fill {
         let fields = (
             arrays::indices(py, parts.loop_.into_iter()),
             parts.reversed,
+            parts.bridged.map(|second| (second.first, second.reversed)),
             smooth,
             parts.vertices,
             arrays::plane_points(py, &parts.flat)?,
@@ -357,6 +358,7 @@ pub fn _fill(
     py: Python<'_>,
     r#loop: PyReadonlyArray1<'_, i32>,
     backwards: bool,
+    second: Option<(usize, bool)>,
     smooth: &str,
     vertices: usize,
     flat: PyReadonlyArray2<'_, f64>,
@@ -382,6 +384,7 @@ pub fn _fill(
     let parts = FillParts {
         loop_: numbers(&r#loop),
         reversed: backwards,
+        bridged: second.map(|(first, reversed)| Bridged { first, reversed }),
         smooth,
         vertices,
         flat: flat.as_array().rows().into_iter().map(|p| DVec2::new(p[0], p[1])).collect(),
@@ -443,6 +446,7 @@ fn report(py: Python<'_>, report: &FillReport) -> PyResult<Py<PyDict>> {
     dict.set_item("irregular", report.irregular)?;
     dict.set_item("irregular_loop", report.irregular_loop)?;
     dict.set_item("grid", report.grid.word())?;
+    dict.set_item("rows", report.rows)?;
     dict.set_item("folded", report.folded)?;
     dict.set_item("rim_angle", report.rim_angle)?;
     dict.set_item("unrolling", report.unrolling.word())?;

@@ -1,7 +1,7 @@
 //! The Python module `gridmesh._native`: conversions only, no algorithm.
 //!
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `process` finds threads after a fork, `arrays`
-//! and `reports` hand results back, `patch`, `surface`, `fill` and `cut` are the classes, `sketch`, `body` and `map` make them
+//! and `reports` hand results back, `patch`, `surface`, `fill` and `cut` are the classes, `bridge`, `sketch`, `body` and `map` make them
 //! of drawings, `batch` is the parallel map, `combine` unites drawings, `thickness` measures them, `picture`
 //! traces them, `decode` reads their files, `harmonic` carries values on, `bones` weighs bones.
 #![forbid(unsafe_code)]
@@ -10,6 +10,7 @@ mod arrays;
 mod batch;
 mod body;
 mod bones;
+mod bridge;
 mod combine;
 mod cut;
 mod decode;
@@ -60,6 +61,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<fill::Fill>()?;
     module.add_function(wrap_pyfunction!(fill::fill_hole, module)?)?;
     module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;
+    module.add_function(wrap_pyfunction!(bridge::bridge, module)?)?;
     module.add_class::<regrid::Regrid>()?;
     module.add_function(wrap_pyfunction!(regrid::regrid, module)?)?;
     module.add_class::<cut::Cut>()?;

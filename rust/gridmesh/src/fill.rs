@@ -2,6 +2,7 @@
 //!
 //! [`fill_hole`] fills one loop, [`fill_holes`] many; [`holes`] finds loops.
 
+pub mod bridge;
 mod filled;
 mod job;
 pub(crate) mod layout;
@@ -23,8 +24,9 @@ pub use self::parts::FillParts;
 pub use self::regrid::{Regrid, regrid};
 pub use self::report::{FillReport, Grid};
 use crate::error::Result;
-pub use crate::fill::filled::Fill;
+pub use crate::fill::bridge::{BridgeOptions, bridge};
 use crate::fill::filled::NO_ITEM;
+pub use crate::fill::filled::{Bridged, Fill};
 use crate::fill::job::Job;
 pub use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::holes;

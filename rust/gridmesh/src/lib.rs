@@ -27,6 +27,7 @@
 //! * [`inflate`], [`stitch`], [`flat`]: the patch as a round body, a pillow, a sheet.
 //! * [`fill_hole`], [`fill_holes`], [`regrid`]: patches whose boundary is that of a hole, vertex for vertex, smooth to
 //!   the surface around it.
+//! * [`bridge()`]: a tube between two loops, with every vertex of both.
 //! * [`cut()`]: a mesh divided along a swept stroke, the pieces closed by such patches.
 //!
 //! # What holds everywhere
@@ -62,7 +63,7 @@ pub use body::stitch::{flat, stitch};
 pub use body::surface::Surface;
 pub use cut::{Cut, CutOptions, cut};
 pub use error::Error;
-pub use fill::{Fill, FillOptions, Smooth, fill_hole, fill_holes, regrid};
+pub use fill::{BridgeOptions, Fill, FillOptions, Smooth, bridge, fill_hole, fill_holes, regrid};
 pub use options::SketchOptions;
 pub use patch::Patch;
 pub use progress::Progress;

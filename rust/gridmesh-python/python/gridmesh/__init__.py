@@ -4,7 +4,8 @@
 a flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. ``combine`` unites drawings or
 cuts one from another, ``thickness`` measures their limbs; ``trace_image`` finds
 the outlines in a picture, ``decode_image`` reads its file. ``fill_hole`` and ``fill_holes`` close holes of a
-mesh with patches that fit their boundaries vertex for vertex, ``regrid`` replaces a region by one. ``cut``
+mesh with patches that fit their boundaries vertex for vertex, ``bridge`` joins two of them
+by a tube, ``regrid`` replaces a region by one. ``cut``
 divides a mesh along a stroke and caps it; ``cut_reach`` tells how far a stroke's ends go. ``harmonic``
 carries values on over a mesh, ``bone_weights`` makes a flat one follow bones.
 Positions are float64, indices int32, angles radians, options keyword-only. The same input gives the same
@@ -21,6 +22,7 @@ from gridmesh._native import (
     Surface,
     __version__,
     bone_weights,
+    bridge,
     combine,
     cut,
     cut_reach,
@@ -50,6 +52,7 @@ __all__ = [
     "Traced",
     "__version__",
     "bone_weights",
+    "bridge",
     "combine",
     "cut",
     "cut_reach",

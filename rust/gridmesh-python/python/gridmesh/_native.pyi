@@ -23,6 +23,7 @@ __all__ = [
     "_regrid",
     "_surface",
     "bone_weights",
+    "bridge",
     "combine",
     "cut",
     "cut_reach",
@@ -248,6 +249,19 @@ def fill_holes(
     creases: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> list[Fill | GridMeshError]: ...
+def bridge(
+    vertices: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    loop: npt.ArrayLike,
+    other: npt.ArrayLike,
+    *,
+    smooth: Literal["flat", "tangent", "curvature"] = "tangent",
+    rows: int | None = None,
+    twist: float = 0.0,
+    strict: bool = False,
+    polygons: npt.ArrayLike | None = None,
+    progress: _Progress | None = None,
+) -> Fill: ...
 def regrid(
     vertices: npt.ArrayLike,
     triangles: npt.ArrayLike,

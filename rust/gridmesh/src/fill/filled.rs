@@ -28,12 +28,23 @@ pub struct Fill {
     pub(crate) shape: Arc<Shape>,
 }
 
+/// Of a patch between two loops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bridged {
+    /// Vertices of the first loop; those of the second follow.
+    pub first: usize,
+    /// The second loop was given the other way round.
+    pub reversed: bool,
+}
+
 /// What is needed to solve the same patch again.
 #[derive(Clone, Debug)]
 pub(crate) struct Shape {
     pub(crate) work: Patchwork,
     pub(crate) loop_: Vec<u32>,
     pub(crate) reversed: bool,
+    /// What is known of the second loop, of a patch between two.
+    pub(crate) bridged: Option<Bridged>,
     pub(crate) flat: Vec<glam::DVec2>,
     pub(crate) smooth: Smooth,
     pub(crate) vertices: usize,
@@ -76,7 +87,10 @@ impl Fill {
         if !self.shape.creases.is_empty() {
             return self.shape.carried(vertices);
         }
-        let positions = self.shape.solve(vertices, Progress::NONE)?.positions;
+        let positions = match self.shape.bridged {
+            Some(bridged) => self.shape.lofted(vertices, bridged.first)?,
+            None => self.shape.solve(vertices, Progress::NONE)?.positions,
+        };
         Ok(positions[self.shape.work.inner()].to_vec())
     }
 }

@@ -12,6 +12,7 @@ use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::{edges, groups, refuse_shared_edges};
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::parallel::in_parallel;
+use crate::fill::surface::around::is_around;
 use crate::fill::surface::meet::{Box3, MOST, count_meetings, is_graph, near_boxes};
 use crate::progress::Progress;
 
@@ -133,7 +134,10 @@ impl Job<'_> {
             let mut others = near[k].iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
             others.extend((0..k).filter(|&j| boxes[j].meets(&boxes[k])).flat_map(named));
             let (around, positions, own) = done[k].2.graph();
-            let apart = is_graph(around, positions, own);
+            let apart = match done[k].2.bridged {
+                Some(bridged) => is_around(positions, bridged.first, around.len(), own),
+                None => is_graph(around, positions, own),
+            };
             count_meetings(position, &named(k), &others, apart, MOST, progress)
         };
         let counts = match (0..done.len()).collect::<Vec<_>>().as_slice() {

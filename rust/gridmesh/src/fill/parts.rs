@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use crate::error::{Error, Result};
-use crate::fill::filled::{Fill, Shape};
+use crate::fill::filled::{Bridged, Fill, Shape};
 use crate::fill::options::Smooth;
 use crate::fill::report::FillReport;
 use crate::fill::surface::patchwork::Patchwork;
@@ -17,6 +17,8 @@ pub struct FillParts {
     pub loop_: Vec<u32>,
     /// It was given the other way round.
     pub reversed: bool,
+    /// Of a patch between two loops.
+    pub bridged: Option<Bridged>,
     /// How the patch continues the surface.
     pub smooth: Smooth,
     /// Vertices of the mesh.
@@ -43,6 +45,7 @@ impl Fill {
         FillParts {
             loop_: shape.loop_.clone(),
             reversed: shape.reversed,
+            bridged: shape.bridged,
             smooth: shape.smooth,
             vertices: shape.vertices,
             flat: shape.flat.clone(),
@@ -62,6 +65,7 @@ impl Fill {
         let FillParts {
             loop_,
             reversed,
+            bridged,
             smooth,
             vertices,
             flat,
@@ -78,7 +82,9 @@ impl Fill {
         };
         let sound = n >= 3
             && end >= n
-            && patch + n + 2 == 2 * end
+            && patch + n + if bridged.is_some() { 0 } else { 2 } == 2 * end
+            && bridged.is_none_or(|b| b.first >= 3 && b.first.checked_add(3).is_some_and(|least| least <= n))
+            && (bridged.is_none() || creases.is_empty())
             && positions.len() == end + outer.len()
             && loop_.iter().chain(&outer).all(known)
             && patch <= triangles.len()
@@ -96,10 +102,19 @@ impl Fill {
         let name = |v: u32| if (v as usize) < n { loop_[v as usize] } else { v - n as u32 + vertices as u32 };
         let named = triangles[..patch].iter().map(|t| t.map(name)).collect();
         let hard = creases.iter().map(|edge| edge.map(name)).collect();
-        let given = if reversed { loop_.iter().rev().copied().collect() } else { loop_.clone() };
-        let work = Patchwork::of(n, end, outer, triangles, patch)?;
+        let mut given = loop_.clone();
+        let (one, two) = given.split_at_mut(bridged.map_or(n, |b| b.first));
+        if reversed {
+            one.reverse();
+        }
+        if bridged.is_some_and(|b| b.reversed) {
+            two.reverse();
+        }
+        let mut work = Patchwork::of(n, end, outer, triangles, patch)?;
+        work.first = bridged.map_or(n, |b| b.first);
         let new = positions[n..end].to_vec();
-        let shape = Arc::new(Shape { work, loop_, reversed, flat, smooth, vertices, positions, creases });
+        let shape =
+            Arc::new(Shape { work, loop_, reversed, bridged, flat, smooth, vertices, positions, creases });
         Ok(Fill { loop_: given, vertices: new, triangles: named, report, creases: hard, shape })
     }
 }

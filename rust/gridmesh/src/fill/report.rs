@@ -16,6 +16,8 @@ pub struct FillReport {
     pub irregular_loop: usize,
     /// How the patch was made.
     pub grid: Grid,
+    /// Rows of triangles between two loops, on average; 0 for a patch in one.
+    pub rows: usize,
     /// True if no patch was found whose triangles are all counter-clockwise in the plane.
     pub folded: bool,
     /// Mean angle between the surface at the loop and a film in the loop, in radians: near zero where the

@@ -195,8 +195,7 @@ pub(in crate::fill) fn seams(work: &Patchwork) -> Vec<[u32; 4]> {
         };
         Some([a, b, apex(&|t| t < work.n_patch)?, apex(&|t| t >= work.n_patch)?])
     };
-    let n = work.n as u32;
-    (0..n).filter_map(|a| across(a, (a + 1) % n)).collect()
+    (0..work.n).filter_map(|a| across(a as u32, work.after(a) as u32)).collect()
 }
 
 /// Areas at the vertices, kept away from zero.

@@ -18,7 +18,7 @@ use crate::progress::Progress;
 const SEAM: f64 = 3.0;
 
 /// The same where the curvature is to continue: then a curved surface has angles across the loop, too.
-const SEAM_OF_CURVATURE: f64 = 0.7;
+pub(in crate::fill) const SEAM_OF_CURVATURE: f64 = 0.7;
 
 /// Rounds of tangential sweeps and a normal step, at most.
 const ROUNDS: usize = 2;
@@ -242,6 +242,16 @@ impl Shape {
         flat
     }
 
+    /// The place of a loop vertex in the loop as it was given.
+    fn given(&self, v: usize) -> usize {
+        let first = self.work.first;
+        match self.bridged {
+            Some(bridged) if v >= first && bridged.reversed => self.work.n - 1 - (v - first),
+            _ if v < first && self.reversed => first - 1 - v,
+            _ => v,
+        }
+    }
+
     /// See [`crate::fill::Fill::extend`].
     pub(in crate::fill) fn extend(&self, values: &[f64], columns: usize) -> Result<Vec<f64>> {
         const TOGETHER: usize = 8;
@@ -256,7 +266,7 @@ impl Shape {
         if let Some(k) = values.iter().position(|x| !x.is_finite()) {
             return Err(Error::NotFinite { what: "values".into(), point: k / columns });
         }
-        let row = |v: usize| if self.reversed { work.n - 1 - v } else { v };
+        let row = |v: usize| self.given(v);
         let inner = work.inner().len();
         let mut all = vec![0.0; inner * columns];
         if all.is_empty() {
@@ -311,7 +321,11 @@ fn lift(around: &[DVec3], flat: &[DVec2]) -> Option<impl Fn(DVec2) -> DVec3 + us
 }
 
 /// The mean curvature that a patch is to have: at the loop that of the ring around it, inside harmonic.
-fn curvature_target(work: &Patchwork, membrane: &Membrane<'_>, positions: &[DVec3]) -> Result<Vec<f64>> {
+pub(in crate::fill) fn curvature_target(
+    work: &Patchwork,
+    membrane: &Membrane<'_>,
+    positions: &[DVec3],
+) -> Result<Vec<f64>> {
     let cotangents = work.cotangents(positions);
     let areas = work.areas(positions);
     let normals = work.normals(positions);
@@ -331,9 +345,11 @@ fn curvature_target(work: &Patchwork, membrane: &Membrane<'_>, positions: &[DVec
     let mut target = (0..work.n).map(beside).collect::<Vec<_>>();
     for _ in 0..2 {
         let before = target.clone();
-        let n = work.n;
-        for v in 0..n {
-            target[v] = 0.5 * before[v] + 0.25 * (before[(v + 1) % n] + before[(v + n - 1) % n]);
+        target.iter_mut().for_each(|h| *h *= 0.5);
+        for v in 0..work.n {
+            let next = work.after(v);
+            target[v] += 0.25 * before[next];
+            target[next] += 0.25 * before[v];
         }
     }
     let weights = cotangents.iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();

@@ -9,8 +9,10 @@ use crate::fill::loops::mesh::{Rim, place};
 /// the new ones, then those of the mesh around.
 #[derive(Clone, Debug)]
 pub(crate) struct Patchwork {
-    /// Vertices of the loop.
+    /// Vertices of the loop, or of two loops.
     pub n: usize,
+    /// Vertices of the first loop.
+    pub first: usize,
     /// Loop and new vertices.
     pub end: usize,
     /// The mesh's numbers of the vertices from `end` on.
@@ -85,6 +87,7 @@ impl Patchwork {
         let count = end + outer.len();
         let mut it = Patchwork {
             n,
+            first: n,
             end,
             outer,
             n_patch,
@@ -140,6 +143,15 @@ impl Patchwork {
         };
         self.slots = self.triangles.iter().map(facing).collect::<Result<_>>()?;
         Ok(())
+    }
+
+    /// The vertex that follows another on its loop.
+    pub fn after(&self, v: usize) -> usize {
+        match v + 1 {
+            next if next == self.first => 0,
+            next if next == self.n => self.first,
+            next => next,
+        }
     }
 
     /// The number of all vertices.

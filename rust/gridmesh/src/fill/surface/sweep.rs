@@ -66,7 +66,7 @@ pub(crate) fn sweep(work: &Patchwork, positions: &mut [DVec3]) {
 /// Of the triangle with the sides `a` and `b`: the sum of the squared sides, twice the area, and the
 /// gradient of the latter as their common corner moves. Folded triangles are seen in the tangent
 /// plane, where they have to unfold; their area counts as small.
-fn shape(a: DVec3, b: DVec3, normal: DVec3) -> (f64, f64, DVec3) {
+pub(crate) fn shape(a: DVec3, b: DVec3, normal: DVec3) -> (f64, f64, DVec3) {
     let sides = a.length_squared() + b.length_squared() + (b - a).length_squared();
     let cross = a.cross(b);
     let mut area = cross.length();

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`mesh.gridmesh_bridge`: two loops of the mesh being edited become one tube."""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from .. import api
+from ..fill.editmesh import EditMesh
+from ..fill.filling import add_all
+from ..text.messages import counted, listed
+from ..text.telling import told
+from ..ui.progress import Pointer
+from .bridging import Job, warnings_of
+
+
+class MESH_OT_gridmesh_bridge(bpy.types.Operator):  # noqa: N801
+    """Join two selected loops by a regular tube, whatever their numbers of edges"""  # noqa: D400 (the tooltip)
+
+    bl_idname = "mesh.gridmesh_bridge"
+    bl_label = "Grid Bridge"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    rows: IntProperty(
+        name="Rows",
+        description="Rows of triangles between the loops; 0 for as many as the lengths of the edges ask for",
+        default=0,
+        min=0,
+        soft_max=100,
+        max=10_000,
+        options={"SKIP_SAVE"},
+    )
+    smooth: EnumProperty(
+        name="Smoothness",
+        description="How the tube continues the surfaces at its ends",
+        items=[
+            ("FLAT", "Flat", "Straight from loop to loop"),
+            ("TANGENT", "Tangent", "With the slope of the surface"),
+            ("CURVATURE", "Curvature", "With the slope and the curvature of the surface"),
+        ],
+        default="TANGENT",
+    )
+    twist: FloatProperty(
+        name="Twist",
+        description="Turn of one loop against the other, from where they fit best",
+        default=0.0,
+        subtype="ANGLE",
+        soft_min=-3.1416,
+        soft_max=3.1416,
+        options={"SKIP_SAVE"},
+    )
+    use_quads: BoolProperty(
+        name="Quads",
+        description="Join pairs of triangles to quads where that gives good ones",
+        default=False,
+    )
+    result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Ask for a mesh in Edit Mode."""
+        if context.mode == "EDIT_MESH":
+            return True
+        cls.poll_message_set(told("Edit a mesh and select two loops of open edges", "tooltips"))
+        return False
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Find the loops, join them as arrays, and only then change the meshes."""
+        started = perf_counter()
+        try:
+            api.native("bridge")
+        except api.NativeError as error:
+            self.report({"ERROR"}, told(str(error)))
+            return {"CANCELLED"}
+        edited = [EditMesh(ob) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
+        # Meshes without a selection are none of the user's trouble while another one has one.
+        jobs = [Job(it) for it in edited if it.has_selection()] or [Job(it) for it in edited]
+        try:
+            with Pointer(context) as pointer:
+                for index, job in enumerate(jobs):
+                    job.find()
+                    part = pointer.part(index / len(jobs), (index + 1) / len(jobs))
+                    job.bridge(self.smooth.lower(), self.rows, self.twist, part)
+        except api.CancelledError:
+            self.report({"WARNING"}, told("Cancelled; nothing was joined"))
+            return {"CANCELLED"}
+        problems = [job.name(it, several=len(jobs) > 1) for job in jobs for it in job.problems]
+        made = [job for job in jobs if job.patches]
+        if not made:
+            for job in jobs:
+                job.edited.point_out(job.problems)
+            self.report({"ERROR"}, told(listed(problems)))
+            return {"CANCELLED"}
+        add_all(made, quads=self.use_quads)
+        self._tell(made, problems, perf_counter() - started)
+        return {"FINISHED"}
+
+    def _tell(self, jobs: list[Job], problems: list[str], seconds: float) -> None:
+        """Report numbers, and what the user should know."""
+        faces = [len(face.verts) for job in jobs for face in job.added.faces]
+        quads = sum(n == 4 for n in faces)
+        made = counted(len(faces) - quads, "triangle")
+        made = f"{counted(quads, 'quad')} and {made}" if quads else made
+        irregular = sum(job.report["irregular"] for job in jobs)
+        rows = max(job.report["rows"] for job in jobs)
+        self.result = f"Joined by {counted(rows, 'row')}: {made}, {counted(irregular, 'irregular vertex')}, {1000 * seconds:.0f} ms"
+        self.report({"INFO"}, told(self.result))
+        torn = sum(job.added.torn for job in jobs)
+        if torn:
+            self.report(
+                {"INFO"},
+                told("UVs or colours are torn at the loops: continued from the longest stretch of each"),
+            )
+        for job in jobs:
+            for warning in warnings_of(job.report):
+                self.report({"WARNING"}, told(warning))
+        if problems:
+            self.report(
+                {"WARNING"}, told(f"{counted(len(problems), 'selection')} left out:\n{listed(problems)}")
+            )
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw the redo panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        if self.result:
+            numbers = layout.column(align=True)
+            for part in self.result.split(", ", 1):  # on one line they would be cut off
+                numbers.label(text=told(part, "interface"))
+        layout.prop(self, "rows")
+        layout.prop(self, "smooth")
+        layout.prop(self, "twist")
+        layout.prop(self, "use_quads")
+
+
+classes = (MESH_OT_gridmesh_bridge,)

@@ -1,0 +1,169 @@
+# /// script
+# requires-python = "==3.11.*"
+# dependencies = ["bpy==4.5.15", "gridmesh", "numpy==1.26.4"]
+#
+# [tool.uv]
+# python-downloads = "never"
+#
+# [tool.uv.sources]
+# gridmesh = { path = ".." }
+# ///
+"""Draw the picture of bridged loops in the manual, by operators in Blender.
+
+    uv run docs/bridges.py [PICTURE.png]
+
+Above, each pair of loops joined by Blender's *Bridge Edge Loops*; below, by *Grid Bridge*, the tube in colour: pipes of
+different sizes and numbers of vertices, pipes tilted against each other, and two spheres.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import sys
+from pathlib import Path
+
+import fills
+import gallery
+
+from addon.text.messages import counted
+
+# isort: split
+import bmesh
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+import addon
+
+STEP, RISE = 3.1, 3.3
+"""From one mesh to the next, and from the lower row to the upper one."""
+
+
+def pipe(bm, segments, radius, place) -> None:
+    """Two rows of quads around, open at both ends."""
+    rings = [
+        [
+            bm.verts.new(place @ Vector((radius * math.cos(t), radius * math.sin(t), z)))
+            for t in (math.tau * k / segments for k in range(segments))
+        ]
+        for z in (-0.35, 0.0)
+    ]
+    for k in range(segments):
+        n = (k + 1) % segments
+        bm.faces.new((rings[0][k], rings[0][n], rings[1][n], rings[1][k]))
+
+
+def of_sizes(bm) -> None:
+    """A pipe of 14 vertices below, of 40 above."""
+    pipe(bm, 14, 0.5, Matrix.Translation((0, 0, -0.8)))
+    pipe(bm, 40, 1.0, Matrix.Translation((0, 0, 0.8)) @ Matrix.Rotation(math.pi, 4, "X"))
+
+
+def tilted(bm) -> None:
+    """An elbow of pipes with 24 and 32 vertices."""
+    pipe(bm, 24, 0.55, Matrix.Translation((-0.4, 0, -0.8)))
+    pipe(bm, 32, 0.7, Matrix.Translation((0.3, 0, 0.85)) @ Matrix.Rotation(math.radians(-120), 4, "Y"))
+
+
+def spheres(bm) -> None:
+    """An arm's end beside a body, a hole in each."""
+    for place, size, segments, hole in (
+        ((-0.45, 0, -0.4), 0.85, 32, Vector((0.75, 0, 0.65))),
+        ((0.75, 0, 0.7), 0.45, 16, Vector((-0.75, 0, -0.65))),
+    ):
+        before = set(bm.verts)
+        bmesh.ops.create_uvsphere(bm, u_segments=segments, v_segments=segments // 2, radius=size)
+        new = [v for v in bm.verts if v not in before]
+        faces = {f for v in new for f in v.link_faces}
+        way = hole.normalized()
+        turn = Vector((0, 0, 1)).rotation_difference(way).to_matrix().to_4x4()
+        gone = [f for f in faces if f.calc_center_median().normalized().z > 0.86]
+        bmesh.ops.transform(bm, matrix=Matrix.Translation(place) @ turn, verts=new)
+        bmesh.ops.delete(bm, geom=gone, context="FACES")
+
+
+def joined(make, *, ours: bool):
+    """The mesh of `make`, its facing loops joined; the tube gets the second material."""
+    mesh = bpy.data.meshes.new(make.__name__)
+    bm = bmesh.new()
+    make(bm)
+    for face in bm.faces:
+        face.smooth = True
+    loops = [e for e in bm.edges if e.is_boundary]
+    # Of a pipe's two ends the inner one.
+    centres = [
+        (sum((v.co for e in piece for v in e.verts), Vector()) / (2 * len(piece)), piece)
+        for piece in pieces(loops)
+    ]
+    middle = sum((centre for centre, _ in centres), Vector()) / len(centres)
+    centres.sort(key=lambda item: (item[0] - middle).length)
+    loops = [edge for _, piece in centres[:2] for edge in piece]
+    for edge in loops:
+        edge.select_set(True)
+    bm.to_mesh(mesh)
+    bm.free()
+    ob = bpy.data.objects.new(make.__name__, mesh)
+    bpy.context.scene.collection.objects.link(ob)
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.object.select_all(action="DESELECT")
+    ob.select_set(True)
+    count = len(mesh.polygons)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.tool_settings.mesh_select_mode = (False, True, False)
+    if ours:
+        bpy.ops.mesh.gridmesh_bridge()
+    else:
+        bpy.ops.mesh.bridge_edge_loops(number_cuts=4, interpolation="SURFACE")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    chosen = np.arange(len(mesh.polygons)) >= count
+    mesh.polygons.foreach_set("material_index", chosen.astype(np.int32))
+    print(f"{make.__name__}: {counted(int(chosen.sum()), 'new face')}")
+    return ob
+
+
+def pieces(edges):
+    """Connected chains of edges."""
+    rest, found = set(edges), []
+    while rest:
+        piece, waiting = [], [rest.pop()]
+        while waiting:
+            edge = waiting.pop()
+            piece.append(edge)
+            near = {e for v in edge.verts for e in v.link_edges} & rest
+            rest -= near
+            waiting += near
+        found.append(piece)
+    return found
+
+
+def main() -> None:
+    """Make the meshes, join the loops, render."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    default = Path(__file__).parent / "pictures" / "bridges.png"
+    parser.add_argument("picture", nargs="?", type=Path, default=default)
+    picture = parser.parse_args().picture.resolve()
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    addon.register()
+    plain = gallery.body_material("Mesh", "#9AA3AE", 0.4)
+    tube = gallery.body_material("Tube", "#E8963A", 0.4)
+    for k, make in enumerate((of_sizes, tilted, spheres)):
+        for row in (0, 1):
+            ob = joined(make, ours=row == 0)
+            for material in (plain, tube):
+                ob.data.materials.append(material)
+            ob.rotation_euler = (0.35, 0, 0)
+            ob.location = ((k - 1) * STEP, 0, (row - 0.5) * RISE)
+    fills.stage(3 * STEP, 2 * RISE + 0.1, 1000, 12)
+    bpy.context.scene.render.filepath = str(picture)
+    with gallery.quiet():
+        bpy.ops.render.render(write_still=True)
+    print(f"wrote {picture}")
+
+
+if __name__ == "__main__":
+    main()
+    # Blender 4.5 as a module may crash or hang while it cleans up after Python.
+    sys.stdout.flush()
+    os._exit(0)

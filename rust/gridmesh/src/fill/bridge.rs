@@ -1,0 +1,122 @@
+//! A tube between two loops, with every vertex of both.
+//!
+//! A tube needs no irregular vertex: it is a piece of the lattice on a cylinder or a cone ([`rings`]). The loops are closed
+//! paths on it ([`route`]), chosen with the cone ([`choose`]), what lies between them is triangulated ([`tube`]), placed on a surface
+//! that goes on from both sides ([`loft`]) and moved within it to where triangles are good ([`settle`]).
+
+mod align;
+mod choose;
+mod loft;
+mod rings;
+mod route;
+mod settle;
+mod span;
+mod tube;
+
+use glam::DVec3;
+use rustc_hash::FxHashSet;
+
+use crate::error::{Error, Result};
+use crate::fill::filled::{Bridged, Fill};
+use crate::fill::job::{Job, SOUND_RINGS};
+use crate::fill::loops::check::{Checked, check_loop, check_near};
+use crate::fill::loops::mesh::Rim;
+use crate::fill::options::{FillOptions, Smooth};
+use crate::fill::parallel::steady;
+use crate::progress::Progress;
+
+use self::span::Span;
+
+/// What can be chosen about a bridge.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BridgeOptions {
+    /// How the tube continues the surfaces at its ends: straight from loop to loop, with their slope, or with their slope
+    /// and curvature.
+    pub smooth: Smooth,
+    /// Rows of triangles between the loops, at least one; `None`: as the edges' lengths ask for.
+    pub rows: Option<usize>,
+    /// By how much the second loop is turned on against the best fit, in radians.
+    pub twist: f64,
+    /// Refuse a tube that meets itself or the mesh, instead of counting that.
+    pub strict: bool,
+    /// See [`FillOptions::polygons`].
+    pub polygons: Vec<u32>,
+}
+
+/// Joins two loops of a mesh by a tube.
+///
+/// Each of `loop_` and `other` is as for [`fill_hole`](super::fill_hole); they must have no vertex in common. The result's boundary is
+/// exactly the two loops: no vertex of them is moved and none is added, each of their edges gets one new triangle, wound against
+/// its neighbour. Where the surfaces at the two loops do not agree on the winding the larger number of edges decides and the report counts the
+/// others; a loop without faces is taken the way round that does not turn the tube inside out. The tube is an annulus, and
+/// no new edge or face repeats one of the mesh. Inside, every vertex has six neighbours wherever the counts allow: the
+/// report says how many do not. The loop of the [`Fill`] is `loop_` followed by `other`.
+///
+/// The same input gives the same output for any number of threads.
+///
+/// # Errors
+/// Those of [`fill_hole`](super::fill_hole); [`Error::FigureEight`] for a vertex of both loops,
+/// [`Error::InvalidOption`] for no rows or a twist that is not finite, [`Error::TooLarge`] beyond 20 million triangles.
+///
+/// Source: lattices on cones as in Thurston, *Shapes of polyhedra and triangulations of the sphere*, 1998; the
+/// exact counts as in Nealen et al. 2009, section V.
+pub fn bridge(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    loop_: &[u32],
+    other: &[u32],
+    options: &BridgeOptions,
+    progress: Progress<'_>,
+) -> Result<Fill> {
+    steady(progress, |progress| bridged(vertices, triangles, [loop_, other], options, progress))
+}
+
+fn bridged(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    given: [&[u32]; 2],
+    options: &BridgeOptions,
+    progress: Progress<'_>,
+) -> Result<Fill> {
+    progress.report(0.0)?;
+    if options.rows == Some(0) {
+        let allowed = "a whole number above 0, or nothing";
+        return Err(Error::InvalidOption { name: "rows", value: "0".into(), allowed });
+    }
+    if !options.twist.is_finite() {
+        let allowed = "a finite angle in radians";
+        return Err(Error::InvalidOption { name: "twist", value: options.twist.to_string(), allowed });
+    }
+    let rest = FillOptions {
+        smooth: options.smooth,
+        strict: options.strict,
+        polygons: options.polygons.clone(),
+        ..FillOptions::default()
+    };
+    rest.check(triangles)?;
+    let seeds = given.concat();
+    let rim =
+        Rim::new(vertices.len(), triangles, &seeds, if options.smooth == Smooth::Curvature { 2 } else { 1 })?;
+    let checked = [check_loop(given[0], vertices, &rim)?, check_loop(given[1], vertices, &rim)?];
+    if vertices.iter().any(|p| !p.is_finite()) {
+        let wide = Rim::new(vertices.len(), triangles, &seeds, SOUND_RINGS)?;
+        given.iter().try_for_each(|loop_| check_near(loop_, vertices, &wide))?;
+    }
+    let both: FxHashSet<u32> = given[0].iter().copied().collect();
+    if let Some(&vertex) = given[1].iter().find(|v| both.contains(v)) {
+        return Err(Error::FigureEight { vertex });
+    }
+    progress.report(0.1)?;
+    let span = Span::new(vertices, &rim, checked, options);
+    let fill = span.fill(&rest, progress.part(0.1, 0.8))?;
+    let mut fills = [Ok(fill)];
+    Job { vertices, triangles, options: &rest }.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
+    let [fill] = fills;
+    progress.report(1.0)?;
+    fill
+}
+
+/// Which vertices of the work are the second loop's, and how it was given.
+fn second(checked: &[Checked; 2]) -> Bridged {
+    Bridged { first: checked[0].vertices.len(), reversed: checked[1].reversed }
+}

@@ -1,0 +1,212 @@
+//! The surface of a bridge: curves from one loop to the other that leave both as the surroundings come.
+
+use glam::DVec3;
+
+use super::align::Ring;
+
+/// Where a curve leaves its loop it bends within this many mean radii of the loop, so that a tube between
+/// parallel sheets does not close in its middle.
+const REACH: f64 = 2.0;
+
+/// A closed curve through the vertices of a loop, with the slope of the surface along it.
+#[derive(Clone, Debug)]
+struct Rail {
+    /// Ascending, over one round.
+    around: Vec<f64>,
+    points: Vec<DVec3>,
+    /// Derivatives along the curve.
+    along: Vec<DVec3>,
+    /// Derivatives across it, from the lower loop to the upper one.
+    across: Vec<DVec3>,
+    /// For each of as many equal parts of a round the last vertex before it.
+    index: Vec<u32>,
+}
+
+/// Point and derivatives.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    pub point: DVec3,
+    pub along: DVec3,
+    pub across: DVec3,
+}
+
+impl Rail {
+    fn new(around: Vec<f64>, points: Vec<DVec3>, across: Vec<DVec3>) -> Rail {
+        let n = points.len();
+        let width =
+            |k: usize| if k + 1 < n { around[k + 1] - around[k] } else { around[0] + 1.0 - around[k] };
+        let slope = |k: usize| (points[(k + 1) % n] - points[k]) / width(k).max(1e-12);
+        // Of the parabola through three vertices.
+        let along = |k: usize| {
+            let before = (k + n - 1) % n;
+            let (a, b) = (width(before), width(k));
+            (slope(before) * b + slope(k) * a) / (a + b).max(1e-12)
+        };
+        let along = (0..n).map(along).collect();
+        let index = |part: usize| {
+            let at = around[0] + part as f64 / n as f64;
+            (around.partition_point(|&x| x <= at) - 1) as u32
+        };
+        let index = (0..n).map(index).collect();
+        Rail { points, along, across, index, around }
+    }
+
+    /// The place between two vertices.
+    fn segment(&self, around: f64) -> (usize, usize, f64, f64) {
+        let n = self.points.len();
+        let start = self.around[0];
+        let within = around - (around - start).floor();
+        let part = (((within - start) * n as f64) as usize).min(n - 1);
+        let mut k = self.index[part] as usize;
+        while k + 1 < n && self.around[k + 1] <= within {
+            k += 1;
+        }
+        let end = if k + 1 < n { self.around[k + 1] } else { start + 1.0 };
+        let width = (end - self.around[k]).max(1e-12);
+        (k, (k + 1) % n, width, ((within - self.around[k]) / width).clamp(0.0, 1.0))
+    }
+
+    /// The point, the derivative along, the one across, and how that changes along.
+    fn at(&self, around: f64) -> [DVec3; 4] {
+        let (a, b, width, t) = self.segment(around);
+        let (p, q) = (self.points[a], self.points[b]);
+        let (u, v) = (self.along[a] * width, self.along[b] * width);
+        let c = 3.0 * (q - p) - 2.0 * u - v;
+        let d = 2.0 * (p - q) + u + v;
+        let point = p + t * (u + t * (c + t * d));
+        let along = (u + t * (2.0 * c + t * (3.0 * d))) / width;
+        let turn = (self.across[b] - self.across[a]) / width;
+        [point, along, self.across[a] + t * width * turn, turn]
+    }
+}
+
+/// A surface over `(around, height)`: rounds, and 0 at the lower loop to 1 at the upper one.
+#[derive(Clone, Debug)]
+pub(super) struct Loft {
+    lower: Rail,
+    upper: Rail,
+}
+
+/// One loop of a loft.
+pub(super) struct Edge<'a> {
+    pub ring: &'a Ring,
+    /// Where each vertex lies around the axis.
+    pub around: &'a [f64],
+    /// For each vertex the direction in which the surface around goes on into the tube, or zero.
+    pub onward: &'a [DVec3],
+}
+
+impl Loft {
+    pub fn new(lower: &Edge<'_>, upper: &Edge<'_>) -> Loft {
+        let straight = |edge: &Edge<'_>| {
+            let none = vec![DVec3::ZERO; edge.around.len()];
+            Rail::new(edge.around.to_vec(), edge.ring.points.clone(), none)
+        };
+        let (a, b) = (straight(lower), straight(upper));
+        let slopes = |own: &Edge<'_>, other: &Edge<'_>, there: &Rail, sign: f64| {
+            let facing = straight_onward(other, there);
+            let slope = |k: usize| {
+                let point = own.ring.points[k];
+                let (far, back) = facing(own.around[k]);
+                slope(point, own.onward[k], far, back, own.ring.length / std::f64::consts::TAU) * sign
+            };
+            (0..own.around.len()).map(slope).collect::<Vec<_>>()
+        };
+        let below = slopes(lower, upper, &b, 1.0);
+        let above = slopes(upper, lower, &a, -1.0);
+        Loft { lower: Rail { across: below, ..a }, upper: Rail { across: above, ..b } }
+    }
+
+    pub fn at(&self, around: f64, height: f64) -> Spot {
+        let [p, dp, u, du] = self.lower.at(around);
+        let [q, dq, v, dv] = self.upper.at(around);
+        let t = height;
+        let (h, k) = (t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t));
+        let (f, df) = (t * (1.0 - t) * (1.0 - t), (1.0 - t) * (1.0 - 3.0 * t));
+        let (g, dg) = (t * t * (t - 1.0), t * (3.0 * t - 2.0));
+        Spot {
+            point: p + (q - p) * h + u * f + v * g,
+            along: dp + (dq - dp) * h + du * f + dv * g,
+            across: (q - p) * k + u * df + v * dg,
+        }
+    }
+
+    /// The length of the curve across.
+    pub fn length(&self, around: f64) -> f64 {
+        const STEPS: usize = 6;
+        let points = (0..=STEPS).map(|k| self.at(around, k as f64 / STEPS as f64).point).collect::<Vec<_>>();
+        points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
+    }
+}
+
+/// The point of a loop at a place around the axis, and where its surface goes on there.
+fn straight_onward(edge: &Edge<'_>, rail: &Rail) -> impl Fn(f64) -> (DVec3, DVec3) {
+    move |around: f64| {
+        let (a, b, _, t) = rail.segment(around);
+        let onward = edge.onward[a].lerp(edge.onward[b], t).normalize_or_zero();
+        (rail.at(around)[0], onward)
+    }
+}
+
+/// How a curve leaves `from` in the direction `onward` for `to`, which it reaches against `back`.
+fn slope(from: DVec3, onward: DVec3, to: DVec3, back: DVec3, radius: f64) -> DVec3 {
+    let chord = to - from;
+    if onward == DVec3::ZERO {
+        return chord;
+    }
+    let length = chord.length();
+    let back = if back == DVec3::ZERO { chord / length.max(f64::MIN_POSITIVE) } else { -back };
+    // Of the arc that turns by as much.
+    let angle = onward.dot(back).clamp(-1.0, 1.0).acos().clamp(1e-3, 2.8);
+    let slope = onward * (length * 2.0 * (0.25 * angle).tan() / (0.5 * angle).sin());
+    let aside = slope.reject_from_normalized(chord.try_normalize().unwrap_or(onward));
+    let most = REACH * radius;
+    if aside.length() > most { slope * (most / aside.length()) } else { slope }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ring(n: usize, radius: f64, z: f64) -> (Ring, Vec<f64>) {
+        let at = |k: usize| {
+            let t = std::f64::consts::TAU * k as f64 / n as f64;
+            DVec3::new(radius * t.cos(), radius * t.sin(), z)
+        };
+        let ring = Ring::new((0..n).map(at).collect());
+        let around = ring.shares.clone();
+        (ring, around)
+    }
+
+    #[test]
+    fn a_gap_in_a_cylinder_is_closed_by_a_cylinder() {
+        let ((a, s), (b, t)) = (ring(60, 1.0, 0.0), ring(60, 1.0, 5.0));
+        let (up, down) = (vec![DVec3::Z; 60], vec![-DVec3::Z; 60]);
+        let lower = Edge { ring: &a, around: &s, onward: &up };
+        let upper = Edge { ring: &b, around: &t, onward: &down };
+        let loft = Loft::new(&lower, &upper);
+        for k in 0..100 {
+            let spot = loft.at(0.01 * f64::from(k), 0.37);
+            assert!((spot.point.truncate().length() - 1.0).abs() < 1e-3);
+            assert!((spot.point.z - 5.0 * 0.37).abs() < 1e-6);
+        }
+        assert!((loft.length(0.2) - 5.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_points() {
+        let ((a, s), (b, mut t)) = (ring(17, 1.0, 0.0), ring(31, 2.0, 3.0));
+        t.iter_mut().for_each(|t| *t += 0.13);
+        let (up, none) = (vec![DVec3::new(0.6, 0.0, 0.8); 17], vec![DVec3::ZERO; 31]);
+        let lower = Edge { ring: &a, around: &s, onward: &up };
+        let loft = Loft::new(&lower, &Edge { ring: &b, around: &t, onward: &none });
+        let d = 1e-6;
+        for (x, y) in [(0.1, 0.2), (0.5, 0.9), (1.3, 0.4)] {
+            let (here, along, across) = (loft.at(x, y), loft.at(x + d, y), loft.at(x, y + d));
+            assert!(((along.point - here.point) / d - here.along).length() < 1e-3);
+            assert!(((across.point - here.point) / d - here.across).length() < 1e-3);
+        }
+        assert!(loft.at(s[3], 0.0).point.distance(a.points[3]) < 1e-12);
+        assert!(loft.at(t[3], 1.0).point.distance(b.points[3]) < 1e-12);
+    }
+}

@@ -1,0 +1,400 @@
+//! Two loops and the tube between them.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use rustc_hash::FxHashSet;
+
+use super::align::{Ring, best_fit, facing};
+use super::choose::{Bank, Chooser, Chosen};
+use super::loft::{Edge, Loft};
+use super::settle::settle;
+use super::{BridgeOptions, second};
+use crate::error::{Error, Result};
+use crate::fill::filled::{Clock, Fill, Shape};
+use crate::fill::layout::unroll::Unrolling;
+use crate::fill::loops::check::Checked;
+use crate::fill::loops::mesh::Rim;
+use crate::fill::loops::reserve::{edges, wanted};
+use crate::fill::options::{FillOptions, Smooth};
+use crate::fill::report::{FillReport, Grid};
+use crate::fill::surface::fair::Bending;
+use crate::fill::surface::fair::Membrane;
+use crate::fill::surface::fit::{SEAM_OF_CURVATURE, curvature_target, folds, rim_angle};
+use crate::fill::surface::patchwork::Patchwork;
+use crate::geometry::metrics::min_angle;
+use crate::progress::Progress;
+
+/// Sweeps within the surface at most.
+const SWEEPS: usize = 10;
+
+/// Steps towards the wanted curvature.
+const CURVED: usize = 2;
+
+/// A lattice whose least angle is below this, in radians, is compared with rings of any lengths.
+const THIN: f64 = 0.2;
+
+/// Two loops, put the way round that suits both.
+pub(super) struct Span<'a> {
+    vertices: &'a [DVec3],
+    rim: &'a Rim,
+    options: &'a BridgeOptions,
+    /// As the patch's boundary runs.
+    loops: [Checked; 2],
+    /// The loop with fewer vertices.
+    lower: usize,
+    conflicts: usize,
+}
+
+/// A tube in space.
+struct Attempt {
+    shape: Shape,
+    lattice: bool,
+    rows: f64,
+    min_angle: f64,
+}
+
+impl<'a> Span<'a> {
+    pub fn new(
+        vertices: &'a [DVec3],
+        rim: &'a Rim,
+        mut loops: [Checked; 2],
+        options: &'a BridgeOptions,
+    ) -> Span<'a> {
+        let lower = usize::from(loops[1].vertices.len() < loops[0].vertices.len());
+        let mut conflicts = loops[0].conflicts + loops[1].conflicts;
+        let [low, high] = rings(&loops, lower, vertices);
+        let faced = |k: usize| loops[k].vertices.len() - loops[k].wire;
+        let facing = facing(&low, &high);
+        let free = |k: usize| faced(k) == 0;
+        if facing <= -1.0 || (facing < 0.0 && (free(0) || free(1))) {
+            // The loop with fewer faces gives way.
+            let turned = usize::from(faced(1) <= faced(0));
+            conflicts += faced(turned) - 2 * loops[turned].conflicts;
+            loops[turned].vertices.reverse();
+            loops[turned].reversed ^= true;
+        }
+        Span { vertices, rim, options, loops, lower, conflicts }
+    }
+
+    pub fn fill(&self, rest: &FillOptions, progress: Progress<'_>) -> Result<Fill> {
+        let mut clock = Clock::new();
+        let banks = self.banks(&rest.polygons);
+        let [lower, upper] = &banks;
+        let joined = self.joined();
+        let apart = |tube: &Chosen| {
+            let m = lower.around.len() as u32;
+            let both = m + upper.around.len() as u32;
+            let sides = tube.tube.triangles.iter().flat_map(edges);
+            !sides.filter(|[a, b]| *a < m && *b >= m && *b < both).any(|[a, b]| joined.contains(&[a, b - m]))
+        };
+        let onward = self.onward();
+        let loft =
+            Loft::new(&edge(lower, &onward[self.lower]), &edge(upper, &reversed(&onward[1 - self.lower])));
+        clock.stage("surface");
+        let mut chosen = None;
+        // Where the mesh joins the loops already, a row more keeps them apart.
+        for least in [1, 2] {
+            let chooser = Chooser::new(lower, upper, &loft, self.options.rows, least)?;
+            let found = chooser.lattice(progress.part(0.0, 0.6))?.unwrap_or_else(|| chooser.stacked());
+            if apart(&found) {
+                chosen = Some((chooser, found));
+                break;
+            }
+        }
+        let Some((chooser, found)) = chosen else {
+            return Err(Error::NoPatch {
+                reason: "every tube repeats an edge of the mesh".into(),
+                at: self.vertices[self.loops[0].vertices[0] as usize].truncate().to_array(),
+            });
+        };
+        clock.stage("grid");
+        let mut best = self.placed(&banks, &loft, &found, progress.part(0.6, 0.9))?;
+        if best.lattice && best.min_angle < THIN {
+            let other = chooser.stacked();
+            if apart(&other) {
+                let other = self.placed(&banks, &loft, &other, progress.part(0.9, 1.0))?;
+                if other.min_angle > 1.5 * best.min_angle {
+                    best = other;
+                }
+            }
+        }
+        clock.stage("fair");
+        Ok(self.finish(best, clock))
+    }
+
+    /// The two loops run to the right, the lower one first.
+    fn banks(&self, polygons: &[u32]) -> [Bank; 2] {
+        let [low, high] = rings(&self.loops, self.lower, self.vertices);
+        let wants = |k: usize| {
+            let wanted = wanted(&self.loops[k].vertices, self.rim, polygons).into_iter();
+            wanted.map(|edges| i64::from(edges - 1).clamp(2, 6)).collect::<Vec<_>>()
+        };
+        let twist = self.options.twist / std::f64::consts::TAU - best_fit(&low, &high);
+        let lower = Bank { around: low.shares.clone(), ring: low, wanted: wants(self.lower) };
+        let around = high.shares.iter().map(|share| share + twist).collect();
+        let upper = Bank { around, ring: high, wanted: reversed(&wants(1 - self.lower)) };
+        [lower, upper]
+    }
+
+    /// Edges of the mesh from one loop to the other: by the place in the lower and in the upper one.
+    fn joined(&self) -> FxHashSet<[u32; 2]> {
+        let upper = reversed(&self.loops[1 - self.lower].vertices);
+        let places: rustc_hash::FxHashMap<u32, u32> = upper.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
+        let mut joined = FxHashSet::default();
+        for (&v, k) in self.loops[self.lower].vertices.iter().zip(0..) {
+            let near = self.rim.local(v).map(|v| self.rim.neighbours(v)).unwrap_or_default();
+            let near = near.into_iter().map(|u| self.rim.ids[u as usize]);
+            let loose = self.rim.loose.iter().filter(|edge| edge.contains(&v));
+            for u in near.chain(loose.flatten().copied()) {
+                joined.extend(places.get(&u).map(|&place| [k, place]));
+            }
+        }
+        joined
+    }
+
+    /// See [`onward`], for both loops.
+    fn onward(&self) -> [Vec<DVec3>; 2] {
+        let of = |k: usize| {
+            let loop_ = &self.loops[k].vertices;
+            let apex = |k: usize| {
+                let (a, b) = (self.rim.local(loop_[k])?, self.rim.local(loop_[(k + 1) % loop_.len()])?);
+                let fan = self.rim.around(a).iter().map(|&t| self.rim.triangles[t as usize]);
+                let triangle = fan.into_iter().find(|t| t.contains(&b))?;
+                let v = triangle.into_iter().find(|&v| v != a && v != b)?;
+                Some(self.vertices[self.rim.ids[v as usize] as usize])
+            };
+            let apexes = (0..loop_.len()).map(apex).collect::<Vec<_>>();
+            let points = loop_.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
+            if self.options.smooth == Smooth::Flat {
+                vec![DVec3::ZERO; points.len()]
+            } else {
+                onward(&points, &apexes)
+            }
+        };
+        [of(0), of(1)]
+    }
+
+    fn placed(
+        &self,
+        banks: &[Bank; 2],
+        loft: &Loft,
+        chosen: &Chosen,
+        progress: Progress<'_>,
+    ) -> Result<Attempt> {
+        let [lower, upper] = banks;
+        let (m, n) = (lower.around.len(), upper.around.len());
+        let tube = &chosen.tube;
+        // Numbers of the tube's vertices in the patch.
+        let first = self.loops[0].vertices.len();
+        let number = |v: u32| {
+            let v = v as usize;
+            let at = |loop_: usize, k: usize| if loop_ == 0 { k } else { first + k };
+            let place = if v < m {
+                at(self.lower, v)
+            } else if v < m + n {
+                at(1 - self.lower, m + n - 1 - v)
+            } else {
+                v
+            };
+            place as u32
+        };
+        let triangles = tube.triangles.iter().map(|t| t.map(number)).collect::<Vec<_>>();
+        let loop_ = self.loops.iter().flat_map(|l| l.vertices.iter().copied()).collect::<Vec<_>>();
+        let rings = if self.options.smooth == Smooth::Curvature { 2 } else { 1 };
+        let mut work = Patchwork::new(&loop_, tube.around.len(), &triangles, self.rim, rings)?;
+        work.first = first;
+        let mut flat = vec![DVec2::ZERO; work.end];
+        for (k, &around) in lower.around.iter().chain(&upper.around).enumerate() {
+            flat[number(k as u32) as usize] = DVec2::new(around, if k < m { 0.0 } else { 1.0 });
+        }
+        // Edges grow evenly from loop to loop.
+        let grow = (upper.ring.length * m as f64) / (lower.ring.length * n as f64);
+        for (v, (&around, &height)) in tube.around.iter().zip(&tube.height).enumerate() {
+            let even = (grow - 1.0).abs() < 1e-3;
+            let height = if even { height } else { (grow.powf(height) - 1.0) / (grow - 1.0) };
+            flat[m + n + v] = DVec2::new(around, height);
+        }
+        let mut positions = work_positions(&work, &loop_, self.vertices);
+        for v in work.inner() {
+            positions[v] = loft.at(flat[v].x, flat[v].y).point;
+        }
+        settle(&work, loft, &mut flat, &mut positions, SWEEPS, progress)?;
+        let mut shape = Shape {
+            work,
+            loop_,
+            reversed: self.loops[0].reversed,
+            bridged: Some(second(&self.loops)),
+            flat,
+            smooth: self.options.smooth,
+            vertices: self.vertices.len(),
+            positions,
+            creases: vec![],
+        };
+        if self.options.smooth == Smooth::Curvature {
+            shape.positions = shape.curved(shape.positions.clone())?;
+        }
+        if shape.positions.iter().any(|p| !p.is_finite()) {
+            return Err(Error::Solver { stage: "bridge", reason: "a vertex is not finite".into() });
+        }
+        let least = min_angle(&shape.positions, &shape.work.triangles[..shape.work.n_patch]);
+        Ok(Attempt { shape, lattice: chosen.lattice, rows: tube.rows, min_angle: least })
+    }
+
+    fn finish(&self, attempt: Attempt, clock: Clock) -> Fill {
+        let Attempt { shape, lattice, rows, min_angle } = attempt;
+        let work = &shape.work;
+        let (n, first_new) = (work.n as u32, self.vertices.len() as u32);
+        let name = |v: u32| if v < n { shape.loop_[v as usize] } else { first_new + v - n };
+        let own = &work.triangles[..work.n_patch];
+        let irregular = |v: &usize| work.range(*v).len() != 6;
+        let report = FillReport {
+            triangles: own.len(),
+            vertices: work.inner().len(),
+            irregular: work.inner().filter(irregular).count(),
+            irregular_loop: (0..work.n).filter(irregular).count(),
+            grid: if lattice { Grid::Lattice } else { Grid::Graded },
+            rows: rows.round() as usize,
+            folded: false,
+            rim_angle: rim_angle(work, &shape.positions),
+            unrolling: Unrolling::default(),
+            distortion: 0.0,
+            winding_conflicts: self.conflicts,
+            wire_edges: self.loops.iter().map(|l| l.wire).sum(),
+            min_angle,
+            folds: folds(work, &shape.positions),
+            self_intersections: 0,
+            creases: 0,
+            creases_kept: 0,
+            repaired: 0,
+            seconds: clock.seconds,
+        };
+        let given = |l: &Checked| if l.reversed { reversed(&l.vertices) } else { l.vertices.clone() };
+        Fill {
+            loop_: self.loops.iter().flat_map(given).collect(),
+            vertices: shape.positions[work.inner()].to_vec(),
+            triangles: own.iter().map(|t| t.map(name)).collect(),
+            report,
+            creases: vec![],
+            shape: Arc::new(shape),
+        }
+    }
+}
+
+impl Shape {
+    /// Positions of a bridge for a mesh with vertices at `mesh`: on the surface between its loops where they were on
+    /// the old one.
+    ///
+    /// # Errors
+    /// [`Error::Solver`].
+    pub(in crate::fill) fn lofted(&self, mesh: &[DVec3], first: usize) -> Result<Vec<DVec3>> {
+        let work = &self.work;
+        let mut positions = work_positions(work, &self.loop_, mesh);
+        let bank = |range: std::ops::Range<usize>| {
+            let apex = |v: usize| {
+                let next = work.after(v) as u32;
+                let mut beyond = work.fan(v).iter().filter(|&&[t, ..]| t as usize >= work.n_patch);
+                beyond.find_map(|&[_, p, q]| match next {
+                    next if p == next => Some(positions[q as usize]),
+                    next if q == next => Some(positions[p as usize]),
+                    _ => None,
+                })
+            };
+            let points = positions[range.clone()].to_vec();
+            let apexes = range.clone().map(apex).collect::<Vec<_>>();
+            let flat = self.smooth == Smooth::Flat;
+            let mut onward = if flat { vec![DVec3::ZERO; points.len()] } else { onward(&points, &apexes) };
+            let mut around = self.flat[range.clone()].iter().map(|p| p.x).collect::<Vec<_>>();
+            let upper = self.flat[range.start].y > 0.5;
+            let mut ring = Ring::new(points);
+            if upper {
+                (around, onward, ring) = (reversed(&around), reversed(&onward), ring.reversed());
+            }
+            (upper, Bank { ring, around, wanted: vec![] }, onward)
+        };
+        let mut banks = [bank(0..first), bank(first..work.n)];
+        banks.sort_by_key(|bank| bank.0);
+        let [(_, lower, below), (_, upper, above)] = &banks;
+        let loft = Loft::new(&edge(lower, below), &edge(upper, above));
+        for v in work.inner() {
+            positions[v] = loft.at(self.flat[v].x, self.flat[v].y).point;
+        }
+        if self.smooth == Smooth::Curvature {
+            positions = self.curved(positions)?;
+        }
+        if positions.iter().any(|p| !p.is_finite()) {
+            return Err(Error::Solver { stage: "bridge", reason: "a vertex is not finite".into() });
+        }
+        Ok(positions)
+    }
+
+    /// Moves the vertices of a bridge along their normals towards the curvature of the surroundings.
+    fn curved(&self, start: Vec<DVec3>) -> Result<Vec<DVec3>> {
+        let work = &self.work;
+        if work.inner().is_empty() || !work.closed[..work.n].contains(&true) {
+            return Ok(start);
+        }
+        let steps = || {
+            let (bending, membrane) = (Bending::new(work)?, Membrane::new(work)?);
+            let mut positions = start.clone();
+            for _ in 0..CURVED {
+                let target = curvature_target(work, &membrane, &positions)?;
+                bending.normal_step(&mut positions, SEAM_OF_CURVATURE, Some(&target))?;
+            }
+            Ok(positions)
+        };
+        match steps() {
+            // Triangles without area spoil the equations.
+            Err(Error::Solver { .. }) => Ok(start),
+            other => other,
+        }
+    }
+}
+
+/// The loops' own positions, those of vertices around, and zeros between.
+fn work_positions(work: &Patchwork, loop_: &[u32], mesh: &[DVec3]) -> Vec<DVec3> {
+    let mut positions = vec![DVec3::ZERO; work.len()];
+    for (k, &v) in loop_.iter().enumerate() {
+        positions[k] = mesh[v as usize];
+    }
+    for (k, &v) in work.outer.iter().enumerate() {
+        positions[work.end + k] = mesh[v as usize];
+    }
+    positions
+}
+
+/// The two loops run to the right, the lower one first.
+fn rings(loops: &[Checked; 2], lower: usize, vertices: &[DVec3]) -> [Ring; 2] {
+    let ring = |k: usize| Ring::new(loops[k].vertices.iter().map(|&v| vertices[v as usize]).collect());
+    [ring(lower), ring(1 - lower).reversed()]
+}
+
+fn edge<'a>(bank: &'a Bank, onward: &'a [DVec3]) -> Edge<'a> {
+    Edge { ring: &bank.ring, around: &bank.around, onward }
+}
+
+fn reversed<T: Clone>(items: &[T]) -> Vec<T> {
+    items.iter().rev().cloned().collect()
+}
+
+/// For each vertex of a loop the direction in which the surface around goes on; `apexes`: the third corners of the
+/// triangles beyond the edges. Zero where there are none.
+fn onward(points: &[DVec3], apexes: &[Option<DVec3>]) -> Vec<DVec3> {
+    const ROUNDS: usize = 2;
+    let n = points.len();
+    let across = |k: usize| {
+        let (a, b) = (points[k], points[(k + 1) % n]);
+        let along = (b - a).normalize_or_zero();
+        let away = apexes[k].map_or(DVec3::ZERO, |apex| 0.5 * (a + b) - apex);
+        away.reject_from_normalized(along).normalize_or_zero()
+    };
+    let edges = (0..n).map(across).collect::<Vec<_>>();
+    let mut onward = (0..n).map(|k| edges[k] + edges[(k + n - 1) % n]).collect::<Vec<_>>();
+    for _ in 0..ROUNDS {
+        let before = onward.clone();
+        for k in 0..n {
+            onward[k] = 2.0 * before[k] + before[(k + 1) % n] + before[(k + n - 1) % n];
+        }
+    }
+    onward.into_iter().map(|v| v.normalize_or_zero()).collect()
+}
