@@ -15,7 +15,7 @@ import numpy as np
 from ..api import Body, native, reason_of
 from ..bodies.outlines import Plane, Sketch, project
 
-ALGORITHM = 2
+ALGORITHM = 3
 """Raised when the same stroke and options give another body. A body made by another one is left alone until asked."""
 
 TILTED = 0.9999
@@ -32,13 +32,15 @@ class LeftError(SolveError):
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """A triangle lattice in a drawing plane."""
+    """A lattice in a drawing plane."""
 
     plane: Plane
     edge_length: float
     angle: float
     origin: np.ndarray
     """(2,) in the plane."""
+    patch: Any = None
+    """What was meshed on it last: it knows how the lattice bends. None after a file was opened: then it is straight."""
 
 
 def solve(
@@ -66,8 +68,12 @@ def solve(
     options = dict(sketch_options)
     if lattice is not None and options.get("mirror") is None:
         sketch = moved(sketch, lattice.plane)
-        options.pop("triangles", None)
-        options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
+        for name in ("triangles", "edge_length", "angle", "quads"):
+            options.pop(name, None)
+        if lattice.patch is not None:
+            options["keep"] = lattice.patch
+        else:
+            options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     try:
         patch = _patch(gridmesh, sketch.outline, holes, options)
@@ -85,7 +91,7 @@ def solve(
         silhouette=list(surface.silhouette),
         report={**patch.report, **surface.report},
     )
-    return body, Lattice(sketch.plane, patch.edge_length, patch.angle, np.array(patch.origin))
+    return body, Lattice(sketch.plane, patch.edge_length, patch.angle, np.array(patch.origin), patch)
 
 
 _last: list[Any] = []
@@ -94,7 +100,9 @@ _last: list[Any] = []
 
 def _patch(gridmesh: Any, outline: np.ndarray, holes: list[np.ndarray], options: dict[str, Any]) -> Any:
     """Return the patch of a drawing; at once where only the shape of the body was changed since the last one."""
-    key = (outline.tobytes(), [hole.tobytes() for hole in holes], repr(options))
+    kept = options.get("keep")
+    shown = {name: value for name, value in options.items() if name != "keep"}
+    key = (outline.tobytes(), [hole.tobytes() for hole in holes], repr(shown), kept)
     if not _last or _last[0] != key:
         patch = gridmesh.mesh_sketch(outline, holes, least=False, **options)
         _last[:] = key, patch

@@ -95,7 +95,9 @@ def library_literals():
     for path in sorted(LIBRARY.rglob("*.rs")):
         if re.search("oracle|tests|svg", path.as_posix()):
             continue
-        code = re.split(r"#\[cfg\(test\)\]\s*(?:pub\(super\) )?mod tests \{", path.read_text(encoding="utf-8"))[0]
+        code = re.split(
+            r"#\[cfg\(test\)\]\s*(?:pub\(super\) )?mod tests \{", path.read_text(encoding="utf-8")
+        )[0]
         code = re.sub(r"//[^\n]*", "", code)
         code = re.sub(r"#!?\[(?:[^\[\]]|\[[^\]]*\])*\]", "", code)
         code = re.sub(r"(?:debug_)?assert\w*!\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)", "", code)

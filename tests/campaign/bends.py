@@ -29,7 +29,10 @@ COLUMNS = [
     ("long", "99 % edges / median", (50, 100), "{:.2f}"),
     ("seconds", "CPU, ms", (50,), "{:.1f}"),
 ]
-BODY = [("body_angle", "body: least angle", (50, 10, 5, 0), "{:.1f}"), ("embedded", "embedded", (0,), "{:.0f}")]
+BODY = [
+    ("body_angle", "body: least angle", (50, 10, 5, 0), "{:.1f}"),
+    ("embedded", "embedded", (0,), "{:.0f}"),
+]
 
 
 def drawings(folder: Path, sets: list[str], every: int) -> Iterator[tuple[str, np.ndarray, list[np.ndarray]]]:
@@ -142,7 +145,11 @@ def table(rows: dict[float, dict[str, dict]], columns: list) -> list[str]:
     first = next(iter(rows.values()))
     for bend, of in rows.items():
         refused = sum("refused" in row for row in of.values())
-        cells = [f"{bend:g}", f"{refused} of {len(of)}", f"{100 * np.mean([of[k]['bend'] > 0 for k in able]):.0f}"]
+        cells = [
+            f"{bend:g}",
+            f"{refused} of {len(of)}",
+            f"{100 * np.mean([of[k]['bend'] > 0 for k in able]):.0f}",
+        ]
         for key, _, quantiles, form in columns:
             found = np.percentile([of[k][key] for k in able], quantiles)
             cells.append(" / ".join(form.format(x) for x in found))
@@ -157,7 +164,9 @@ def table(rows: dict[float, dict[str, dict]], columns: list) -> list[str]:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("curves", type=Path)
     parser.add_argument("--triangles", type=int, default=2000)
     parser.add_argument("--every", type=int, default=1)
@@ -187,7 +196,11 @@ def main() -> None:
     key = "body_angle" if args.body else "angle"
     last = {name: row for name, row in rows[args.bends[-1]].items() if "refused" not in row}
     for name in sorted(last, key=lambda name: last[name][key])[: args.worst]:
-        print(f"{name[:40]:40s}", *(f"{rows[b][name].get(key, np.nan):.1f}" for b in args.bends), last[name]["number"])
+        print(
+            f"{name[:40]:40s}",
+            *(f"{rows[b][name].get(key, np.nan):.1f}" for b in args.bends),
+            last[name]["number"],
+        )
 
 
 if __name__ == "__main__":

@@ -227,7 +227,11 @@ def value(key: str, able: list[dict[str, float]]) -> float | None:
         angles = [numbers["angle"] for numbers in able if "angle" in numbers]
         if not angles:
             return None
-        return min(angles) if key == "worst" or len(angles) < 2 else quantiles(angles, n=10, method="inclusive")[0]
+        return (
+            min(angles)
+            if key == "worst" or len(angles) < 2
+            else quantiles(angles, n=10, method="inclusive")[0]
+        )
     return median(numbers[key] for numbers in able) if key in able[0] else None
 
 

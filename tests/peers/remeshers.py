@@ -76,7 +76,9 @@ class InstantMeshes(Mesher):
                 raise Failed(str(error)) from error
         if not len(triangles):
             raise Failed("no triangles")
-        return Mesh(seconds, len(triangles), vertices[:, :2].astype(float) * scale + low, triangles.astype(int))
+        return Mesh(
+            seconds, len(triangles), vertices[:, :2].astype(float) * scale + low, triangles.astype(int)
+        )
 
 
 class TriWild(Mesher):
