@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """When bodies follow: after every change of their drawing, quickly; and in full when the change has ended.
 
-While a stroke is dragged the lattice stays, so that the mesh does not jump. When nothing has changed for a moment and
+While a stroke is dragged the lattice stays, with its bend, so that the mesh does not jump. When nothing has changed for a moment and
 no tool is running, the best lattice is searched, so that the result depends on the stroke alone.
 """
 
@@ -324,8 +324,11 @@ def _solved(live: Any, sketch: Sketch, lattice: Lattice | None) -> tuple[Body, L
 
 
 def _stored(live: Any) -> Lattice | None:
-    """Return the lattice of the body as it is, after a file was opened or a step undone."""
-    if not live.lattice[0]:
+    """Return the lattice of the body as it is, after a file was opened or a step undone; none that may be bent.
+
+    Only a lattice that was made in this session is known with its bend.
+    """
+    if not live.lattice[0] or live.sketch_options().get("bend"):
         return None
     values = np.array(live.plane, float)
     plane = Plane(values[:3], values[3:].reshape(3, 3))

@@ -15,7 +15,7 @@ import numpy as np
 from ..api import Body, faces_of, native, reason_of
 from ..bodies.outlines import Plane, Sketch, project
 
-ALGORITHM = 2
+ALGORITHM = 3
 """Raised when the same stroke and options give another body. A body made by another one is left alone until asked."""
 
 TILTED = 0.9999
@@ -39,6 +39,8 @@ class Lattice:
     angle: float
     origin: np.ndarray
     """(2,) in the plane."""
+    patch: Any = None
+    """What was meshed on it last: it knows how the lattice bends. None after a file was opened: then it is straight."""
 
 
 def solve(
@@ -66,9 +68,12 @@ def solve(
     options = dict(sketch_options)
     if lattice is not None and options.get("mirror") is None:
         sketch = moved(sketch, lattice.plane)
-        options.pop("triangles", None)
-        options.pop("quads", None)
-        options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
+        for name in ("triangles", "edge_length", "angle", "quads"):
+            options.pop(name, None)
+        if lattice.patch is not None:
+            options["keep"] = lattice.patch
+        else:
+            options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     try:
         patch = _patch(gridmesh, sketch.outline, holes, options)
@@ -87,7 +92,7 @@ def solve(
         corner=list(surface.corner),
         report={**patch.report, **surface.report},
     )
-    return body, Lattice(sketch.plane, patch.edge_length, patch.angle, np.array(patch.origin))
+    return body, Lattice(sketch.plane, patch.edge_length, patch.angle, np.array(patch.origin), patch)
 
 
 _last: list[Any] = []
@@ -96,7 +101,9 @@ _last: list[Any] = []
 
 def _patch(gridmesh: Any, outline: np.ndarray, holes: list[np.ndarray], options: dict[str, Any]) -> Any:
     """Return the patch of a drawing; at once where only the shape of the body was changed since the last one."""
-    key = (outline.tobytes(), [hole.tobytes() for hole in holes], repr(options))
+    kept = options.get("keep")
+    shown = {name: value for name, value in options.items() if name != "keep"}
+    key = (outline.tobytes(), [hole.tobytes() for hole in holes], repr(shown), kept)
     if not _last or _last[0] != key:
         patch = gridmesh.mesh_sketch(outline, holes, least=False, **options)
         _last[:] = key, patch

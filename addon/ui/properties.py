@@ -99,6 +99,14 @@ class SketchOptions:
         soft_min=0.5,
         soft_max=3.0,
     )
+    bend: FloatProperty(
+        name="Bend",
+        description="How far the grid may bend with the stroke, which leaves fewer irregular vertices; 0 is straight",
+        subtype="FACTOR",
+        default=defaults.BEND,
+        min=0.0,
+        max=1.0,
+    )
     angle_mode: EnumProperty(
         name="Grid Angle",
         description="Direction of the grid; quads with a fixed one do not bend with the drawing",
@@ -170,6 +178,7 @@ class SketchOptions:
             **fineness[self.resolution],
             "boundary": self.boundary.lower(),
             "max_distance": self.max_distance,
+            "bend": self.bend,
             "angle": self.angle if self.angle_mode == "FIXED" else None,
             "corner_angle": self.corner_angle,
             "mirror": "auto" if self.mirror == "AUTO" else None,
@@ -189,6 +198,9 @@ class SketchOptions:
         if body is not None:
             body.prop(self, "boundary")
             body.prop(self, "max_distance")
+            row = body.row()
+            row.active = self.boundary == "OPTIMAL" and self.angle_mode == "AUTO"
+            row.prop(self, "bend")
             body.prop(self, "angle_mode")
             if self.angle_mode == "FIXED":
                 body.prop(self, "angle")

@@ -1,5 +1,7 @@
 """Lattices that bend with the drawing: what they promise beside what every patch does."""
 
+import pickle
+
 import gridmesh
 import numpy as np
 import pytest
@@ -154,6 +156,88 @@ def test_narrow_parts_get_more_triangles_by_width():
     plain, wide = (mesh_sketch(points, triangles=1500, density=d) for d in (None, "width"))
     tip = points[np.argmax(points[:, 0])] - [0.4, 0]
     assert lengths_near(wide, tip, 0.5) <= lengths_near(plain, tip, 0.5)
+
+
+def test_lattices_bend_unless_told_otherwise():
+    points = with_a_foot(0.9)
+    given, plain = mesh_sketch(points, triangles=2000), gridmesh.mesh_sketch(points, triangles=2000)
+    assert plain.report["bend"] > 0
+    assert plain.vertices.tobytes() == given.vertices.tobytes()
+
+
+@pytest.mark.parametrize("angle", [12, 20, 30])
+def test_sharp_tips_are_blunted_by_two_edges_at_most(angle):
+    # A disc with a spike; two triangles share the angle of a tip.
+    t = np.linspace(0, 2 * np.pi, 120, endpoint=False)
+    disc = np.column_stack([np.cos(t), np.sin(t)])
+    half = np.radians(angle / 2)
+    points = np.vstack([disc[np.abs(t - np.pi) < np.pi - half * 1.5], [[np.cos(half) + 1.2, 0.0]]])
+    for triangles in (1000, 4000):
+        patch = mesh_sketch(points, triangles=triangles)
+        check_patch(patch, [points])
+        assert np.degrees(patch.report["min_angle"]) > 14
+        assert patch.report["max_deviation"] <= 2
+
+
+def test_no_edges_are_much_longer_than_most():
+    for drawing in DRAWINGS.values():
+        patch = mesh_sketch(drawing["points"], triangles=3000)
+        edges = np.concatenate([patch.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+        lengths = np.linalg.norm(np.diff(patch.vertices[edges], axis=1)[:, 0], axis=1)
+        assert np.percentile(lengths, 99) <= 2.5 * np.median(lengths)
+
+
+def stay(patch, other):
+    """The share of a patch's vertices that lie where one of another lies."""
+    apart = np.linalg.norm(patch.vertices[:, None] - other.vertices[None], axis=2).min(axis=1)
+    return np.mean(apart < 0.02 * other.edge_length)
+
+
+def test_a_kept_lattice_stays_with_its_bend_while_a_part_is_moved():
+    shares = []
+    for points in blobs(5):
+        patch = last = mesh_sketch(points, triangles=1500)
+        assert patch.report["bend"] > 0
+        again = gridmesh.mesh_sketch(points, keep=patch)
+        assert again.report["bend"] == patch.report["bend"]
+        assert stay(again, patch) > 0.9
+        away = np.minimum(np.arange(200), 200 - np.arange(200))
+        weight = np.exp(-0.5 * (away / 6) ** 2)[:, None]
+        for step in range(1, 4):
+            moved = points + weight * points[0] / np.linalg.norm(points[0]) * patch.edge_length * step / 2
+            last = gridmesh.mesh_sketch(moved, keep=last)
+            check_patch(last, [moved])
+            shares.append(stay(last, patch))
+    assert np.median(shares) > 0.8
+
+
+def test_a_kept_lattice_may_be_straight():
+    points = blobs(1)[0]
+    straight = mesh_sketch(points, triangles=800, bend=0)
+    kept = gridmesh.mesh_sketch(points, keep=straight)
+    assert kept.report["bend"] == 0
+    assert stay(kept, straight) > 0.9
+    # A pickled patch has lost its bend, not its lattice.
+    bent = mesh_sketch(points, triangles=800)
+    assert gridmesh.mesh_sketch(points, keep=pickle.loads(pickle.dumps(bent))).report["bend"] == 0
+
+
+def test_an_outline_that_has_left_the_bent_lattice_is_meshed_all_the_same():
+    patch = mesh_sketch(blobs(1)[0], triangles=800)
+    check_patch(
+        gridmesh.mesh_sketch(with_a_foot(0.9) + [3.0, 1.0], keep=patch), [with_a_foot(0.9) + [3.0, 1.0]]
+    )
+
+
+@pytest.mark.parametrize("option", ["triangles", "edge_length", "angle", "origin", "mirror"])
+def test_what_a_kept_lattice_decides_is_not_asked_for_beside_it(option):
+    patch = mesh_sketch(circle(), triangles=300)
+    given = {"triangles": 300, "edge_length": 0.1, "angle": 0.1, "origin": (0, 0), "mirror": "auto"}[option]
+    with pytest.raises(gridmesh.GridMeshError) as refused:
+        gridmesh.mesh_sketch(circle(), keep=patch, **{option: given})
+    assert refused.value.kind == "invalid_option"
+    with pytest.raises(TypeError):
+        gridmesh.mesh_sketch(circle(), keep=3)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,8 @@
 # /// script
 # requires-python = ">=3.11"
 # dependencies = [
-#   "gmsh==4.15.2", "gridmesh", "netgen-mesher==6.2.2608", "numpy==1.26.4", "triangle==20250106"
+#   "gmsh==4.15.2", "gridmesh", "netgen-mesher==6.2.2608", "numpy==1.26.4", "pyinstantmeshes==1.0.0", "triangle==20250106",
+#   "wildmeshing==0.4.1"
 # ]
 #
 # [tool.uv]
@@ -22,8 +23,8 @@ Every drawing is meshed at every number of triangles. Ours come first and say ho
 vertices there are. The others get the drawing resampled evenly to that number of boundary vertices, and a
 size that is searched until their number of triangles is within 3 % of ours. Then all run in turn, on one
 thread, several rounds; a drawing's time is the median of its rounds, in processor time. The tables show
-medians over the drawings that we and all peers could do; variants of ours say if there are fewer (`grown`
-has no holes). Deviations are in edge lengths of an equilateral mesh of the same number of triangles.
+medians over the drawings that we and all peers could do; variants of ours, Instant Meshes and TriWild say if there are fewer (`grown`
+has no holes). Beside the median of the least angle stand its tenth percentile and the worst. Deviations are in edge lengths of an equilateral mesh of the same number of triangles.
 """
 
 from __future__ import annotations
@@ -39,11 +40,12 @@ from collections import Counter
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
-from statistics import median
+from statistics import median, quantiles
 
 from drawing import Drawing, is_simple, load, resampled
 from measure import measure
 from meshers import Failed, Gmsh, InRust, Mesh, Mesher, Netgen, Ours, Problem, RustProcess, Triangle
+from remeshers import InstantMeshes, TriWild
 
 # Ours would use every core; read when it first starts a thread. The others have one anyway.
 os.environ["RAYON_NUM_THREADS"] = "1"
@@ -55,9 +57,12 @@ TRIALS = 16
 # Meshes larger than this are timed on every fifth drawing and not measured.
 LARGE = 20_000
 COLUMNS = {
-    "irregular": ("irregular vertices, %", "{:.1f}"),
+    "irregular": ("irregular vertices, %", "{:.2f}"),
+    "excess": ("sum of valence - 6, of 1000", "{:.1f}"),
     "chords": ("chords", "{:.0f}"),
     "angle": ("smallest angle, °", "{:.1f}"),
+    "tenth": ("its tenth percentile", "{:.1f}"),
+    "worst": ("its worst", "{:.1f}"),
     "ratio": ("radius ratio", "{:.3f}"),
     "curve_to_mesh": ("curve to mesh", "{:.2f}"),
     "mesh_to_curve": ("mesh to curve", "{:.2f}"),
@@ -73,6 +78,8 @@ class Results:
 
     rows: dict[int, list[dict[str, dict[str, float]]]] = field(default_factory=dict)
     notes: dict[int, Counter[str]] = field(default_factory=dict)
+    refused: dict[int, Counter[str]] = field(default_factory=dict)
+    """How many drawings each mesher could not do."""
 
 
 def main() -> None:
@@ -87,23 +94,27 @@ def main() -> None:
     rust = RustProcess(ROOT)
     reference = Ours("gridmesh")
     others: list[Mesher] = [
+        Ours("gridmesh, straight", bend=0.0),
         Ours("gridmesh, angle fixed", angle=0.0),
         InRust("gridmesh, angle fixed, from Rust", rust, "optimal", ours=True),
         Ours("gridmesh `grown`, angle fixed", boundary="grown", angle=0.0),
         Triangle("Triangle `pq30a`"),
         Gmsh("gmsh, frontal"),
         Netgen("netgen"),
+        InstantMeshes("Instant Meshes, 6-RoSy", aligned=False),
+        InstantMeshes("Instant Meshes, 6-RoSy, boundary aligned", aligned=True),
+        TriWild("TriWild"),
         InRust("spade, refinement (Rust)", rust, "spade"),
         InRust("lattice points + spade (Rust)", rust, "lattice"),
     ]
     drawings = load()[:: arguments.every]
     results = Results()
     for count in arguments.counts:
-        results.rows[count], results.notes[count] = [], Counter()
+        results.rows[count], results.notes[count], results.refused[count] = [], Counter(), Counter()
         some = drawings[::5] if count > LARGE else drawings
         for k, drawing in enumerate(some):
             print(f"{count} triangles, drawing {k + 1} of {len(some)}", end="\r", file=sys.stderr, flush=True)
-            row = compare(drawing, count, reference, others, arguments.rounds, results.notes[count])
+            row = compare(drawing, count, reference, others, arguments.rounds, results)
             if row is not None:
                 results.rows[count].append(row)
     names = [mesher.name for mesher in [reference, *others]]
@@ -115,14 +126,16 @@ def main() -> None:
 
 
 def compare(
-    drawing: Drawing, count: int, reference: Mesher, others: list[Mesher], rounds: int, notes: Counter[str]
+    drawing: Drawing, count: int, reference: Mesher, others: list[Mesher], rounds: int, results: Results
 ) -> dict[str, dict[str, float]] | None:
     """The numbers of every mesher, or None if we or a peer could not do the drawing."""
     problem = Problem(drawing.contours, drawing.contours, count)
+    notes, refused = results.notes[count], results.refused[count]
     try:
         first = reference.mesh(problem, count, keep=True)
     except Failed as failed:
         notes[f"{reference.name}: {failed}: {drawing.name}"] += 1
+        refused[reference.name] += 1
         return None
     even = [resampled(contour, n) for contour, n in zip(drawing.contours, first.loops, strict=True)]
     problem = Problem(drawing.contours, even, first.n_triangles)
@@ -138,6 +151,7 @@ def compare(
             sizes[mesher], meshes[mesher] = search(mesher, problem, edge, keep=count <= LARGE)
         except Failed as failed:
             notes[f"{mesher.name}: {failed}: {drawing.name}"] += 1
+            refused[mesher.name] += 1
     if any(mesher not in meshes for mesher in others if mesher.is_peer):
         return None
 
@@ -191,18 +205,34 @@ def search(mesher: Mesher, problem: Problem, edge: float, keep: bool) -> tuple[f
 def table(count: int, names: list[str], results: Results) -> str:
     """All numbers at one number of triangles, and what is missing."""
     rows = results.rows[count]
-    columns = [key for key in COLUMNS if rows and key in rows[0][names[0]]]
+    columns = [key for key in COLUMNS if rows and value(key, [rows[0][names[0]]]) is not None]
     lines = [f"**{count} triangles**, medians over {len(rows)} drawings", ""]
-    lines.append("| mesher | " + " | ".join(COLUMNS[key][0] for key in columns) + " |")
-    lines.append("|---|" + "---:|" * len(columns))
+    lines.append("| mesher | " + " | ".join(COLUMNS[key][0] for key in columns) + " | refused |")
+    lines.append("|---|" + "---:|" * (len(columns) + 1))
     for name in names:
         able = [row[name] for row in rows if name in row]
-        cells = [COLUMNS[key][1].format(median(numbers[key] for numbers in able)) for key in columns]
+        if not able:
+            continue
+        cells = [COLUMNS[key][1].format(value(key, able)) for key in columns]
         label = name if len(able) == len(rows) else f"{name} ({len(able)} drawings)"
-        lines.append(f"| {label} | " + " | ".join(cells) + " |")
+        lines.append(f"| {label} | " + " | ".join([*cells, str(results.refused[count][name])]) + " |")
     if notes := results.notes[count]:
         lines += ["", "Left out:", *(f"* {note}" for note in notes)]
     return "\n".join(lines)
+
+
+def value(key: str, able: list[dict[str, float]]) -> float | None:
+    """What a column shows of some drawings."""
+    if key in ("tenth", "worst"):
+        angles = [numbers["angle"] for numbers in able if "angle" in numbers]
+        if not angles:
+            return None
+        return (
+            min(angles)
+            if key == "worst" or len(angles) < 2
+            else quantiles(angles, n=10, method="inclusive")[0]
+        )
+    return median(numbers[key] for numbers in able) if key in able[0] else None
 
 
 def times(names: list[str], results: Results) -> str:
@@ -224,7 +254,7 @@ def about() -> str:
     lock = (ROOT / "Cargo.lock").read_text(encoding="utf-8")
     spade = re.search(r'name = "spade"\nversion = "(.*)"', lock)
     compiler = subprocess.run(["rustc", "--version"], check=True, capture_output=True, text=True).stdout
-    packages = ("gridmesh", "triangle", "gmsh", "netgen-mesher", "numpy")
+    packages = ("gridmesh", "triangle", "gmsh", "netgen-mesher", "pyinstantmeshes", "wildmeshing", "numpy")
     versions = [f"{name} {version(name)}" for name in packages]
     parts = [processor(), platform.platform(), f"Python {platform.python_version()}", *versions]
     return ", ".join([*parts, f"spade {spade[1] if spade else '?'}", f"rustc {compiler.split()[1]}"])

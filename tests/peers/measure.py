@@ -28,6 +28,9 @@ def measure(vertices: np.ndarray, triangles: np.ndarray, drawing: Drawing, edge:
     boundary = vertices[rim]
     return {
         "irregular": 100 * irregular / (on_rim.sum() + 2 * (~on_rim).sum()),
+        "excess": 1000
+        * (np.abs(2 * valence[on_rim] - 8).sum() + 2 * np.abs(valence[~on_rim] - 6).sum())
+        / (on_rim.sum() + 2 * (~on_rim).sum()),
         "chords": float(chords.sum()),
         "angle": angle,
         "ratio": ratio,

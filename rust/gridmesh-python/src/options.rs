@@ -33,7 +33,6 @@ pub struct Shape {
     cells: Option<CellShape>,
     /// The option that gave a number.
     number: Option<CellShape>,
-    has_bend: bool,
 }
 
 impl Shape {
@@ -68,25 +67,18 @@ impl Shape {
                 set_sketch(options, name, value)?;
             }
             "bend" if value.is_none() => {}
-            "bend" => {
-                self.has_bend = true;
-                set_sketch(options, name, value)?;
-            }
             _ => return set_sketch(options, name, value),
         }
         Ok(true)
     }
 
-    /// Settles what follows from other options: a number of quads asks for quads, and these bend.
+    /// Settles what follows from other options: a number of quads asks for quads.
     pub fn settle(&self, py: Python<'_>, options: &mut SketchOptions) -> PyResult<()> {
         options.cells = self.cells.or(self.number).unwrap_or_default();
         let of = |shape| self.number == Some(shape) && options.cells != shape;
         if of(CellShape::Triangle) || of(CellShape::Quad) {
             let message = "cells is of one kind and the number of the other; allowed: cells='quads' with quads, cells='triangles' with triangles";
             return Err(error(py, "invalid_option", message));
-        }
-        if options.cells == CellShape::Quad && !self.has_bend {
-            options.bend = SketchOptions::quads().bend;
         }
         Ok(())
     }

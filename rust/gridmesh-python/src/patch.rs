@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use gridmesh::patch::{Loop, Patch as CorePatch};
 use gridmesh::path::placement::Lattice;
+use gridmesh::sketch::Kept;
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -50,6 +51,8 @@ use crate::error::error;
 #[pyclass(frozen, module = "gridmesh")]
 pub struct Patch {
     pub inner: Arc<CorePatch>,
+    /// Its lattice, to be kept.
+    pub kept: Kept,
     report: Py<PyDict>,
     vertices: PyOnceLock<Py<PyArray2<f64>>>,
     triangles: PyOnceLock<Py<PyArray2<i32>>>,
@@ -57,10 +60,10 @@ pub struct Patch {
 }
 
 impl Patch {
-    pub fn new(inner: CorePatch, report: Py<PyDict>) -> Self {
+    pub fn new(inner: CorePatch, report: Py<PyDict>, kept: Kept) -> Self {
         let inner = Arc::new(inner);
         let (vertices, triangles, quads) = (PyOnceLock::new(), PyOnceLock::new(), PyOnceLock::new());
-        Self { inner, report, vertices, triangles, quads }
+        Self { inner, kept, report, vertices, triangles, quads }
     }
 }
 
@@ -219,5 +222,6 @@ pub fn _patch(
     let ([x, y], angle, edge_length) = lattice;
     let lattice = Lattice { origin: DVec2::new(x, y), angle, edge_length };
     let inlets = inlets.into_iter().map(|inlet| inlet.into_iter().map(DVec2::from_array).collect()).collect();
-    Ok(Patch::new(CorePatch { vertices, triangles: corners, quads: fours, loops, inlets, lattice }, report))
+    let inner = CorePatch { vertices, triangles: corners, quads: fours, loops, inlets, lattice };
+    Ok(Patch::new(inner, report, Kept::straight(lattice)))
 }

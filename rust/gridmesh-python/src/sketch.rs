@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 use gridmesh::options::SketchOptions;
+use gridmesh::sketch::Kept;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -65,7 +66,7 @@ use crate::{options, reports};
 ///     Bounds the search that proves optimality where the first solution had conflicts: so many parts of the search
 ///     space at most, and for each lattice angle tried 15 million states of it, a second or two; 0 beside `mirror`.
 /// bend : float, optional
-///     How far the lattice may bend with the outline, from 0 (straight) to 1; None: 0 for triangles, 1 for quads. A conformal map takes the
+///     How far the lattice may bend with the outline, from 0 (straight) to 1; None: 1. A conformal map takes the
 ///     outline to where it runs along lattice directions, which leaves far fewer irregular vertices and lets the
 ///     size of the triangles vary a little. Several bends are tried, and straight lattices where they do not serve. The least
 ///     angles can be smaller than on a straight lattice, and some thin parts coarser.
@@ -75,6 +76,10 @@ use crate::{options, reports};
 ///     outline so many times the triangles of elsewhere, as a sequence for the outline and its holes. It is a wish:
 ///     the map stays conformal, so that neighbouring triangles differ little in size. Numbers not together with
 ///     self_crossing="union".
+/// keep : Patch, optional
+///     A patch whose lattice stays where it is, with its bend, for outlines that change step by step: then nothing is searched but the
+///     boundary, in a part of the time, and vertices stay where they can. Exclusive with `edge_length`, `triangles`, `quads`,
+///     `angle`, `origin` and `mirror`. A patch that was pickled has lost its bend: its lattice is straight.
 /// relax : bool
 ///     False leaves the interior vertices where the lattice has them; triangles may then be inverted,
 ///     and such a patch is refused (kind "inverted").
@@ -123,13 +128,14 @@ use crate::{options, reports};
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (outline, holes = None, *, progress = None, **options),
-    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, cells=None, quads=None, max_triangles=20000, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, bend=None, density=None, relax=True, least=True, progress=None)"
+    signature = (outline, holes = None, *, keep = None, progress = None, **options),
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, cells=None, quads=None, max_triangles=20000, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, bend=None, density=None, keep=None, relax=True, least=True, progress=None)"
 )]
 pub fn mesh_sketch(
     py: Python<'_>,
     outline: &Bound<'_, PyAny>,
     holes: Option<&Bound<'_, PyAny>>,
+    keep: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Patch> {
@@ -138,11 +144,22 @@ pub fn mesh_sketch(
     let mut shape = Shape::default();
     options::read("mesh_sketch", options, |name, value| shape.set(&mut chosen, name, value))?;
     shape.settle(py, &mut chosen)?;
+    let kept = keep.filter(|keep| !keep.is_none()).map(kept).transpose()?;
     let sketch = Watch::new(progress)?.run(py, |progress| {
-        gridmesh::sketch::mesh_sketch(&drawing.outline, &drawing.holes, &chosen, progress)
+        let (outline, holes) = (&drawing.outline, &drawing.holes);
+        match &kept {
+            Some(kept) => gridmesh::sketch::mesh_sketch_on(kept, outline, holes, &chosen, progress),
+            None => gridmesh::sketch::mesh_sketch(outline, holes, &chosen, progress),
+        }
     })?;
     let report = reports::sketch(py, &sketch.report)?;
-    Ok(Patch::new(sketch.patch, report))
+    Ok(Patch::new(sketch.patch, report, sketch.kept))
+}
+
+/// The lattice of a patch.
+fn kept(value: &Bound<'_, PyAny>) -> PyResult<Kept> {
+    let argument = Argument { name: "keep", value, allowed: "a Patch whose lattice stays, or None" };
+    value.cast::<Patch>().map(|patch| patch.get().kept.clone()).map_err(|_| argument.wrong_type())
 }
 
 /// Reads an outline and its holes.

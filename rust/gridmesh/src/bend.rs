@@ -16,6 +16,7 @@ pub(crate) mod carrier;
 pub(crate) mod choose;
 pub(crate) mod conformal;
 pub mod directions;
+mod follow;
 mod grid;
 pub(crate) mod image;
 mod mirrored;
@@ -34,6 +35,7 @@ use crate::path::outline::Outline;
 use crate::path::placement::{Laid, Lattice};
 use carrier::{Carrier, Line};
 use image::{BentContours, Image, WayBack};
+use width::Wish;
 
 /// Coordinates in a drawing's own frame are multiples of this, in edges.
 const GRAIN: f64 = 1.0 / 1_048_576.0;
@@ -63,9 +65,7 @@ impl Ground {
         is_symmetric: bool,
         shape: CellShape,
     ) -> Option<Self> {
-        let rounded = |p: &DVec2| (frame.to_units(*p) / GRAIN).round() * GRAIN;
-        let line = |c: &ClosedCurve| Line::new(c.points().iter().map(rounded).collect());
-        let lines: Vec<Line> = contours.iter().map(line).collect();
+        let lines: Vec<Line> = contours.iter().map(|contour| in_frame(contour, &frame)).collect();
         let carrier = Carrier::new(&lines)?;
         let densities = match density {
             Some(Density::PerPoint(given)) => Some(densities(contours, &carrier, given)?),
@@ -74,6 +74,21 @@ impl Ground {
         let asks_width = density == Some(&Density::Width);
         Some(Self { frame, lines, carrier, densities, asks_width, is_symmetric, shape })
     }
+
+    /// The sizes that are asked for.
+    fn wish(&self) -> Option<Wish> {
+        match &self.densities {
+            Some(densities) => Some(Wish::of_densities(densities)),
+            None if self.asks_width => Some(Wish::of_narrowness(&self.carrier)),
+            None => None,
+        }
+    }
+}
+
+/// A contour in a drawing's own frame.
+fn in_frame(contour: &ClosedCurve, frame: &Lattice) -> Line {
+    let rounded = |p: &DVec2| (frame.to_units(*p) / GRAIN).round() * GRAIN;
+    Line::new(contour.points().iter().map(rounded).collect())
 }
 
 /// The wishes at input points, interpolated at the carrier's boundary vertices.
@@ -98,7 +113,7 @@ fn densities(contours: &[ClosedCurve], carrier: &Carrier, given: &[Vec<f64>]) ->
 /// A bent drawing: contours to lay a straight lattice in, and the way back.
 pub(crate) struct Bent {
     ground: Arc<Ground>,
-    image: Image,
+    image: Arc<Image>,
     drawing: BentContours,
     /// How far it is bent, of what was asked for: 0 to 1.
     pub(crate) share: f64,
@@ -106,6 +121,8 @@ pub(crate) struct Bent {
     turn: f64,
     /// What its range of sizes is worth, in turns.
     pub(crate) price: f64,
+    /// Whether the map was made for another drawing.
+    is_followed: bool,
 }
 
 impl Bent {
@@ -163,8 +180,8 @@ impl Bent {
             .map(|&point| {
                 let x = bent.from_units(G::units(point));
                 let at = match known.next().flatten() {
-                    Some((contour, s)) => way.beside(contour, s * bent.edge_length, x),
-                    None => way.at(x),
+                    Some((contour, s)) if !self.is_followed => way.beside(contour, s * bent.edge_length, x),
+                    _ => way.at(x),
                 };
                 lattice.to_units(self.ground.frame.from_units(at))
             })

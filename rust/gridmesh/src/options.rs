@@ -150,7 +150,7 @@ impl Default for SketchOptions {
             mirror: None,
             self_crossing: SelfCrossing::Error,
             proof_nodes: 0,
-            bend: 0.0,
+            bend: 1.0,
             density: None,
             relax: true,
             least: true,
@@ -159,9 +159,9 @@ impl Default for SketchOptions {
 }
 
 impl SketchOptions {
-    /// The defaults for quads: the lattice bends.
+    /// The defaults for quads.
     pub fn quads() -> Self {
-        Self { cells: CellShape::Quad, bend: 1.0, ..Self::default() }
+        Self { cells: CellShape::Quad, ..Self::default() }
     }
 
     /// Checks every value by itself.

@@ -50,11 +50,14 @@ pub struct RelaxOptions {
     pub stiffness: f64,
     /// Vertices that move by less than this (edges) in a sweep are done.
     pub tolerance: f64,
+    /// Pinned vertices are let go where a triangle has less than this angle, in radians, even if the corner that
+    /// they are pinned to is so sharp that no triangulation has a larger one. None: then they stay.
+    pub blunt: Option<f64>,
 }
 
 impl Default for RelaxOptions {
     fn default() -> Self {
-        RelaxOptions { rings: 3, slide: true, stiffness: 0.25, tolerance: 0.03 }
+        RelaxOptions { rings: 3, slide: true, stiffness: 0.25, tolerance: 0.03, blunt: None }
     }
 }
 
@@ -212,7 +215,11 @@ where
     fn finish(&mut self, around: &[u32], progress: Progress<'_>) -> Result<()> {
         let tolerance = self.options.tolerance;
         self.done.sweeps += self.motion.sharpen(around, tolerance, progress.part(0.0, 0.5))?;
-        self.done.released.extend(self.motion.release_starved(tolerance, progress.part(0.5, 1.0))?);
+        self.done.released.extend(self.motion.release_starved(
+            self.options.blunt,
+            tolerance,
+            progress.part(0.5, 1.0),
+        )?);
         Ok(())
     }
 

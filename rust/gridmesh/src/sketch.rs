@@ -2,6 +2,7 @@
 
 mod bent;
 mod job;
+mod kept;
 mod lattices;
 mod least;
 mod size;
@@ -26,6 +27,7 @@ use crate::path::outline::Obstacle;
 use crate::progress::{Meter, Progress, Rising};
 pub use crate::sketch::job::Sketch;
 use crate::sketch::job::{Asked, Effort, Job};
+pub use crate::sketch::kept::Kept;
 
 /// Meshes the inside of a closed planar drawing.
 ///
@@ -47,6 +49,34 @@ pub fn mesh_sketch(
     outline: &[DVec2],
     holes: &[Vec<DVec2>],
     options: &SketchOptions,
+    progress: Progress<'_>,
+) -> Result<Sketch> {
+    mesh(outline, holes, options, None, progress)
+}
+
+/// The same on the lattice of an earlier patch, which stays where it is, with its bend: for drawings that change
+/// step by step. No other lattice is tried but the straight one of its angle, where the drawing has left the
+/// bent one.
+///
+/// # Errors
+/// Those of [`mesh_sketch`]; [`Error::InvalidOption`] if the options give an edge length, a number, an angle, an
+/// origin or a mirror.
+pub fn mesh_sketch_on(
+    kept: &Kept,
+    outline: &[DVec2],
+    holes: &[Vec<DVec2>],
+    options: &SketchOptions,
+    progress: Progress<'_>,
+) -> Result<Sketch> {
+    let options = kept.options(options)?;
+    mesh(outline, holes, &options, Some(kept), progress)
+}
+
+fn mesh(
+    outline: &[DVec2],
+    holes: &[Vec<DVec2>],
+    options: &SketchOptions,
+    keep: Option<&Kept>,
     progress: Progress<'_>,
 ) -> Result<Sketch> {
     options.check()?;
@@ -98,6 +128,7 @@ pub fn mesh_sketch(
         contours,
         symmetry,
         options,
+        keep,
         area,
         centre,
         thinnest,

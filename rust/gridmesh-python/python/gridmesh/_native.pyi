@@ -159,6 +159,7 @@ def mesh_sketch(
     proof_nodes: int = 0,
     bend: float | None = None,
     density: Literal["width"] | npt.ArrayLike | Sequence[npt.ArrayLike] | None = None,
+    keep: Patch | None = None,
     relax: bool = True,
     least: bool = True,
     progress: _Progress | None = None,

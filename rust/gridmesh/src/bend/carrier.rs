@@ -5,12 +5,14 @@ use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementPara
 
 use crate::geometry::segments::{SegmentGrid, nearest_on_segment, orientation, segments_meet};
 
-/// Spacing of the samples along the contours, in edges.
-const SPACING: f64 = 1.0;
+/// Least and greatest spacing of the samples along the contours, in edges, and how many of them there are
+/// between the two.
+const SPACING: (f64, f64) = (1.0, 2.0);
+const SAMPLES: f64 = 150.0;
 /// A drawn point farther than this from the chord beside it becomes a sample, in edges.
 const OFF: f64 = 0.3;
-/// Greatest area of a triangle, in squared edges.
-const AREA: f64 = 8.0;
+/// Greatest area of a triangle, in squared spacings.
+const AREA: f64 = 6.0;
 /// Rounds of adding samples where chords cross.
 const ROUNDS: usize = 12;
 
@@ -87,7 +89,10 @@ pub struct Carrier {
 impl Carrier {
     /// None where the contours are so near to each other that no coarse triangulation is found.
     pub fn new(lines: &[Line]) -> Option<Self> {
-        let rims = samples(lines)?;
+        let whole: f64 = lines.iter().map(Line::length).sum();
+        let spacing = (whole / SAMPLES).clamp(SPACING.0, SPACING.1);
+        let largest = AREA * spacing * spacing;
+        let rims = samples(lines, spacing)?;
         let mut points: Vec<Point2<f64>> = Vec::new();
         let mut edges = Vec::new();
         for (rim, line) in rims.iter().zip(lines) {
@@ -106,8 +111,8 @@ impl Carrier {
             .exclude_outer_faces(true)
             .keep_constraint_edges()
             .with_angle_limit(AngleLimit::from_deg(25.0))
-            .with_max_allowed_area(AREA)
-            .with_max_additional_vertices(8 * n_rim + (2.0 * area / AREA) as usize);
+            .with_max_allowed_area(largest)
+            .with_max_additional_vertices(8 * n_rim + (2.0 * area / largest) as usize);
         let outer = delaunay.refine(parameters).excluded_faces;
         let mut is_outer = vec![false; delaunay.num_all_faces()];
         outer.iter().for_each(|face| is_outer[face.index()] = true);
@@ -131,6 +136,17 @@ impl Carrier {
         Some(Self { vertices, triangles, rims })
     }
 
+    /// A third of the area of the triangles at each vertex.
+    pub fn areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.vertices.len()];
+        for t in &self.triangles {
+            let [a, b, c] = t.map(|i| self.vertices[i as usize]);
+            let third = (b - a).perp_dot(c - a) / 6.0;
+            t.iter().for_each(|&v| areas[v as usize] += third);
+        }
+        areas
+    }
+
     /// Length of contour that each boundary vertex stands for.
     pub fn lengths(&self) -> Vec<f64> {
         let of = |rim: &Rim| {
@@ -147,8 +163,8 @@ fn doubled_area(points: &[DVec2]) -> f64 {
 }
 
 /// Samples whose chords are near the drawing and do not meet.
-fn samples(lines: &[Line]) -> Option<Vec<Rim>> {
-    let mut arcs: Vec<Vec<f64>> = lines.iter().map(followed).collect();
+fn samples(lines: &[Line], spacing: f64) -> Option<Vec<Rim>> {
+    let mut arcs: Vec<Vec<f64>> = lines.iter().map(|line| followed(line, spacing)).collect();
     for _ in 0..ROUNDS {
         let mut owner = Vec::new();
         let mut chords = Vec::new();
@@ -199,9 +215,9 @@ fn samples(lines: &[Line]) -> Option<Vec<Rim>> {
 }
 
 /// Even samples, and drawn points that stray from the chords.
-fn followed(line: &Line) -> Vec<f64> {
+fn followed(line: &Line, spacing: f64) -> Vec<f64> {
     let length = line.length();
-    let n = ((length / SPACING).ceil() as usize).max(8);
+    let n = ((length / spacing).ceil() as usize).max(8);
     let mut arcs = Vec::with_capacity(n);
     for i in 0..n {
         let (from, to) = (length * i as f64 / n as f64, length * (i + 1) as f64 / n as f64);

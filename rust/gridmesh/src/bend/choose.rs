@@ -8,7 +8,7 @@ use super::conformal::{Operators, Rotation, Solver, keep_area};
 use super::image::{BentContours, Image};
 use super::mirrored::Mirrored;
 use super::tangents::Tangents;
-use super::width::Wish;
+use super::width::narrowest;
 use super::{Bent, Ground};
 use crate::error::Result;
 use crate::progress::Progress;
@@ -21,12 +21,20 @@ const MISFIT: f64 = 2.0;
 const STARTS: usize = 8;
 /// Pull of the directions, per edge length of contour: how hard the drawing is bent.
 const STRENGTH: f64 = 3.0;
-/// Weight of the wish for more triangles in narrow parts.
-const SIZE: f64 = 0.1;
-/// The same where more triangles are asked for.
+/// So many times the bends that are asked for are sized, and judged again.
+const SIZED: usize = 2;
+/// Log scales below which the outline should not be, relative to a straight lattice: where it is narrowest, and elsewhere.
+const NARROW_FLOOR: f64 = 0.2;
+const FLOOR: f64 = -0.4;
+/// Weight of what is below those; rounds, and steps of conjugate gradients in each.
+const HELD: (f64, usize, usize) = (0.7, 2, 3);
+/// Weight of the sizes that are asked for, and steps for these.
 const ASKED: f64 = 4.0;
-/// Rounds of conjugate gradients for the one and for the other.
-const ROUNDS: [usize; 2] = [3, 12];
+const ASKED_ROUNDS: usize = 12;
+/// The largest log of the edge length that 99 % of the edges do not reach, over the median.
+const UNEVEN: f64 = 0.65;
+/// Price of narrow parts that are coarser than on a straight lattice, in turns for a factor of e.
+const COARSE: f64 = 8.0;
 /// Shares of a bend that are tried while the bent drawing overlaps itself.
 const SHARES: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 /// Two rotations that differ by less than this everywhere, in radians, are one.
@@ -58,7 +66,7 @@ pub(crate) fn candidates(
     found.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     let mut chosen: Vec<Rotation> = Vec::new();
     for candidate in found {
-        if chosen.len() == count {
+        if chosen.len() == SIZED * count {
             break;
         }
         if chosen.iter().all(|other| !is_same(&candidate.v, &other.v, step)) {
@@ -66,19 +74,31 @@ pub(crate) fn candidates(
         }
     }
     progress.report(0.2)?;
-    let is_asked = ground.asks_width || ground.densities.is_some();
-    let (gamma, rounds) = if is_asked { (ASKED, ROUNDS[1]) } else { (SIZE, ROUNDS[0]) };
-    let wish = match &ground.densities {
-        Some(densities) => Wish::of_densities(densities),
-        None => Wish::of_narrowness(&ground.carrier),
-    };
-    let mirrored = ground.is_symmetric.then(|| Mirrored::new(&ground.carrier));
-    let bent: Vec<Result<Option<Bent>>> = chosen
+    let wish = ground.wish();
+    let narrowest = narrowest(&ground.carrier);
+    let floor = |&narrow: &bool| if narrow { NARROW_FLOOR } else { FLOOR };
+    let floors: Vec<f64> = narrowest.iter().map(floor).collect();
+    let sized: Vec<Result<(f64, Rotation)>> = chosen
         .par_iter()
         .map(|rotation| {
-            let v = solver.sized(rotation, (beta, &robin), (gamma, rounds), &wish)?;
-            bent(ground, &solver, v, mirrored.as_ref())
+            let v = match &wish {
+                Some(wish) => solver.sized(rotation, (beta, &robin), (ASKED, ASKED_ROUNDS), wish)?,
+                None => solver.floored(&ground.carrier, rotation, (beta, &robin), HELD, &floors)?,
+            };
+            let rotation = operators.judged(v, TURN);
+            let mut u = solver.scale(&rotation.v)?;
+            keep_area(&ground.carrier, &mut u);
+            let price = if wish.is_some() { 0.0 } else { price_of_size(ground, &u, &narrowest) };
+            Ok((cost(&rotation) + price, rotation))
         })
+        .collect();
+    let mut sized = sized.into_iter().collect::<Result<Vec<(f64, Rotation)>>>()?;
+    sized.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sized.truncate(count);
+    let mirrored = ground.is_symmetric.then(|| Mirrored::new(&ground.carrier));
+    let bent: Vec<Result<Option<Bent>>> = sized
+        .into_par_iter()
+        .map(|(_, rotation)| bent(ground, &solver, rotation.v, mirrored.as_ref(), &narrowest))
         .collect();
     bent.into_iter().filter_map(Result::transpose).collect()
 }
@@ -89,6 +109,7 @@ fn bent(
     solver: &Solver<'_>,
     mut v: Vec<f64>,
     mirrored: Option<&Mirrored>,
+    narrowest: &[bool],
 ) -> Result<Option<Bent>> {
     let mut turn = v.iter().sum::<f64>() / v.len() as f64;
     if let Some(mirrored) = mirrored {
@@ -106,13 +127,22 @@ fn bent(
             positions = mirrored.symmetric(&positions, turn);
         }
         let is_asked = ground.asks_width || ground.densities.is_some();
-        let price = if is_asked { 0.0 } else { price_of_size(ground, &u) };
+        let price = if is_asked { 0.0 } else { price_of_size(ground, &u, narrowest) };
         let image = Image { positions, u, v };
-        if !image.is_upright(&ground.carrier) {
+        let is_uneven = !is_asked && largest_over_median(ground, &image.u) > UNEVEN;
+        if is_uneven && share > SHARES[SHARES.len() - 1] || !image.is_upright(&ground.carrier) {
             continue;
         }
         if let Some(drawing) = BentContours::new(&ground.carrier, &image, &ground.lines) {
-            return Ok(Some(Bent { ground: ground.clone(), image, drawing, share, turn, price }));
+            return Ok(Some(Bent {
+                ground: ground.clone(),
+                image: Arc::new(image),
+                drawing,
+                share,
+                turn,
+                price,
+                is_followed: false,
+            }));
         }
     }
     Ok(None)
@@ -124,37 +154,61 @@ fn is_same(a: &[f64], b: &[f64], step: f64) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b - shift).abs() < SAME)
 }
 
+/// Log edge lengths, ascending, each counted by the lattice edges that have it; with the sum of the counts.
+struct Sizes(Vec<(f64, f64)>, f64);
+
+impl Sizes {
+    fn new(ground: &Ground, u: &[f64]) -> Self {
+        let mut sizes: Vec<(f64, f64)> = ground
+            .carrier
+            .triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|i| ground.carrier.vertices[i as usize]);
+                let mean = t.iter().map(|&i| u[i as usize]).sum::<f64>() / 3.0;
+                (-mean, (b - a).perp_dot(c - a) * (2.0 * mean).exp())
+            })
+            .collect();
+        sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let whole = sizes.iter().map(|s| s.1).sum();
+        Self(sizes, whole)
+    }
+
+    fn quantile(&self, share: f64) -> f64 {
+        let mut sum = 0.0;
+        let reached = |s: &&(f64, f64)| {
+            sum += s.1;
+            sum >= share * self.1
+        };
+        self.0.iter().find(reached).map_or(0.0, |s| s.0)
+    }
+}
+
+/// The logarithm of the length that 99 % of the edges do not reach over the median.
+fn largest_over_median(ground: &Ground, u: &[f64]) -> f64 {
+    let sizes = Sizes::new(ground, u);
+    sizes.quantile(0.99) - sizes.quantile(0.5)
+}
+
 /// What unequal sizes cost, in turns: nothing while the longest edges are less than half longer than
 /// most, nor a few of them up to twice as long.
-fn price_of_size(ground: &Ground, u: &[f64]) -> f64 {
+fn price_of_size(ground: &Ground, u: &[f64], narrowest: &[bool]) -> f64 {
+    let lengths = ground.carrier.lengths();
+    let (mut coarse, mut length) = (0.0, 0.0);
+    for ((narrow, l), u) in narrowest.iter().zip(&lengths).zip(u) {
+        if *narrow {
+            coarse -= l * u;
+            length += l;
+        }
+    }
+    let thin = COARSE * (coarse / length).max(0.0);
     const FREE: f64 = 0.45;
     const EACH: f64 = 30.0;
     const RARE: f64 = 0.8;
     const LONGEST: f64 = 5.0;
-    // Log edge lengths, each counted by the lattice edges that have it.
-    let mut sizes: Vec<(f64, f64)> = ground
-        .carrier
-        .triangles
-        .iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|i| ground.carrier.vertices[i as usize]);
-            let mean = t.iter().map(|&i| u[i as usize]).sum::<f64>() / 3.0;
-            (-mean, (b - a).perp_dot(c - a) * (2.0 * mean).exp())
-        })
-        .collect();
-    sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let whole: f64 = sizes.iter().map(|s| s.1).sum();
-    let quantile = |share: f64| {
-        let mut sum = 0.0;
-        sizes
-            .iter()
-            .find(|s| {
-                sum += s.1;
-                sum >= share * whole
-            })
-            .map_or(0.0, |s| s.0)
-    };
-    let middle = quantile(0.5);
-    let longest = sizes.last().map_or(0.0, |s| s.0);
-    EACH * (quantile(0.99) - middle - FREE).max(0.0).powi(2) + LONGEST * (longest - middle - RARE).max(0.0)
+    let sizes = Sizes::new(ground, u);
+    let middle = sizes.quantile(0.5);
+    let longest = sizes.0.last().map_or(0.0, |s| s.0);
+    thin + EACH * (sizes.quantile(0.99) - middle - FREE).max(0.0).powi(2)
+        + LONGEST * (longest - middle - RARE).max(0.0)
 }

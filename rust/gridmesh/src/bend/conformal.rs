@@ -90,6 +90,13 @@ impl Operators {
         self.contours.iter().map(of).collect()
     }
 
+    /// A rotation with the turns and the misfit of the directions that are best for it.
+    pub fn judged(&self, v: Vec<f64>, price: f64) -> Rotation {
+        let found = self.directions(&v, price);
+        let (turns, misfit) = (found.iter().map(|d| d.turns).sum(), found.iter().map(|d| d.misfit).sum());
+        Rotation { v, turns, misfit }
+    }
+
     pub fn lengths(&self) -> &[f64] {
         &self.lengths
     }
@@ -161,12 +168,7 @@ impl Operators {
                 found[k].0.copy_from_slice(side);
             }
         }
-        let finished = found.into_iter().map(|(v, _)| {
-            let last = self.directions(&v, price);
-            let turns = last.iter().map(|d| d.turns).sum();
-            Rotation { v, turns, misfit: last.iter().map(|d| d.misfit).sum() }
-        });
-        Ok(finished.collect())
+        Ok(found.into_iter().map(|(v, _)| self.judged(v, price)).collect())
     }
 }
 

@@ -17,7 +17,7 @@ pub struct Image {
 
 impl Image {
     /// The linear part of the map near a vertex, and its inverse.
-    fn turned(&self, i: usize, d: DVec2) -> DVec2 {
+    pub(super) fn turned(&self, i: usize, d: DVec2) -> DVec2 {
         self.u[i].exp() * DVec2::from_angle(self.v[i]).rotate(d)
     }
 
@@ -86,12 +86,19 @@ impl BentContours {
             rings.push(ring);
             drawn.push(at);
         }
+        let lengths: Vec<f64> = lines.iter().map(Line::length).collect();
+        Self::of_rings(&rings, &drawn, &lengths)
+    }
+
+    /// Bent rings with the arc lengths on the drawing of their points, and the lengths of the drawn contours.
+    /// None if the rings meet themselves or each other.
+    pub fn of_rings(rings: &[Vec<DVec2>], drawn: &[Vec<f64>], lengths: &[f64]) -> Option<Self> {
         let contours = read_contours(&rings[0], &rings[1..]).ok()?;
         let arcs = contours
             .iter()
-            .zip(&drawn)
-            .zip(lines)
-            .map(|((contour, at), line)| ArcMap::new(contour, at, line.length()))
+            .zip(drawn)
+            .zip(lengths)
+            .map(|((contour, at), &length)| ArcMap::new(contour, at, length))
             .collect::<Option<Vec<ArcMap>>>()?;
         Some(Self { contours, arcs })
     }

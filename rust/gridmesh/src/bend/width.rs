@@ -48,6 +48,25 @@ pub fn room(carrier: &Carrier) -> Vec<f64> {
     log_widths(carrier).iter().map(|width| (width.exp() / NARROW).powi(2).clamp(LEAST, 1.0)).collect()
 }
 
+/// The boundary vertices in the narrowest part of the contours, a seventh of their length.
+pub fn narrowest(carrier: &Carrier) -> Vec<bool> {
+    const SHARE: f64 = 0.15;
+    let widths = log_widths(carrier);
+    let lengths = carrier.lengths();
+    let mut order: Vec<usize> = (0..widths.len()).collect();
+    order.sort_by(|&a, &b| widths[a].total_cmp(&widths[b]).then(a.cmp(&b)));
+    let mut left = SHARE * lengths.iter().sum::<f64>();
+    let mut chosen = vec![false; widths.len()];
+    for i in order {
+        if left <= 0.0 {
+            break;
+        }
+        left -= lengths[i];
+        chosen[i] = true;
+    }
+    chosen
+}
+
 /// Logarithm of the width at each boundary vertex, smoothed along the contours.
 ///
 /// The width at a vertex is twice the smallest circle that touches the contour there from inside and

@@ -33,6 +33,12 @@ const CLOSE: f64 = 0.7;
 /// Triangles may be bent down to this angle for the drawing's sake.
 const LEAST_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
+/// On bent lattices corners are let go whose triangles have less than this angle, 17.5 degrees: half that of
+/// a drawn corner of 35. Where too much is cut off so, vertices are held so far from the tip along the
+/// drawing, in edges, on either side.
+const BLUNT: f64 = 17.5 * std::f64::consts::PI / 180.0;
+const BACK: f64 = 1.2;
+
 /// A vertex may lie this far outside the drawing, in an inlet that the boundary bridges.
 pub(crate) const INLET: f64 = 0.05;
 
@@ -156,7 +162,8 @@ where
         }
         let lengths: Vec<f64> = contours.iter().map(|contour| contour.length() / h).collect();
         let rings = if N == 4 { QUAD_RINGS } else { RelaxOptions::default().rings };
-        let relaxed = RelaxOptions { rings, ..RelaxOptions::default() };
+        let blunt = (N == 3 && options.bend > 0.0).then_some(BLUNT);
+        let relaxed = RelaxOptions { rings, blunt, ..RelaxOptions::default() };
         let mut relaxation = Relaxation::<N>::new(self.cells, lattice_positions, &lines, &rims, &relaxed)?;
         // A valid patch that bridges an inlet serves if following the inlet leads to none.
         let mut valid: Option<Placed> = None;
@@ -189,7 +196,11 @@ where
             if farthest > STRAY * h {
                 strays.retain(|stray| stray.distance > STRAY * h);
                 obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
-                held = to_hold(&strays, &rims, &lengths, h);
+                held = match blunt {
+                    Some(blunt) => blunted(&mut strays, &rims, &lines, h, 2.0 * blunt),
+                    None => Vec::new(),
+                };
+                held.extend(to_hold(&strays, &rims, &lengths, h));
                 if held.is_empty() || !options.relax {
                     break;
                 }
@@ -342,6 +353,36 @@ fn to_hold(strays: &[Stray], rims: &[Rim], lengths: &[f64], h: f64) -> Vec<(usiz
         chosen.push((rim.start + end, to - lap));
     }
     chosen
+}
+
+/// Takes strays at drawn tips sharper than `sharp`, in radians, out of a list: the ends of the edges that cut those off
+/// are to be held at either side of the tip, [`BACK`] from it.
+fn blunted(
+    strays: &mut Vec<Stray>,
+    rims: &[Rim],
+    lines: &[Contour<'_>],
+    h: f64,
+    sharp: f64,
+) -> Vec<(usize, f64)> {
+    let mut held = Vec::new();
+    strays.retain(|stray| {
+        let (rim, line) = (&rims[stray.contour], &lines[stray.contour]);
+        let at = stray.arc / h;
+        let tip = line.point_at(line.wrap(at));
+        let [a, b] = [-1.0, 1.0].map(|away| line.point_at(line.wrap(at + away)) - tip);
+        let after = (stray.edge + 1) % rim.s.len();
+        // The last edge ends at the first vertex, a lap on.
+        let lap = if after == 0 { line.length() } else { 0.0 };
+        let (before, behind) = (at - rim.s[stray.edge], rim.s[after] + lap - at);
+        let is_free = !rim.held[stray.edge] && !rim.held[after] && before > 0.0 && behind > 0.0;
+        let is_tip = a.angle_to(b).abs() < sharp && is_free;
+        if is_tip {
+            held.push((rim.start + stray.edge, at - before.min(BACK)));
+            held.push((rim.start + after, at + behind.min(BACK) - lap));
+        }
+        !is_tip
+    });
+    held
 }
 
 /// The corners of a contour, with arc lengths in edges.

@@ -43,7 +43,8 @@ impl Contour<'_> {
         self.on_segment(s, i)
     }
 
-    pub(super) fn wrap(&self, s: f64) -> f64 {
+    /// The arc position on the first lap.
+    pub fn wrap(&self, s: f64) -> f64 {
         let length = self.length();
         let wrapped = if s >= 0.0 && s < length { s } else { s - length * (s / length).floor() };
         if wrapped < length { wrapped } else { 0.0 }

@@ -181,11 +181,17 @@ where
     ///
     /// With interior angle a of the boundary at the vertex, no triangulation there has a least
     /// angle above a / 2, so a triangle starves below .45 a, where 14 degrees are always enough.
-    pub fn release_starved(&mut self, tolerance: f64, progress: Progress<'_>) -> Result<Vec<u32>> {
+    /// With `blunt` it starves below that angle, however sharp the corner is.
+    pub fn release_starved(
+        &mut self,
+        blunt: Option<f64>,
+        tolerance: f64,
+        progress: Progress<'_>,
+    ) -> Result<Vec<u32>> {
         let mut released = Vec::new();
         for _ in 0..4 {
             let starved: Vec<u32> = (0..self.band.n_rim)
-                .filter(|&v| self.slide.pinned[v] && !self.slide.held[v] && self.starves(v))
+                .filter(|&v| self.slide.pinned[v] && !self.slide.held[v] && self.starves(v, blunt))
                 .map(|v| v as u32)
                 .collect();
             if starved.is_empty() || !self.sliding {
@@ -203,7 +209,7 @@ where
         Ok(released)
     }
 
-    fn starves(&self, v: usize) -> bool {
+    fn starves(&self, v: usize, blunt: Option<f64>) -> bool {
         let x = self.band.positions[v];
         let mut interior = 0.0;
         let mut sharpest = 0.0f64;
@@ -212,7 +218,8 @@ where
             interior += (a - x).angle_to(b - x);
             sharpest = sharpest.max(sharpness([x, a, b]));
         }
-        sharpest > cotangent(f64::min(14.0, 0.45 * interior.to_degrees()))
+        let own = f64::min(14.0, 0.45 * interior.to_degrees());
+        sharpest > cotangent(blunt.map_or(own, |blunt| blunt.to_degrees().max(own)))
     }
 
     /// Least angle of the triangles of the band, in radians.

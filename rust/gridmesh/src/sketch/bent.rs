@@ -11,11 +11,14 @@ use crate::bend::{Bent, Ground, choose};
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::symmetry::Symmetry;
 use crate::error::{Error, Result};
-use crate::options::{BoundaryMethod, Mirror, SketchOptions};
+use crate::options::{BoundaryMethod, CellShape, Mirror, SketchOptions};
 use crate::path::outline::Outline;
 use crate::path::placement::Lattice;
 use crate::progress::{Meter, Progress};
 use crate::sketch::job::{Asked, Effort, Found, Job, SLIGHT, faults};
+
+/// Distances of a path on a bent lattice of triangles count so much of what they do on a straight one.
+const BENT_SHARE: f64 = 0.1;
 
 /// So many bends are traced.
 const TRACED: usize = 2;
@@ -60,7 +63,8 @@ impl Job<'_> {
                 continue;
             }
             let faults = faults(&placed);
-            let found = Found { faults, bent: Some(bent), outline, placed, mirror_error };
+            let bent = Some((Arc::new(bent), lattice));
+            let found = Found { faults, bent, outline, placed, mirror_error };
             let is_good = found.faults <= SLIGHT && found.starved() == 0.0;
             if best.as_ref().is_none_or(|best| found.score() < best.score()) {
                 best = Some(found);
@@ -99,9 +103,6 @@ impl Job<'_> {
         bent: Bent,
         progress: Progress<'_>,
     ) -> Result<Option<(Bent, Lattice, Outline)>> {
-        let contours = bent.contours().to_vec();
-        let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
-        let centre = centroid(contours[0].points());
         let asked = match asked {
             Asked::EdgeLength(_) => Asked::EdgeLength(1.0),
             Asked::Cells(n) => Asked::Cells(n),
@@ -110,27 +111,15 @@ impl Job<'_> {
             None => None,
             Some(_) => {
                 let mirror = Mirror::Axis { point: DVec2::ZERO, direction: bent.axis() };
-                match Symmetry::find(&contours, mirror, 1.0) {
+                match Symmetry::find(bent.contours(), mirror, 1.0) {
                     Ok(symmetry) => Some(symmetry),
                     Err(_) => return Ok(None),
                 }
             }
         };
-        let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
         let along = symmetry.is_some().then_some(0.0);
-        let options =
-            SketchOptions { edge_length: None, triangles: None, angle: along, ..self.options.clone() };
-        let job = Job {
-            contours,
-            symmetry,
-            options: &options,
-            area,
-            centre,
-            thinnest: None,
-            seconds: Vec::new(),
-            placements: 0,
-            states: Meter::new(u64::MAX),
-        };
+        let options = SketchOptions { edge_length: None, triangles: None, angle: along, ..self.of_bent() };
+        let job = self.in_bent_plane(&bent, &options, symmetry);
         let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick).first() else {
             return Ok(None);
         };
@@ -139,5 +128,39 @@ impl Job<'_> {
         };
         let outline = bent.outline(outline, &lattice);
         Ok(Some((bent, lattice, outline)))
+    }
+
+    /// The options in a bent plane: distances count less there, since the vertices come back to the drawing.
+    pub(super) fn of_bent(&self) -> SketchOptions {
+        let share = match self.options.cells {
+            CellShape::Triangle => BENT_SHARE,
+            CellShape::Quad => 1.0,
+        };
+        SketchOptions { closeness: share * self.options.closeness, ..self.options.clone() }
+    }
+
+    /// The same job for the bent drawing.
+    pub(super) fn in_bent_plane<'b>(
+        &self,
+        bent: &Bent,
+        options: &'b SketchOptions,
+        symmetry: Option<Symmetry>,
+    ) -> Job<'b> {
+        let contours = bent.contours().to_vec();
+        let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
+        let centre = centroid(contours[0].points());
+        let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
+        Job {
+            contours,
+            symmetry,
+            options,
+            keep: None,
+            area,
+            centre,
+            thinnest: None,
+            seconds: Vec::new(),
+            placements: 0,
+            states: Meter::new(u64::MAX),
+        }
     }
 }

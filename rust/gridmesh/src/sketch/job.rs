@@ -1,5 +1,6 @@
 //! What is wanted of a lattice, and how hard it is tried.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
@@ -19,6 +20,7 @@ use crate::patch::{Patch, mirror};
 use crate::path::outline::{Obstacle, Outline};
 use crate::path::placement::{Laid, Lattice};
 use crate::progress::{Meter, Progress};
+use crate::sketch::kept::Kept;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Asked {
@@ -38,8 +40,8 @@ pub(crate) enum Effort {
 /// A patch on one lattice, and how far it is from being good enough.
 pub(crate) struct Found {
     pub(crate) faults: f64,
-    /// None on a straight lattice.
-    pub(crate) bent: Option<Bent>,
+    /// The map and the straight lattice of the bent plane; none on a straight lattice.
+    pub(crate) bent: Option<(Arc<Bent>, Lattice)>,
     pub(crate) outline: Outline,
     pub(crate) placed: Placed,
     pub(crate) mirror_error: Option<f64>,
@@ -59,7 +61,7 @@ impl Found {
 
     /// Cost, faults and starved triangles in turns.
     pub(crate) fn score(&self) -> f64 {
-        let price = self.bent.as_ref().map_or(0.0, |bent| bent.price);
+        let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
         self.outline.cost + price + TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved()
     }
 
@@ -73,6 +75,8 @@ pub(crate) struct Job<'a> {
     pub(crate) contours: Vec<ClosedCurve>,
     pub(crate) symmetry: Option<Symmetry>,
     pub(crate) options: &'a SketchOptions,
+    /// The lattice that is to stay.
+    pub(crate) keep: Option<&'a Kept>,
     pub(crate) area: f64,
     pub(crate) centre: DVec2,
     pub(crate) thinnest: Option<Limb>,
@@ -117,6 +121,9 @@ impl Job<'_> {
         effort: Effort,
         progress: Progress<'_>,
     ) -> Result<Result<Sketch, Obstacle>> {
+        if let Some(found) = self.on_kept(progress)? {
+            return Ok(Ok(self.report(found)));
+        }
         let mut bent = self.best_bent(asked, effort, progress)?;
         if let Some(found) = bent.take_if(|found| self.is_settled(found)) {
             return Ok(Ok(self.report(found)));
@@ -125,6 +132,17 @@ impl Job<'_> {
         let started = Instant::now();
         let begun = self.states.taken();
         let lattices = self.placements_to_try(asked, effort);
+        if let (None, Some(found)) = (&self.symmetry, &bent) {
+            // The first is the most promising: where it turns much more the others do not matter.
+            let (angle, shift) = lattices[0];
+            let first = self.outline(asked, effort, angle, shift, progress.part(0.0, 0.3))?;
+            if first.is_ok_and(|(_, outline)| outline.cost > MUCH * found.score())
+                && let Some(found) = bent.take()
+            {
+                self.lap("boundary", started);
+                return Ok(Ok(self.report(found)));
+            }
+        }
         let found: Vec<Result<Result<(Lattice, Outline), Miss>>> = lattices
             .par_iter()
             .map(|&(angle, shift)| self.outline(asked, effort, angle, shift, progress.part(0.0, 0.3)))
@@ -216,7 +234,7 @@ impl Job<'_> {
     /// there must be.
     pub(crate) fn is_settled(&self, found: &Found) -> bool {
         const FEW: usize = 12;
-        let price = found.bent.as_ref().map_or(0.0, |bent| bent.price);
+        let price = found.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
         found.faults <= SLIGHT
             && found.starved() == 0.0
             && price < 1.0
@@ -287,14 +305,15 @@ impl Job<'_> {
             across: self.thinnest.map(|limb| thickness::across(limb.width, patch.lattice.edge_length, cells)),
             repaired: self.contours.iter().map(ClosedCurve::repaired).sum(),
             mirror_error,
-            bend: bent.as_ref().map_or(0.0, |bent| bent.share * self.options.bend),
-            scale_range: bent.as_ref().map_or(1.0, |bent| bent.scale_range()),
+            bend: bent.as_ref().map_or(0.0, |(bent, _)| bent.share * self.options.bend),
+            scale_range: bent.as_ref().map_or(1.0, |(bent, _)| bent.scale_range()),
             placements: self.placements,
             seconds: Vec::new(),
         };
         self.lap("report", started);
         report.seconds = self.seconds.clone();
-        Sketch { patch, report }
+        let kept = Kept::new(patch.lattice, bent);
+        Sketch { patch, report, kept }
     }
 }
 
@@ -303,6 +322,9 @@ impl Job<'_> {
 pub(crate) const SLIGHT: f64 = 0.1;
 
 pub(crate) const TURNS_OF_FAULT: f64 = 12.0;
+
+/// Straight lattices are not tried where the cost of the first is so many times that of a bent one.
+const MUCH: f64 = 1.2;
 
 /// Where a patch on a bent lattice has triangles below this angle, 20 degrees, others are placed too; and
 /// how many turns it outweighs that an angle is zero.
@@ -320,6 +342,8 @@ pub struct Sketch {
     pub patch: Patch,
     /// What was done.
     pub report: SketchReport,
+    /// Its lattice, to be kept for drawings that differ a little.
+    pub kept: Kept,
 }
 
 /// How far a placement is from being good enough: zero if it is.
