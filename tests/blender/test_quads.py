@@ -217,10 +217,9 @@ class TestRefusals:
         )
         check_quads(run_one(quads=number))
 
-    def test_grown_rims_and_mirrors_are_refused_and_say_what_works(self, capfd):
+    def test_grown_rims_are_refused_and_say_what_works(self, capfd):
         grease_pencil([bean()])
         assert "triangles" in self.refused(capfd, quads=500, boundary="GROWN")
-        assert "triangles" in self.refused(capfd, quads=500, mirror="AUTO")
 
 
 class TestQuality:
