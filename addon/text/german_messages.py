@@ -751,7 +751,6 @@ _LIBRARY_PARTS = {
     "triangulation of the hole": "Triangulierung des Lochs",
     "automatic, and given": "automatisch, und gegeben",
     "grown, with quads": "grown, mit Vierecken",
-    "none, or triangles": "keine, oder Dreiecke",
     "optimal, or triangles: growth is that of a triangular lattice": (
         "optimal, oder Dreiecke: das Wachstum ist das eines Dreiecksgitters"
     ),
@@ -848,6 +847,7 @@ _LIBRARY_PARTS = {
     "none, or boundary optimal: growth has no symmetric form": (
         "keins, oder optimaler Rand: Wachstum hat keine symmetrische Form"
     ),
+    "none, or the angle of the axis, modulo 90 degrees": ("keiner oder der Winkel der Achse, modulo 90 Grad"),
     "none, or the angle of the axis or 30 degrees from it, modulo 60 degrees": (
         "keiner, oder der Winkel der Achse oder 30 Grad daneben, modulo 60 Grad"
     ),

@@ -127,6 +127,23 @@ def test_flat_bodies_are_creased_along_the_rim():
     assert not any(edge.use_edge_sharp for edge in round_one.data.edges)
 
 
+def check_mirrored(points, normal=0):
+    """Every vertex has its image across the middle of an axis."""
+    image = points.copy()
+    image[:, normal] *= -1
+    apart = np.linalg.norm(points[:, None, :2] - image[None, :, :2], axis=2).min(axis=1)
+    assert apart.max() < 1e-4 * np.ptp(points)
+
+
+def test_a_symmetric_drawing_gets_symmetric_quads():
+    t = np.linspace(0, 2 * np.pi, 160, endpoint=False)
+    radius = 1 + 0.25 * np.sin(t) - 0.1 * np.cos(2 * t) + 0.1 * np.sin(3 * t)
+    grease_pencil([np.column_stack([radius * np.cos(t), radius * np.sin(t), 0 * t])])
+    sheet = run_one(quads=400, mirror="AUTO", shape="SHEET")
+    faces_of(sheet.data)
+    check_mirrored(vertices(sheet.data))
+
+
 @pytest.mark.usefixtures("awake")
 class TestLive:
     def live(self, **options):
