@@ -140,13 +140,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("sketch", nargs="*", type=Path)
     parser.add_argument("--out", type=Path, default=ROOT / "docs/pictures/quads.png")
-    parser.add_argument("--width", type=int, default=1800)
+    parser.add_argument("--width", type=int, default=1200)
     parser.add_argument("--samples", type=int, default=12)
     choice = parser.parse_args()
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     addon.register()
     paths = choice.sketch or [ROOT / "tests/sketches/drawings" / f"{name}.json" for name in NAMES]
     build(paths, choice.width, choice.samples)
+    settings = bpy.context.scene.render.image_settings
+    settings.color_mode, settings.compression = "RGB", 100
     bpy.context.scene.render.filepath = str(choice.out.resolve())
     with gallery.quiet():
         bpy.ops.render.render(write_still=True)

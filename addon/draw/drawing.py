@@ -175,14 +175,6 @@ def refuse(parts: list[Part], options: Any) -> None:
             raise _refused(error, wanted) from error
 
 
-def unmirrored(decisions: list[Decision], options: Any) -> str:
-    """Tell that the mesh of a mirrored stroke is not its own mirror image; empty if it is, or none is."""
-    mirrored = any(decision.symmetric and len(decision.strokes) > 1 for decision in decisions)
-    if options.cells == "QUADS" and mirrored:
-        return "the outline is mirrored, its quads are not; set Faces to Triangles for a mesh that is"
-    return ""
-
-
 def _new(
     context: bpy.types.Context, decision: Decision, part: Part, ink: _Ink, options: Any, parent: str
 ) -> bpy.types.Object:
@@ -191,7 +183,7 @@ def _new(
     rings = [_world(decision.plane, ring) for ring in (outline, *holes)]
     options.use_union = True  # a hand's stroke crosses itself where it closes
     mirror = options.mirror
-    if decision.symmetric and len(decision.strokes) > 1 and options.cells != "QUADS":
+    if decision.symmetric and len(decision.strokes) > 1:
         options.mirror = "AUTO"
     try:
         plane = prepare(Stroke(rings[0], True, "", "", 0, 1), close_gaps=1.0).plane

@@ -83,7 +83,7 @@ class _Action(options.StrokeOptions):
         remembered.action = remembered.action or first.action
         self.action, self.body = first.action, first.body if first.action != "PART" else made[0].name
         self.done = f"{first.action} {first.body}"
-        return made, drawing.unmirrored(decisions, self) or first.hint
+        return made, first.hint
 
     def _options_of(
         self, first: Decision, bodies: dict[str, shapes.Drawn], remembered: memory.Memory

@@ -275,9 +275,6 @@ _LIVE = {
         "der Strich ist zu dünn für so grobe Vierecke; mehr Vierecke oder kürzere Kanten nehmen, oder „Flächen“ auf "
         "Dreiecke stellen"
     ),
-    "the outline is mirrored, its quads are not; set Faces to Triangles for a mesh that is": (
-        "der Umriss ist gespiegelt, seine Vierecke sind es nicht; „Flächen“ auf Dreiecke stellen für ein Mesh, das es ist"
-    ),
     "the stroke is too thin for a mesh this coarse; use more triangles or shorter edges": (
         "der Strich ist zu dünn für ein so grobes Netz; mehr Dreiecke oder kürzere Kanten nehmen"
     ),
@@ -787,9 +784,7 @@ _LIBRARY_PARTS = {
     "triangulation of the drawing": "Triangulierung der Zeichnung",
     "triangulation of the hole": "Triangulierung des Lochs",
     "automatic, and given": "automatisch, und gegeben",
-    "given, with quads": "gegeben, mit Vierecken",
     "grown, with quads": "grown, mit Vierecken",
-    "none, or triangles": "keine, oder Dreiecke",
     "optimal, or triangles: growth is that of a triangular lattice": (
         "optimal, oder Dreiecke: das Wachstum ist das eines Dreiecksgitters"
     ),
@@ -886,6 +881,7 @@ _LIBRARY_PARTS = {
     "none, or boundary optimal: growth has no symmetric form": (
         "keins, oder optimaler Rand: Wachstum hat keine symmetrische Form"
     ),
+    "none, or the angle of the axis, modulo 90 degrees": ("keiner oder der Winkel der Achse, modulo 90 Grad"),
     "none, or the angle of the axis or 30 degrees from it, modulo 60 degrees": (
         "keiner, oder der Winkel der Achse oder 30 Grad daneben, modulo 60 Grad"
     ),

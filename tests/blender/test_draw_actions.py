@@ -381,3 +381,15 @@ def test_a_body_changed_by_hand_is_left_alone(capfd):
     assert draw(ACTIONS["EXTEND"]) == {"CANCELLED"}
     assert "changed by hand" in capfd.readouterr().out
     assert state() == before
+
+
+def test_a_mirrored_stroke_of_quads_has_mirrored_quads():
+    pear = circle(60, 1, (0.6, 0))
+    pear[:, 0] *= 1 + 0.4 * pear[:, 1]
+    assert draw(pear, use_mirror=True, shape="SHEET", cells="QUADS", quads=300) == {"FINISHED"}
+    (body,) = engine.bodies()
+    assert {len(polygon.vertices) for polygon in body.data.polygons} == {4}
+    assert body.gridmesh_live.mirror == "AUTO"
+    points = world_vertices(body)
+    apart = np.linalg.norm(points[:, None] - (points * [-1, 1, 1])[None], axis=2).min(axis=1)
+    assert apart.max() < 1e-4

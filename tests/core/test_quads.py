@@ -162,7 +162,6 @@ def test_cells_and_numbers_must_agree():
         {"quads": 300, "cells": "triangles"},
         {"triangles": 300, "cells": "quads"},
         {"quads": 300, "boundary": "grown"},
-        {"quads": 300, "mirror": "auto"},
         {"cells": "hexagons"},
         {"quads": 2},
     ):
@@ -193,3 +192,70 @@ def test_a_patch_of_quads_can_be_cancelled():
     with pytest.raises(gridmesh.GridMeshError) as refusal:
         gridmesh.mesh_sketch(random_blob(0), quads=20000, progress=stop)
     assert refusal.value.kind == "cancelled"
+
+
+def symmetric(seed, angle=0.0):
+    """A blob that is its own mirror image across a line at an angle."""
+    random = np.random.default_rng(seed)
+    t = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    radius = 1 + sum(0.25 / k * random.uniform(-1, 1) * np.cos(k * t) for k in range(1, 6))
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    return np.column_stack([radius * np.cos(t), radius * np.sin(t)]) @ turn
+
+
+def check_mirrored(patch, direction, point=(0.0, 0.0)):
+    """Vertices and quads are their own images; no vertex beside the axis is alone on it."""
+    assert patch.report["mirror_error"] < 1e-9
+    along = np.asarray(direction) / np.linalg.norm(direction)
+    away = patch.vertices - point
+    image = 2 * (away @ along)[:, None] * along - away + point
+    order = np.lexsort(np.round(patch.vertices / 1e-6).T)
+    at = np.lexsort(np.round(image / 1e-6).T)
+    assert np.allclose(patch.vertices[order], image[at], atol=1e-9)
+    partner = np.empty(len(order), int)
+    partner[at] = order
+    quads = {frozenset(quad) for quad in patch.quads.tolist()}
+    assert quads == {frozenset(partner[quad].tolist()) for quad in patch.quads}
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("quads", [60, 700])
+def test_a_symmetric_drawing_gets_symmetric_quads(seed, quads):
+    angle = 0.7 * seed
+    points = symmetric(seed, angle)
+    patch = gridmesh.mesh_sketch(points, quads=quads, mirror=((0, 0), (np.cos(angle), np.sin(angle))))
+    check_quad_patch(patch, [points])
+    check_mirrored(patch, (np.cos(angle), np.sin(angle)))
+    check_quad_body(gridmesh.inflate(patch), patch, 0)
+    assert patch.report["poles"] <= gridmesh.mesh_sketch(points, quads=quads).report["poles"] + 8
+
+
+def test_symmetric_holes_on_the_axis_and_beside_it():
+    outline = 2 * symmetric(1)
+    rings = [0.25 * circle(60), 0.2 * circle(50) + [-0.9, 0.6], 0.2 * circle(50) + [-0.9, -0.6]]
+    patch = gridmesh.mesh_sketch(outline, rings, quads=1500, mirror=((0, 0), (1, 0)))
+    check_quad_patch(patch, [outline, *rings])
+    check_mirrored(patch, (1, 0))
+
+
+@pytest.mark.parametrize("bend", [0.0, 1.0])
+def test_symmetric_limbs(bend):
+    """A body with an arm on each side and a tail on the axis."""
+    t = np.linspace(0, 2 * np.pi, 900, endpoint=False)
+    arms = 1.6 * np.exp(-(((np.abs(np.angle(np.exp(1j * t))) - 1.2) / 0.16) ** 2))
+    tail = 1.2 * np.exp(-((np.angle(np.exp(1j * (t - np.pi))) / 0.2) ** 2))
+    radius = 1 + arms + tail
+    points = np.column_stack([radius * np.cos(t), radius * np.sin(t)])
+    patch = gridmesh.mesh_sketch(points, quads=1500, mirror="auto", bend=bend)
+    check_quad_patch(patch, [points])
+    check_mirrored(patch, (1, 0))
+
+
+def test_mirrored_quads_keep_to_the_angle_of_the_axis():
+    points = symmetric(2)
+    axis = ((0, 0), (1, 0))
+    assert gridmesh.mesh_sketch(points, quads=300, mirror=axis, angle=0.0).report["mirror_error"] < 1e-9
+    with pytest.raises(gridmesh.GridMeshError) as refusal:
+        gridmesh.mesh_sketch(points, quads=300, mirror=axis, angle=0.5)
+    assert refusal.value.kind == "invalid_option"
+    assert "90 degrees" in str(refusal.value)

@@ -32,7 +32,7 @@ use crate::{options, reports};
 /// cells : {"triangles", "quads"}, optional
 ///     What the mesh is made of; None: triangles, unless `quads` is given. Quads keep a row along the whole
 ///     boundary, all of whose boundary vertices have two; interior vertices have four, but for one pole of three or
-///     five for each turn of the lattice. Not with boundary="grown", nor with `mirror`.
+///     five for each turn of the lattice. Not with boundary="grown".
 /// quads : int or "auto", optional
 ///     Number of quads of the flat patch, in place of `triangles`; 1000 if none is given with cells="quads".
 /// max_triangles : int
