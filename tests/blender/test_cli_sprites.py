@@ -66,7 +66,8 @@ def is_over_the_picture(points, uv, unit=1.0):
 
 def area(points, triangles):
     a, b, c = (points[triangles[:, k]] for k in range(3))
-    return np.cross(b - a, c - a) / 2
+    (x, y), (u, v) = (b - a).T, (c - a).T
+    return (x * v - y * u) / 2
 
 
 def empty_session():

@@ -29,7 +29,8 @@ def bent(points, weights, turns, pivots):
 
 def folded(points, triangles):
     a, b, c = (points[triangles[:, k]] for k in range(3))
-    return int((np.cross(b - a, c - a) <= 0).sum())
+    (x, y), (u, v) = (b - a).T, (c - a).T
+    return int((x * v <= y * u).sum())
 
 
 def is_partition(weights, most=4):

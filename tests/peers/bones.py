@@ -44,7 +44,7 @@ def chain(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(3, 2, 2) bones along the longest axis of a flat mesh, joints in the middle of what lies across."""
     middles = points[triangles].mean(axis=1)
     a, b, c = (points[triangles[:, k]] for k in range(3))
-    areas = np.abs(np.cross(b - a, c - a))
+    areas = np.abs(turned_by(b - a, c - a))
     middle = np.average(middles, axis=0, weights=areas)
     _, axes = np.linalg.eigh(np.cov((middles - middle).T, aweights=areas))
     along = (middles - middle) @ axes[:, 1]
@@ -54,6 +54,11 @@ def chain(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         near = np.exp(-(((along - low - share * (high - low)) / (0.05 * (high - low))) ** 2)) * areas
         joints.append(np.average(middles, axis=0, weights=near))
     return np.array(list(itertools.pairwise(joints)))
+
+
+def turned_by(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Cross products of vectors in the plane."""
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
 def folds(points: np.ndarray, triangles: np.ndarray, weights: np.ndarray, bones: np.ndarray) -> int:
@@ -66,7 +71,7 @@ def folds(points: np.ndarray, triangles: np.ndarray, weights: np.ndarray, bones:
         moved += weights[:, 1:2] * rotated(points, *turned[0])
         moved += weights[:, 2:3] * (rotated(points - bones[2, 0], first + second, np.zeros(2)) + knee)
         a, b, c = (moved[triangles[:, k]] for k in range(3))
-        count += int((np.cross(b - a, c - a) <= 0).sum())
+        count += int((turned_by(b - a, c - a) <= 0).sum())
     return count
 
 
