@@ -15,6 +15,7 @@ import numpy as np
 
 RING = np.c_[np.cos(np.arange(12) * np.pi / 6), np.sin(np.arange(12) * np.pi / 6), np.zeros(12)]
 SQUARE = [[0, 0], [4, 0], [4, 4], [0, 4]]
+PICTURE = np.pad(np.full((20, 24, 1), 255, np.uint8), ((5, 5), (5, 5), (0, 0))).repeat(4, axis=2)
 
 
 def grid():
@@ -54,6 +55,40 @@ def calls():
             "self_crossing": "error",
             "relax": True,
             "proof_nodes": 0,
+            "progress": None,
+        },
+        "mesh_sketch of quads": {
+            "outline": SQUARE,
+            "quads": 60,
+            "cells": "quads",
+            "max_triangles": 500,
+            "closeness": 0.3,
+            "corner_angle": 0.7,
+            "progress": None,
+        },
+        "mesh_sketch on bent lattices": {
+            "outline": SQUARE,
+            "triangles": "auto",
+            "cells": "triangles",
+            "bend": 0.5,
+            "density": None,
+            "max_triangles": 500,
+            "least": False,
+        },
+        "thickness": {"outline": SQUARE, "holes": [[[1, 1], [2, 1], [2, 2]]]},
+        "harmonic": {
+            "vertices": vertices,
+            "triangles": faces,
+            "free": np.array([10, 11, 12]),
+            "values": np.column_stack([np.arange(len(vertices)), np.ones(len(vertices))]),
+        },
+        "trace_image": {
+            "image": PICTURE,
+            "threshold": 0.5,
+            "smooth": 1.0,
+            "min_area": 16.0,
+            "margin": 0.0,
+            "background": "transparent",
             "progress": None,
         },
         "stitch": {"patch": patch},
@@ -109,6 +144,14 @@ def calls():
             "edge_length": 0.3,
             "smooth": "flat",
         },
+        "cut_reach": {
+            "vertices": corners,
+            "faces": sides,
+            "stroke": [[0.2, 0.4, 0.5], [0.6, 0.6, 0.5]],
+            "direction": (0, 0, 1),
+            "eye": None,
+            "progress": None,
+        },
         "combine": {
             "outline": SQUARE,
             "other": [[1, -1], [2, -1], [2, 5], [1, 5]],
@@ -117,7 +160,9 @@ def calls():
         },
     }
     found = {
-        name: (getattr(gridmesh, name), given) for name, given in made.items() if hasattr(gridmesh, name)
+        name: (getattr(gridmesh, name.split()[0]), given)
+        for name, given in made.items()
+        if hasattr(gridmesh, name.split()[0])
     }
     found["Fill.extend"] = (fill.extend, {"values": np.zeros((8, 2))})
     found["Fill.refit"] = (fill.refit, {"vertices": vertices})
@@ -223,7 +268,7 @@ def call(name, function, given):
             fill.extend(np.zeros(len(fill.loop)))
     elif name == "map_sketches":
         list(function(given.pop("outlines"), **given))
-    elif name == "cut":
+    elif name in {"cut", "cut_reach"}:
         function(given.pop("vertices"), given.pop("faces"), given.pop("stroke"), **given)
     else:
         function(**given)

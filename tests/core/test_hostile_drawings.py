@@ -78,6 +78,17 @@ def test_a_spiral_of_many_turns_is_told_a_number_that_works():
     check_patch(gridmesh.mesh_sketch(points, triangles=least), [points])
 
 
+@pytest.mark.parametrize("seed", [1008472, 1009127])
+def test_a_refusal_takes_a_bounded_amount_of_work(seed):
+    """Work, as the number of questions whether to go on: the shifts of the lattice, and the numbers that are tried, end."""
+    case = drawings.case(seed)
+    questions = []
+    with pytest.raises(gridmesh.GridMeshError) as error:
+        gridmesh.mesh_sketch(case.outline, progress=questions.append, **case.options)
+    assert error.value.kind in {"inverted", "too_coarse"}
+    assert len(questions) < 5000
+
+
 def test_without_least_nothing_is_searched_for():
     error = refused(spiral(8, 0.2), triangles=500, least=False)
     assert error.kind == "too_coarse"

@@ -58,6 +58,7 @@ impl<'a> Flat<'a> {
         self.progress.report(0.5)?;
         let mut x = (self.first..self.vertices.len()).map(rhs).collect::<Vec<_>>();
         factor.solve(&mut x, 1)?;
+        self.progress.report(0.5)?;
         let mut full = vec![0.0; self.first];
         full.append(&mut x);
         Ok(full)
@@ -268,6 +269,7 @@ fn screened(flat: &Flat<'_>, length: f64) -> Result<Vec<f64>> {
     let areas = lumped_areas(flat.vertices, &flat.patch.triangles);
     let scale = length * length;
     let weights = flat.cotangent.iter().map(|w| scale * w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
+    flat.progress.report(0.5)?;
     let factor = flat.pattern.factor(flat.topology, &weights, |v| areas[v])?;
     let mut v = flat.solve(&factor, |v| areas[v])?;
     for x in &mut v[flat.first..] {

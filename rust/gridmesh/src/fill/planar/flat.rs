@@ -211,12 +211,12 @@ impl Contest<'_> {
         let n = points.len();
         let bare = n <= SMALL && (n > 3 || options.single);
         if let Some(triangles) = bare.then(|| without_interior(points, taken)).flatten() {
-            self.enter(Vec::new(), triangles, Method::NoInterior);
+            self.enter(Vec::new(), triangles, Method::NoInterior, progress)?;
         }
         if n <= SMALL {
             let (centre, triangles) = around_centre(points);
             let interior = place::settled(points, vec![centre], &triangles, progress)?;
-            self.enter(interior, triangles, Method::Centre);
+            self.enter(interior, triangles, Method::Centre, progress)?;
         }
         if options.thin && n > LARGE && !self.even {
             self.of_some(thinned(points), options, progress.part(0.0, 0.3))?;
@@ -241,7 +241,7 @@ impl Contest<'_> {
         }
         if n > 3 && !self.is_settled(options) {
             match made.unwrap_or_else(|| graded(points, wanted, taken, progress.part(0.7, 1.0))) {
-                Ok((interior, triangles)) => self.enter(interior, triangles, Method::Graded),
+                Ok((interior, triangles)) => self.enter(interior, triangles, Method::Graded, progress)?,
                 Err(Error::Solver { .. }) => {}
                 Err(error) => return Err(error),
             }
@@ -255,7 +255,7 @@ impl Contest<'_> {
             let round = place::round_loop(points);
             let (interior, triangles) = graded(&round, wanted, taken, progress.part(0.7, 1.0))?;
             let interior = place::carried_over(&round, interior, &triangles, points, progress)?;
-            self.enter(interior, triangles, Method::Graded);
+            self.enter(interior, triangles, Method::Graded, progress)?;
         }
         Ok(())
     }
@@ -278,7 +278,7 @@ impl Contest<'_> {
         };
         let triangles = put_back(&patch.triangles, &kept, self.points.len());
         let interior = place::settled_by_loop(self.points, patch.interior, &triangles, progress)?;
-        self.enter(interior, triangles, patch.method);
+        self.enter(interior, triangles, patch.method, progress)?;
         Ok(())
     }
 
@@ -349,17 +349,25 @@ impl Contest<'_> {
 
     /// Triangles inside a path, mapped to the loop.
     fn place(&mut self, path: &[Axial], method: Method, progress: Progress<'_>) -> Result<()> {
+        progress.report(0.0)?;
         let patch = assemble(&[path.to_vec()]);
+        progress.report(0.0)?;
         if let Some(interior) = place::off_lattice(self.points, &patch, progress)? {
-            self.enter(interior, patch.triangles, method);
+            self.enter(interior, patch.triangles, method, progress)?;
         }
         Ok(())
     }
 
-    fn enter(&mut self, interior: Vec<DVec2>, triangles: Vec<[u32; 3]>, method: Method) {
+    fn enter(
+        &mut self,
+        interior: Vec<DVec2>,
+        triangles: Vec<[u32; 3]>,
+        method: Method,
+        progress: Progress<'_>,
+    ) -> Result<()> {
         let n = self.points.len();
         let positions = [self.points, &interior].concat();
-        let quality = measure(&positions, &triangles, self.wanted, self.taken);
+        let quality = measure(&positions, &triangles, self.wanted, self.taken, progress)?;
         let badness = quality.badness(n, self.even);
         self.candidates += 1;
         if badness < self.best.as_ref().map_or(f64::INFINITY, |b| b.0) {
@@ -367,6 +375,7 @@ impl Contest<'_> {
             let fill = FlatFill { interior, triangles, method, quality, folded, candidates: 0 };
             self.best = Some((badness, fill));
         }
+        Ok(())
     }
 }
 

@@ -44,7 +44,7 @@ pub(in crate::fill) fn graded(
     let mut settled = positions.clone();
     for _ in 0..3 {
         improve_valences(&settled, &mut triangles, wanted, taken, progress)?;
-        if let Some(rings) = Rings::new(&triangles, n, settled.len()) {
+        if let Some(rings) = Rings::new(&triangles, n, settled.len(), progress)? {
             if !untangle(&rings, &mut settled, 4, progress)? {
                 break;
             }

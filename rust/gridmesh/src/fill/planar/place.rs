@@ -23,7 +23,7 @@ pub(in crate::fill) fn off_lattice(
     let fit = Similarity::between(&positions[..n], points);
     positions.iter_mut().for_each(|p| *p = fit.apply(*p));
     progress.report(0.0)?;
-    let Some(rings) = Rings::new(&patch.triangles, n, positions.len()) else { return Ok(None) };
+    let Some(rings) = Rings::new(&patch.triangles, n, positions.len(), progress)? else { return Ok(None) };
     let mut moved: Vec<DVec2> = points.iter().zip(&positions).map(|(p, q)| *p - *q).collect();
     moved.extend(spread(&patch.points[..n], &moved, &patch.points[n..]));
     progress.report(0.0)?;
@@ -42,7 +42,7 @@ pub(in crate::fill) fn settled(
 ) -> Result<Vec<DVec2>> {
     let n = points.len();
     let mut positions = [points, &interior].concat();
-    if let Some(rings) = Rings::new(triangles, n, positions.len()) {
+    if let Some(rings) = Rings::new(triangles, n, positions.len(), progress)? {
         settle(&rings, &mut positions, progress)?;
     }
     Ok(positions.split_off(n))
@@ -64,7 +64,7 @@ pub(in crate::fill) fn settled_by_loop(
 ) -> Result<Vec<DVec2>> {
     let n = points.len();
     let mut positions = [points, &interior].concat();
-    if let Some(rings) = Rings::new(triangles, n, positions.len())
+    if let Some(rings) = Rings::new(triangles, n, positions.len(), progress)?
         && untangle(&rings, &mut positions, 10, progress)?
     {
         let mut active = vec![false; rings.len()];
@@ -89,7 +89,7 @@ pub(in crate::fill) fn carried_over(
 ) -> Result<Vec<DVec2>> {
     let n = points.len();
     let mut positions = [from, &interior].concat();
-    if let Some(rings) = Rings::new(triangles, n, positions.len()) {
+    if let Some(rings) = Rings::new(triangles, n, positions.len(), progress)? {
         let mut moved: Vec<DVec2> = points.iter().zip(from).map(|(p, q)| *p - *q).collect();
         let mean = moved.iter().sum::<DVec2>() / n as f64;
         moved.resize(positions.len(), mean);

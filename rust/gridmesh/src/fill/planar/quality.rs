@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use crate::error::Result;
+use crate::progress::Progress;
 use crate::relax::first_inverted;
 
 /// Counts and shapes of a patch whose loop vertices are `0..n_loop`.
@@ -25,16 +27,27 @@ pub(crate) struct Quality {
     pub repeated: usize,
 }
 
+/// Triangles between two questions whether to go on.
+const ASK_EVERY: usize = 1 << 15;
+
+/// Measures a patch.
+///
+/// # Errors
+/// [`Error::Cancelled`](crate::error::Error::Cancelled).
 pub(in crate::fill) fn measure(
     positions: &[DVec2],
     triangles: &[[u32; 3]],
     wanted: &[i32],
     taken: &dyn Fn(usize, usize) -> bool,
-) -> Quality {
+    progress: Progress<'_>,
+) -> Result<Quality> {
     let n = wanted.len();
     let mut valence = vec![0i32; positions.len()];
     let mut quality = Quality { min_angle: std::f64::consts::PI, ..Quality::default() };
-    for t in triangles {
+    for (at, t) in triangles.iter().enumerate() {
+        if at % ASK_EVERY == 0 {
+            progress.report(0.0)?;
+        }
         for (k, &v) in t.iter().enumerate() {
             valence[v as usize] += 1;
             let (i, j) = (v as usize, t[(k + 1) % 3] as usize);
@@ -61,8 +74,9 @@ pub(in crate::fill) fn measure(
     quality.irregular = valence[n..].iter().filter(|&&v| v != 6).count();
     quality.excess = wanted.iter().zip(&valence).map(|(w, v)| (v + 1 - w).unsigned_abs() as usize).sum();
     let centre = positions[..n].iter().sum::<DVec2>() / n as f64;
+    progress.report(0.0)?;
     quality.embedded = first_inverted(positions, triangles, centre).is_none();
-    quality
+    Ok(quality)
 }
 
 impl Quality {

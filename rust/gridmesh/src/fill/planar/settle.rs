@@ -23,7 +23,15 @@ pub(in crate::fill) struct Rings {
 
 impl Rings {
     /// `None` if a vertex `n_loop..n_vertices` is not surrounded by one fan of triangles.
-    pub fn new(triangles: &[[u32; 3]], n_loop: usize, n_vertices: usize) -> Option<Rings> {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled).
+    pub fn new(
+        triangles: &[[u32; 3]],
+        n_loop: usize,
+        n_vertices: usize,
+        progress: Progress<'_>,
+    ) -> Result<Option<Rings>> {
         let mut start = vec![0u32; n_vertices - n_loop + 1];
         for &v in triangles.iter().flatten().filter(|&&v| v as usize >= n_loop) {
             start[v as usize - n_loop + 1] += 1;
@@ -33,7 +41,10 @@ impl Rings {
         }
         let mut fill = start.clone();
         let mut pairs = vec![(0u32, 0u32); start.last().map_or(0, |&s| s as usize)];
-        for &[a, b, c] in triangles {
+        for (at, &[a, b, c]) in triangles.iter().enumerate() {
+            if at % ASK_EVERY == 0 {
+                progress.report(0.0)?;
+            }
             for (v, pair) in [(a, (b, c)), (b, (c, a)), (c, (a, b))] {
                 if v as usize >= n_loop {
                     let at = &mut fill[v as usize - n_loop];
@@ -44,20 +55,24 @@ impl Rings {
         }
         let mut rings = Rings { n_loop, start: vec![0], around: Vec::with_capacity(pairs.len() * 7 / 6) };
         for v in 0..start.len() - 1 {
+            if v % ASK_EVERY == 0 {
+                progress.report(0.0)?;
+            }
             let fan = &mut pairs[start[v] as usize..start[v + 1] as usize];
-            rings.around.push(fan.first()?.0);
+            let Some(first) = fan.first() else { return Ok(None) };
+            rings.around.push(first.0);
             for i in 0..fan.len() {
                 let end = rings.around.last().copied();
-                let next = (i..fan.len()).find(|&j| Some(fan[j].0) == end)?;
+                let Some(next) = (i..fan.len()).find(|&j| Some(fan[j].0) == end) else { return Ok(None) };
                 fan.swap(i, next);
                 rings.around.push(fan[i].1);
             }
             if fan[0].0 != fan[fan.len() - 1].1 {
-                return None;
+                return Ok(None);
             }
             rings.start.push(rings.around.len() as u32);
         }
-        Some(rings)
+        Ok(Some(rings))
     }
 
     pub fn len(&self) -> usize {
