@@ -334,6 +334,7 @@ def _surface(vertices: Any, triangles: Any, silhouette: Any, uv: Any, report: An
 def _fill(
     loop: Any,
     backwards: Any,
+    second: Any,
     smooth: Any,
     vertices: Any,
     flat: Any,
