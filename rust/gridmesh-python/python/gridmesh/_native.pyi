@@ -351,6 +351,7 @@ def _surface(
 def _fill(
     loop: Any,
     backwards: Any,
+    second: Any,
     smooth: Any,
     vertices: Any,
     flat: Any,

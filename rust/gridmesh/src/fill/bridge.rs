@@ -7,6 +7,7 @@
 mod align;
 mod choose;
 mod loft;
+mod options;
 mod rings;
 mod route;
 mod settle;
@@ -17,31 +18,16 @@ use glam::DVec3;
 use rustc_hash::FxHashSet;
 
 use crate::error::{Error, Result};
-use crate::fill::filled::{Bridged, Fill};
+use crate::fill::filled::Fill;
 use crate::fill::job::{Job, SOUND_RINGS};
-use crate::fill::loops::check::{Checked, check_loop, check_near};
+use crate::fill::loops::check::{check_loop, check_near};
 use crate::fill::loops::mesh::Rim;
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::parallel::steady;
 use crate::progress::Progress;
 
+pub use self::options::BridgeOptions;
 use self::span::Span;
-
-/// What can be chosen about a bridge.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BridgeOptions {
-    /// How the tube continues the surfaces at its ends: straight from loop to loop, with their slope, or with their slope
-    /// and curvature.
-    pub smooth: Smooth,
-    /// Rows of triangles between the loops, at least one; `None`: as the edges' lengths ask for.
-    pub rows: Option<usize>,
-    /// By how much the second loop is turned on against the best fit, in radians.
-    pub twist: f64,
-    /// Refuse a tube that meets itself or the mesh, instead of counting that.
-    pub strict: bool,
-    /// See [`FillOptions::polygons`].
-    pub polygons: Vec<u32>,
-}
 
 /// Joins two loops of a mesh by a tube.
 ///
@@ -114,9 +100,4 @@ fn bridged(
     let [fill] = fills;
     progress.report(1.0)?;
     fill
-}
-
-/// Which vertices of the work are the second loop's, and how it was given.
-fn second(checked: &[Checked; 2]) -> Bridged {
-    Bridged { first: checked[0].vertices.len(), reversed: checked[1].reversed }
 }

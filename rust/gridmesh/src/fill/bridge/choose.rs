@@ -198,10 +198,12 @@ impl<'a> Chooser<'a> {
         let (m, n) = (self.lower.len() as f64, self.upper.len() as f64);
         let rows = (self.mean().round() as usize).max(self.least as usize);
         let length = |row: usize| (m * (n / m).powf(row as f64 / rows as f64)).round() as usize;
-        let mut tube = stacked(&(0..=rows).map(length).collect::<Vec<_>>());
-        // Numbered from the first vertex of either loop, wherever that is.
+        // The vertex of the upper loop above the first one of the lower.
+        let shift = self.upper.before(self.lower.around[0]).round();
+        let first = shift.rem_euclid(n) as usize;
+        let mut tube = stacked(&(0..=rows).map(length).collect::<Vec<_>>(), first);
         for (around, height) in tube.around.iter_mut().zip(&tube.height) {
-            let (low, high) = (self.lower.after(*around * m), self.upper.after(*around * n));
+            let (low, high) = (self.lower.after(*around * m), self.upper.after(*around * n + shift));
             *around = low + height * (high - low);
         }
         Chosen { tube, lattice: false }
@@ -211,6 +213,8 @@ impl<'a> Chooser<'a> {
         let more = (self.upper.len() - self.lower.len()) as f64;
         let mean = self.mean();
         let ideal = more / mean;
+        let rise = |k: usize| (self.rows[(k + 1) % SAMPLES] - self.rows[k]).max(0.0);
+        let varied = (0..SAMPLES).map(rise).sum::<f64>();
         let mut growths = [0.0, 1.0, -1.0, 2.0].map(|off| ideal.round() + off).to_vec();
         growths.sort_by(|a, b| (a - ideal).abs().total_cmp(&(b - ideal).abs()));
         if ideal < 3.0 {
@@ -218,13 +222,16 @@ impl<'a> Chooser<'a> {
         }
         // Whole rows without a rest.
         growths.extend([mean.floor(), mean.ceil()].map(|rows| (more / rows.max(1.0)).floor()));
+        // What a path rises and falls takes vertices that a cone does not get.
+        let most = MOST_RISES * self.lower.len() as f64;
+        for left in [2.0 * most, most, 0.0] {
+            let less = (more - (varied - left).max(0.0)) / mean;
+            growths.extend([less.floor(), less.ceil()]);
+        }
         growths.retain(|&growth| (0.0..=more / self.least as f64).contains(&growth));
-        let rise = |k: usize| (self.rows[(k + 1) % SAMPLES] - self.rows[k]).max(0.0);
-        let varied = (0..SAMPLES).map(rise).sum::<f64>();
         let mut found: Vec<Candidate> = vec![];
         for growth in growths {
-            let both =
-                (0.5 * (varied - (more - growth * mean))).clamp(0.0, MOST_RISES * self.lower.len() as f64);
+            let both = (0.5 * (varied - (more - growth * mean))).clamp(0.0, most);
             for part in [0.0, 1.0] {
                 let rises = (part * both).round();
                 let share = if rises > 0.0 { (rises / varied).min(1.0) } else { 0.0 };

@@ -8,10 +8,10 @@ use rustc_hash::FxHashSet;
 use super::align::{Ring, best_fit, facing};
 use super::choose::{Bank, Chooser, Chosen};
 use super::loft::{Edge, Loft};
+use super::options::BridgeOptions;
 use super::settle::settle;
-use super::{BridgeOptions, second};
 use crate::error::{Error, Result};
-use crate::fill::filled::{Clock, Fill, Shape};
+use crate::fill::filled::{Bridged, Clock, Fill, Shape};
 use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::check::Checked;
 use crate::fill::loops::mesh::Rim;
@@ -224,7 +224,7 @@ impl<'a> Span<'a> {
             work,
             loop_,
             reversed: self.loops[0].reversed,
-            bridged: Some(second(&self.loops)),
+            bridged: Some(Bridged { first, reversed: self.loops[1].reversed }),
             flat,
             smooth: self.options.smooth,
             vertices: self.vertices.len(),

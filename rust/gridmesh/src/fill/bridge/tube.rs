@@ -163,8 +163,8 @@ impl Profile {
 }
 
 /// A tube over rings of any lengths, each step between two of them spread evenly: the vertices are irregular where the
-/// lengths grow unevenly.
-pub(super) fn stacked(lengths: &[usize]) -> Tube {
+/// lengths grow unevenly. The first vertex of the lowest ring lies below that numbered `shift` of the highest.
+pub(super) fn stacked(lengths: &[usize], shift: usize) -> Tube {
     let (m, n) = (lengths[0], lengths[lengths.len() - 1]);
     let rows = lengths.len() - 1;
     let mut tube = Tube {
@@ -187,7 +187,8 @@ pub(super) fn stacked(lengths: &[usize]) -> Tube {
     for row in 0..rows {
         let (a, b) = (lengths[row], lengths[row + 1]);
         let low = |k: usize| first[row] + (k % a) as u32;
-        let high = |k: usize| first[row + 1] + (k % b) as u32;
+        let ahead = if row + 1 == rows { shift } else { 0 };
+        let high = |k: usize| first[row + 1] + ((k + ahead) % b) as u32;
         let (here, there) = (0.5 * (row % 2) as f64, 0.5 * ((row + 1) % 2) as f64);
         let (mut i, mut j) = (0, 0);
         while i < a || j < b {
@@ -262,7 +263,7 @@ mod tests {
     #[test]
     fn rings_of_any_lengths_can_be_stacked() {
         for lengths in [vec![3, 200], vec![60, 61, 59, 62], vec![5, 5, 5], vec![100, 40, 3]] {
-            let tube = stacked(&lengths);
+            let tube = stacked(&lengths, 2);
             assert!(is_tube(&tube, lengths[0], lengths[lengths.len() - 1]), "{lengths:?}");
         }
     }

@@ -1,0 +1,19 @@
+//! What can be chosen about a bridge.
+
+use crate::fill::options::Smooth;
+
+/// What can be chosen about a bridge.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BridgeOptions {
+    /// How the tube continues the surfaces at its ends: straight from loop to loop, with their slope, or with their slope
+    /// and curvature.
+    pub smooth: Smooth,
+    /// Rows of triangles between the loops, at least one; `None`: as the edges' lengths ask for.
+    pub rows: Option<usize>,
+    /// By how much the second loop is turned on against the best fit, in radians.
+    pub twist: f64,
+    /// Refuse a tube that meets itself or the mesh, instead of counting that.
+    pub strict: bool,
+    /// See [`FillOptions::polygons`](crate::fill::FillOptions::polygons).
+    pub polygons: Vec<u32>,
+}
