@@ -68,8 +68,8 @@ use crate::{options, reports};
 /// bend : float, optional
 ///     How far the lattice may bend with the outline, from 0 (straight) to 1; None: 1. A conformal map takes the
 ///     outline to where it runs along lattice directions, which leaves far fewer irregular vertices and lets the
-///     size of the triangles vary a little. Several bends are tried, and straight lattices where they do not serve. The least
-///     angles can be smaller than on a straight lattice, and some thin parts coarser.
+///     size of the triangles vary a little. Several bends are tried, and straight lattices where they do not serve. Thin parts
+///     are about as fine as on a straight lattice; tips sharper than 35 degrees may be blunted, by two edge lengths at most.
 ///     Without effect beside `angle` or `origin` and with boundary="grown".
 /// density : "width", (n,) array of positive numbers, or a sequence of such arrays, optional
 ///     With `bend` above 0: where there should be more triangles: "width": in narrow parts; numbers: at each point of the

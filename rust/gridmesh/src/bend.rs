@@ -66,7 +66,7 @@ impl Ground {
         shape: CellShape,
     ) -> Option<Self> {
         let lines: Vec<Line> = contours.iter().map(|contour| in_frame(contour, &frame)).collect();
-        let carrier = Carrier::new(&lines)?;
+        let carrier = Carrier::new(&lines, shape)?;
         let densities = match density {
             Some(Density::PerPoint(given)) => Some(densities(contours, &carrier, given)?),
             _ => None,
@@ -75,11 +75,18 @@ impl Ground {
         Some(Self { frame, lines, carrier, densities, asks_width, is_symmetric, shape })
     }
 
-    /// The sizes that are asked for.
+    /// True if sizes are asked for.
+    fn is_asked(&self) -> bool {
+        self.asks_width || self.densities.is_some()
+    }
+
+    /// The sizes that are wished for; none where floors do.
     fn wish(&self) -> Option<Wish> {
         match &self.densities {
             Some(densities) => Some(Wish::of_densities(densities)),
-            None if self.asks_width => Some(Wish::of_narrowness(&self.carrier)),
+            None if self.asks_width || self.shape == CellShape::Quad => {
+                Some(Wish::of_narrowness(&self.carrier))
+            }
             None => None,
         }
     }

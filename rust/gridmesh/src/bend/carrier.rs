@@ -4,6 +4,7 @@ use glam::DVec2;
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
 use crate::geometry::segments::{SegmentGrid, nearest_on_segment, orientation, segments_meet};
+use crate::options::CellShape;
 
 /// Least and greatest spacing of the samples along the contours, in edges, and how many of them there are
 /// between the two.
@@ -13,6 +14,7 @@ const SAMPLES: f64 = 150.0;
 const OFF: f64 = 0.3;
 /// Greatest area of a triangle, in squared spacings.
 const AREA: f64 = 6.0;
+const QUAD_AREA: f64 = 8.0;
 /// Rounds of adding samples where chords cross.
 const ROUNDS: usize = 12;
 
@@ -88,10 +90,16 @@ pub struct Carrier {
 
 impl Carrier {
     /// None where the contours are so near to each other that no coarse triangulation is found.
-    pub fn new(lines: &[Line]) -> Option<Self> {
+    /// `shape` is that of the lattice: squares want turns of the tangents more finely.
+    pub fn new(lines: &[Line], shape: CellShape) -> Option<Self> {
         let whole: f64 = lines.iter().map(Line::length).sum();
-        let spacing = (whole / SAMPLES).clamp(SPACING.0, SPACING.1);
-        let largest = AREA * spacing * spacing;
+        let (spacing, largest) = match shape {
+            CellShape::Triangle => {
+                let spacing = (whole / SAMPLES).clamp(SPACING.0, SPACING.1);
+                (spacing, AREA * spacing * spacing)
+            }
+            CellShape::Quad => (SPACING.0, QUAD_AREA),
+        };
         let rims = samples(lines, spacing)?;
         let mut points: Vec<Point2<f64>> = Vec::new();
         let mut edges = Vec::new();

@@ -11,6 +11,7 @@ use super::tangents::Tangents;
 use super::width::narrowest;
 use super::{Bent, Ground};
 use crate::error::Result;
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Price of a change of direction against a squared radian along one edge, while directions are sought.
@@ -29,8 +30,9 @@ const FLOOR: f64 = -0.4;
 /// Weight of what is below those; rounds, and steps of conjugate gradients in each.
 const HELD: (f64, usize, usize) = (0.7, 2, 3);
 /// Weight of the sizes that are asked for, and steps for these.
-const ASKED: f64 = 4.0;
-const ASKED_ROUNDS: usize = 12;
+const ASKED: (f64, usize) = (4.0, 12);
+/// The same of the wish for finer narrow parts on a lattice of squares.
+const QUAD_SIZE: (f64, usize) = (0.1, 3);
 /// The largest log of the edge length that 99 % of the edges do not reach, over the median.
 const UNEVEN: f64 = 0.65;
 /// Price of narrow parts that are coarser than on a straight lattice, in turns for a factor of e.
@@ -64,9 +66,10 @@ pub(crate) fn candidates(
     let mut found = operators.rotations(&starts, beta, &robin, TURN)?;
     let cost = |r: &Rotation| r.turns as f64 + MISFIT * r.misfit;
     found.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+    let wide = if ground.shape == CellShape::Quad { count } else { SIZED * count };
     let mut chosen: Vec<Rotation> = Vec::new();
     for candidate in found {
-        if chosen.len() == SIZED * count {
+        if chosen.len() == wide {
             break;
         }
         if chosen.iter().all(|other| !is_same(&candidate.v, &other.v, step)) {
@@ -75,6 +78,7 @@ pub(crate) fn candidates(
     }
     progress.report(0.2)?;
     let wish = ground.wish();
+    let wished = if ground.is_asked() { ASKED } else { QUAD_SIZE };
     let narrowest = narrowest(&ground.carrier);
     let floor = |&narrow: &bool| if narrow { NARROW_FLOOR } else { FLOOR };
     let floors: Vec<f64> = narrowest.iter().map(floor).collect();
@@ -82,19 +86,21 @@ pub(crate) fn candidates(
         .par_iter()
         .map(|rotation| {
             let v = match &wish {
-                Some(wish) => solver.sized(rotation, (beta, &robin), (ASKED, ASKED_ROUNDS), wish)?,
+                Some(wish) => solver.sized(rotation, (beta, &robin), wished, wish)?,
                 None => solver.floored(&ground.carrier, rotation, (beta, &robin), HELD, &floors)?,
             };
             let rotation = operators.judged(v, TURN);
             let mut u = solver.scale(&rotation.v)?;
             keep_area(&ground.carrier, &mut u);
-            let price = if wish.is_some() { 0.0 } else { price_of_size(ground, &u, &narrowest) };
+            let price = if ground.is_asked() { 0.0 } else { price_of_size(ground, &u, &narrowest) };
             Ok((cost(&rotation) + price, rotation))
         })
         .collect();
     let mut sized = sized.into_iter().collect::<Result<Vec<(f64, Rotation)>>>()?;
-    sized.sort_by(|a, b| a.0.total_cmp(&b.0));
-    sized.truncate(count);
+    if ground.shape == CellShape::Triangle {
+        sized.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sized.truncate(count);
+    }
     let mirrored = ground.is_symmetric.then(|| Mirrored::new(&ground.carrier));
     let bent: Vec<Result<Option<Bent>>> = sized
         .into_par_iter()
@@ -126,10 +132,11 @@ fn bent(
         if let Some(mirrored) = mirrored {
             positions = mirrored.symmetric(&positions, turn);
         }
-        let is_asked = ground.asks_width || ground.densities.is_some();
+        let is_asked = ground.is_asked();
         let price = if is_asked { 0.0 } else { price_of_size(ground, &u, narrowest) };
         let image = Image { positions, u, v };
-        let is_uneven = !is_asked && largest_over_median(ground, &image.u) > UNEVEN;
+        let is_free = is_asked || ground.shape == CellShape::Quad;
+        let is_uneven = !is_free && largest_over_median(ground, &image.u) > UNEVEN;
         if is_uneven && share > SHARES[SHARES.len() - 1] || !image.is_upright(&ground.carrier) {
             continue;
         }
@@ -201,7 +208,8 @@ fn price_of_size(ground: &Ground, u: &[f64], narrowest: &[bool]) -> f64 {
             length += l;
         }
     }
-    let thin = COARSE * (coarse / length).max(0.0);
+    let is_for_triangles = ground.shape == CellShape::Triangle;
+    let thin = if is_for_triangles { COARSE * (coarse / length).max(0.0) } else { 0.0 };
     const FREE: f64 = 0.45;
     const EACH: f64 = 30.0;
     const RARE: f64 = 0.8;

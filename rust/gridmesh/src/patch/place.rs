@@ -103,7 +103,15 @@ pub(crate) fn place(
             let positions = laid(&region.points);
             let faces = |triangles: &[[u32; 3]]| (triangles.to_vec(), Vec::new());
             let sheet = Sheet { cells: &region.triangles, positions, faces };
-            sheet.place(contours, lattice, outline, options, progress)
+            let blunt = (options.bend > 0.0).then_some(BLUNT);
+            let placed = sheet.place(contours, lattice, outline, (options, blunt), progress)?;
+            match &placed {
+                Ok(placed) if placed.fault(options).is_none() => {}
+                _ if blunt.is_none() => {}
+                // A tip of a few degrees has room for its own point alone.
+                _ => return sheet.place(contours, lattice, outline, (options, None), progress),
+            }
+            Ok(placed)
         }
         CellShape::Quad => {
             let region = assemble_squares(&outline.paths);
@@ -116,7 +124,7 @@ pub(crate) fn place(
             positions.extend(laid(&region.points));
             let faces = |quads: &[[u32; 4]]| (Vec::new(), quads.to_vec());
             let sheet = Sheet { cells: &region.quads, positions, faces };
-            sheet.place(contours, lattice, outline, options, progress)
+            sheet.place(contours, lattice, outline, (options, None), progress)
         }
     }
 }
@@ -134,13 +142,13 @@ impl<const N: usize, F: Fn(&[[u32; N]]) -> (Vec<[u32; 3]>, Vec<[u32; 4]>)> Sheet
 where
     Band<N>: Stars,
 {
-    /// See [`place`].
+    /// See [`place`]; corners whose triangles are sharper than `blunt` are let go.
     fn place(
         &self,
         contours: &[ClosedCurve],
         lattice: &Lattice,
         outline: &Outline,
-        options: &SketchOptions,
+        (options, blunt): (&SketchOptions, Option<f64>),
         progress: Progress<'_>,
     ) -> Result<Result<Placed, Obstacle>> {
         let corners = Band::<N>::corners(self.cells);
@@ -162,7 +170,6 @@ where
         }
         let lengths: Vec<f64> = contours.iter().map(|contour| contour.length() / h).collect();
         let rings = if N == 4 { QUAD_RINGS } else { RelaxOptions::default().rings };
-        let blunt = (N == 3 && options.bend > 0.0).then_some(BLUNT);
         let relaxed = RelaxOptions { rings, blunt, ..RelaxOptions::default() };
         let mut relaxation = Relaxation::<N>::new(self.cells, lattice_positions, &lines, &rims, &relaxed)?;
         // A valid patch that bridges an inlet serves if following the inlet leads to none.

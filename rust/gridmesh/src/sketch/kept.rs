@@ -2,12 +2,10 @@
 
 use std::sync::Arc;
 
-use super::job::{Asked, Effort, Found, Job, faults};
 use crate::bend::Bent;
 use crate::error::{Error, Result};
 use crate::options::SketchOptions;
 use crate::path::placement::Lattice;
-use crate::progress::Progress;
 
 /// The lattice of a patch, with its bend: [`mesh_sketch_on`](crate::sketch::mesh_sketch_on).
 ///
@@ -17,7 +15,7 @@ pub struct Kept {
     /// The lattice of the patch.
     pub lattice: Lattice,
     /// The map, and the straight lattice of the bent plane.
-    bent: Option<(Arc<Bent>, Lattice)>,
+    pub(super) bent: Option<(Arc<Bent>, Lattice)>,
 }
 
 impl Kept {
@@ -59,37 +57,5 @@ impl Kept {
 impl std::fmt::Debug for Kept {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Kept").field("lattice", &self.lattice).field("bent", &self.bent.is_some()).finish()
-    }
-}
-
-impl Job<'_> {
-    /// The patch on the bent lattice that is to be kept; none where there is none, or none that the drawing
-    /// can follow.
-    pub(super) fn on_kept(&mut self, progress: Progress<'_>) -> Result<Option<Found>> {
-        let Some((bent, lattice)) = self.keep.and_then(|kept| kept.bent.as_ref()) else {
-            return Ok(None);
-        };
-        let Some(bent) = bent.followed(&self.contours) else { return Ok(None) };
-        let options = SketchOptions {
-            edge_length: None,
-            triangles: None,
-            angle: Some(lattice.angle),
-            origin: Some(lattice.origin),
-            ..self.of_bent()
-        };
-        let job = self.in_bent_plane(&bent, &options, None);
-        let angle = lattice.angle;
-        let asked = Asked::EdgeLength(lattice.edge_length);
-        let found = job.outline(asked, Effort::Full, angle, glam::DVec2::ZERO, progress.part(0.0, 0.3))?;
-        let Ok((lattice, outline)) = found else { return Ok(None) };
-        let outline = bent.outline(outline, &lattice);
-        self.placements += 1;
-        let placed = self.place(Some(&bent), &lattice, &outline, progress.part(0.3, 0.9))?;
-        Ok(placed.ok().filter(|(placed, _)| placed.fault(self.options).is_none()).map(
-            |(placed, mirror_error)| {
-                let bent = Some((Arc::new(bent), lattice));
-                Found { faults: faults(&placed), bent, outline, placed, mirror_error }
-            },
-        ))
     }
 }
