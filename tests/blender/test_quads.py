@@ -343,7 +343,7 @@ def test_an_edge_loop_runs_around_a_limb():
     )
     middle.select_set(True)
     bmesh.update_edit_mesh(ob.data)
-    if bpy.app.version >= (5, 2):
+    if "select_edge_loop_multi" in dir(bpy.ops.mesh):
         bpy.ops.mesh.select_edge_loop_multi()
     else:
         bpy.ops.mesh.loop_multi_select(ring=False)
