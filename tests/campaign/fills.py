@@ -138,7 +138,8 @@ def degenerate_at_border(rng, vertices, faces):
 
 def missing_vertices(rng, vertices, faces):
     faces = faces.copy()
-    faces[rng.integers(len(faces)), rng.integers(3)] = rng.choice([len(vertices), -1, 2**31 - 1])
+    if len(faces):
+        faces[rng.integers(len(faces)), rng.integers(3)] = rng.choice([len(vertices), -1, 2**31 - 1])
     return vertices, faces
 
 
