@@ -77,7 +77,9 @@ def blender(it, rows, interpolation):
     bm = bmesh.new()
     bm.from_mesh(mesh)
     bm.faces.ensure_lookup_table()
-    bmesh.ops.triangulate(bm, faces=bm.faces[len(it.triangles) :], quad_method="SHORT_EDGE")
+    bmesh.ops.triangulate(
+        bm, faces=[face for face in bm.faces if len(face.verts) > 3], quad_method="SHORT_EDGE"
+    )
     bm.verts.index_update()
     faces = np.array([[v.index for v in face.verts] for face in bm.faces], np.int64).reshape(-1, 3)
     points = np.array([v.co[:] for v in bm.verts], float)
