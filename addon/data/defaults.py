@@ -7,7 +7,7 @@ TRIANGLES = 2000
 """Of each side of a body."""
 CORNER_ANGLE = radians(40.0)
 """Turns sharper than this are corners."""
-BEND = 1.0
+BEND = 0.0
 """How far the lattice may bend with the outline."""
 CLOSE_GAPS = 0.2
 """Largest gap between the ends of a drawn outline that is closed, relative to the stroke."""
