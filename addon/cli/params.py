@@ -63,9 +63,7 @@ SKETCH = {
     "edge_length": Param("number", "length of the edges, instead of their number"),
     "boundary": Param("choice", "how the rim is found", ("optimal", "grown")),
     "max_distance": Param("number", "how far the rim may stray, in edge lengths"),
-    "bend": Param(
-        "number", f"how far the grid may bend with the outline ({defaults.BEND:g})", least=0, most=1
-    ),
+    "bend": Param("number", "how far the grid may bend with the outline (1)", least=0, most=1),
     "angle": Param("number", "angle of the grid, radians; the best one if not given"),
     "corner_angle": Param("number", "turns sharper than this are corners, radians"),
     "self_crossing": Param("choice", "what becomes of outlines that cross themselves", ("error", "union")),

@@ -328,7 +328,7 @@ def _stored(live: Any) -> Lattice | None:
 
     Only a lattice that was made in this session is known with its bend.
     """
-    if not live.lattice[0] or live.sketch_options().get("bend"):
+    if not live.lattice[0] or live.sketch_options().get("bend", 1.0):
         return None
     values = np.array(live.plane, float)
     plane = Plane(values[:3], values[3:].reshape(3, 3))

@@ -208,8 +208,8 @@ GERMAN = {
         "Wie weit der Rand des Gitters abweichen darf, bevor er auf den Strich gerückt wird, in Kantenlängen"
     ),
     "Bend": "Biegung",
-    "How far the grid may bend with the stroke, which leaves fewer irregular vertices; 0 is straight": (
-        "Wie weit sich das Gitter mit dem Strich biegen darf; so bleiben weniger unregelmäßige Punkte; 0 ist gerade"
+    "How far a grid of triangles may bend with the stroke, which leaves fewer irregular vertices; 0 is straight": (
+        "Wie weit sich ein Gitter aus Dreiecken mit dem Strich biegen darf; so bleiben weniger unregelmäßige Punkte; 0 ist gerade"
     ),
     "How the fineness of the mesh is given": "Wie die Feinheit des Netzes angegeben wird",
     "How the rim of the grid is chosen": "Wie der Rand des Gitters gewählt wird",

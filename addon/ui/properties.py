@@ -101,7 +101,7 @@ class SketchOptions:
     )
     bend: FloatProperty(
         name="Bend",
-        description="How far the grid may bend with the stroke, which leaves fewer irregular vertices; 0 is straight",
+        description="How far a grid of triangles may bend with the stroke, which leaves fewer irregular vertices; 0 is straight",
         subtype="FACTOR",
         default=defaults.BEND,
         min=0.0,
@@ -172,13 +172,11 @@ class SketchOptions:
             "EDGE_LENGTH": {"edge_length": self.edge_length},
         }
         return {
-            **(
-                {"cells": kind} if kind == "quads" else {}
-            ),  # bodies of triangles keep the fingerprints that they had
+            # Quads always bend: poles cost more than irregular vertices of triangles.
+            **({"cells": kind} if kind == "quads" else {"bend": self.bend}),
             **fineness[self.resolution],
             "boundary": self.boundary.lower(),
             "max_distance": self.max_distance,
-            "bend": self.bend,
             "angle": self.angle if self.angle_mode == "FIXED" else None,
             "corner_angle": self.corner_angle,
             "mirror": "auto" if self.mirror == "AUTO" else None,
@@ -198,9 +196,10 @@ class SketchOptions:
         if body is not None:
             body.prop(self, "boundary")
             body.prop(self, "max_distance")
-            row = body.row()
-            row.active = self.boundary == "OPTIMAL" and self.angle_mode == "AUTO"
-            row.prop(self, "bend")
+            if self.cells == "TRIANGLES":
+                row = body.row()
+                row.active = self.boundary == "OPTIMAL" and self.angle_mode == "AUTO"
+                row.prop(self, "bend")
             body.prop(self, "angle_mode")
             if self.angle_mode == "FIXED":
                 body.prop(self, "angle")
