@@ -170,6 +170,7 @@ def calls():
     names = [
         "loop",
         "backwards",
+        "second",
         "smooth",
         "vertices",
         "flat",

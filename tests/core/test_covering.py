@@ -27,7 +27,7 @@ def covered_by(cutout, size):
 
 
 def areas(cutout):
-    a, b, c = (cutout.vertices[cutout.triangles[:, k], :2] for k in range(3))
+    a, b, c = (cutout.vertices[cutout.faces[:, k], :2] for k in range(3))
     (x, y), (u, v) = (b - a).T, (c - a).T
     return (x * v - y * u) / 2
 
@@ -50,7 +50,7 @@ def test_sprites_cover_opaque_pixels_and_little_else(name):
 def test_bodies_cover_too_and_stay_closed():
     alpha = alpha_of(NAMES[0])
     cutout = sprite(alpha, margin=1.0, body={})
-    edges = np.sort(np.concatenate([cutout.triangles[:, [k, k - 1]] for k in range(3)]), axis=1)
+    edges = np.sort(np.concatenate([cutout.faces[:, [k, k - 1]] for k in range(3)]), axis=1)
     assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
     opaque = alpha >= 0.5
     assert np.maximum(opaque - covered_by(cutout, 96), 0).sum() < 0.002 * opaque.sum()

@@ -471,12 +471,12 @@ def test_a_damaged_pickle_of_a_fill_is_refused(damage: str) -> None:
     make, fields = gridmesh.fill_hole(vertices, faces, loop).__reduce__()
     fields = list(fields)
     if damage == "index":
-        fields[7] = fields[7] + 1000
+        fields[8] = fields[8] + 1000
     elif damage == "loop":
         fields[0] = fields[0][:-1]
     elif damage == "columns":
-        fields[5] = fields[5][:, :2].copy()
+        fields[6] = fields[6][:, :2].copy()
     else:
-        fields[2] = "rough"
+        fields[3] = "rough"
     with pytest.raises(gridmesh.GridMeshError, match="damaged"):
         make(*fields)

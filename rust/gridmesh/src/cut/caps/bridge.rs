@@ -17,6 +17,9 @@ pub(in crate::cut) struct Bridges<'a> {
     pub spots: Vec<DVec2>,
 }
 
+/// An outline with its holes.
+type Opened = (Vec<Spot>, Vec<Vec<Spot>>);
+
 /// A line from one loop to another: its length, and its places in both.
 type Link = (f64, usize, usize);
 
@@ -113,7 +116,7 @@ impl Bridges<'_> {
         upper: Vec<Spot>,
         holes: Vec<Vec<Spot>>,
         width: f64,
-    ) -> Option<Vec<(Vec<Spot>, Vec<Vec<Spot>>)>> {
+    ) -> Option<[Opened; 2]> {
         let tube = Tube::new(lower, upper, width);
         let [first, second] = tube.links(&holes)?;
         let [one, two] = [first, second].map(|(_, from, to)| {
@@ -132,7 +135,7 @@ impl Bridges<'_> {
             let moved = hole.iter().map(|s| Spot { at: s.at + DVec2::new(shift, 0.0), ..*s }).collect();
             sheets[k].1.push(moved);
         }
-        Some(sheets.into())
+        Some(sheets)
     }
 
     /// New vertices from one spot to another, about as far apart as the vertices at its ends.
