@@ -32,7 +32,7 @@ class MadeSprite:
         cutout = sheet.cutout
         self.numbers = {
             "parts": cutout.parts,
-            "triangles": len(cutout.triangles),
+            "triangles": len(cutout.faces),
             "min_angle": _least_angle(cutout),
         }
         self.notes = [f"a part is left out: {reason}" for reason in cutout.refused]
@@ -137,7 +137,7 @@ def _copy(source: Path, picture: bytes, beside: Path) -> None:
 
 
 def _least_angle(cutout: Cutout) -> float:
-    corners = cutout.vertices[cutout.triangles]
+    corners = cutout.vertices[cutout.faces]
     least = np.inf
     for k in range(3):
         a, b = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]

@@ -876,6 +876,10 @@ _LIBRARY_PARTS = {
     "as many vertices as the filled mesh has": "so viele Punkte, wie das gefüllte Mesh hat",
     "at least 6": "mindestens 6",
     "given beside edge_length": "neben edge_length gegeben",
+    "given beside what it decides": "neben dem gegeben, was es bestimmt",
+    "no edge_length, number of cells, angle, origin or mirror beside it, or none": (
+        "weder edge_length noch eine Zahl von Zellen, angle, origin oder mirror daneben, oder keines"
+    ),
     "given, with boundary grown": "gegeben, mit gewachsenem Rand",
     "grown, with holes": "gewachsen, mit Löchern",
     "none, or boundary optimal: growth has no symmetric form": (

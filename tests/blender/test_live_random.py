@@ -291,12 +291,12 @@ class Play:
         assert live.digest == engine.fingerprint(live, sketch)
         fresh, _ = solve(sketch, live.sketch_options(), live.body_options(), pen=live.pen)
         points, there = meshes.in_space(fresh, frames.space(body)).vertices, vertices(body.data)
-        same = np.array_equal(fresh.triangles, triangles(body.data))
+        same = np.array_equal(fresh.faces, triangles(body.data))
         if not same or np.abs(points - there).max() >= 1e-5 * sketch.size:
             # Of equally good grids, as on a circle, rounding chooses, also between those with the same triangles, turned;
             # a body that was applied keeps the one that it has.
             assert "apply" in self.done
-            assert abs(len(fresh.triangles) / len(triangles(body.data)) - 1) < 0.05
+            assert abs(len(fresh.faces) / len(triangles(body.data)) - 1) < 0.05
             for one, two in (
                 (points.min(axis=0), there.min(axis=0)),
                 (points.max(axis=0), there.max(axis=0)),

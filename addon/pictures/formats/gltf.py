@@ -21,7 +21,7 @@ _MIME = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".web
 def write(path: Path, sheet: Sheet, unit: float) -> None:
     """Write the sprite upright, y up, facing z; `unit` pixels are a metre."""
     points = (sheet.points / unit).astype("<f4")
-    faces = sheet.cutout.triangles.astype("<u4")
+    faces = sheet.cutout.faces.astype("<u4")
     normals = [] if sheet.flat else [("NORMAL", _normals(points, faces).astype("<f4"))]
     attributes = [("POSITION", points), *normals, ("TEXCOORD_0", sheet.uv.astype("<f4"))]
     blocks = [(data.tobytes(), _VERTICES) for _, data in attributes]

@@ -47,7 +47,7 @@ class Sheet:
         starts, n = self.cutout.starts, len(self.cutout.vertices)
         for at, start in enumerate(starts):
             end = starts[at + 1] if at + 1 < len(starts) else n
-            faces = self.cutout.triangles
+            faces = self.cutout.faces
             own = faces[(faces[:, 0] >= start) & (faces[:, 0] < end)] - start
             loops = [loop - start for loop in self.cutout.silhouette if start <= loop[0] < end]
             name = self.name if len(starts) == 1 else f"{self.name}-{at + 1}"
