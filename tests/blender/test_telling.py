@@ -105,7 +105,7 @@ class TestMaterials:
         self.ink(ob)
         ob.data.layers[0].current_frame().drawing.strokes[1].fill_id = 1
         first, second = run()
-        assert [body.data.materials[0].name for body in (first, second)] == ["Ink Surface", "Ink Fill"]
+        assert [body.data.materials[0].name for body in (first, second)] == ["Ink Surface", "Ink Colors"]
         assert np.allclose(first.data.materials[0].diffuse_color[:3], (0.9, 0.1, 0.2))
         assert np.allclose(second.data.materials[0].diffuse_color[:3], (0.1, 0.6, 0.3))
 
