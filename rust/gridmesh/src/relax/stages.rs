@@ -181,7 +181,7 @@ where
     ///
     /// With interior angle a of the boundary at the vertex, no triangulation there has a least
     /// angle above a / 2, so a triangle starves below .45 a, where 14 degrees are always enough.
-    /// With `blunt` it starves below that angle, however sharp the corner is.
+    /// With `blunt` it starves below that angle where the corner is sharper than twice that.
     pub fn release_starved(
         &mut self,
         blunt: Option<f64>,
@@ -219,7 +219,12 @@ where
             sharpest = sharpest.max(sharpness([x, a, b]));
         }
         let own = f64::min(14.0, 0.45 * interior.to_degrees());
-        sharpest > cotangent(blunt.map_or(own, |blunt| blunt.to_degrees().max(own)))
+        // Two triangles at least share a corner of the drawing.
+        let least = match blunt {
+            Some(blunt) if interior < 2.0 * blunt => own.max(blunt.to_degrees()),
+            _ => own,
+        };
+        sharpest > cotangent(least)
     }
 
     /// Least angle of the triangles of the band, in radians.

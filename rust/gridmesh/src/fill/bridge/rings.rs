@@ -88,13 +88,15 @@ impl Rings {
         }
         let round = node.at.div_euclid(self.len(node.ring));
         let at = node.at.rem_euclid(self.len(node.ring));
-        let (mut low, mut high) = (0, k);
+        // On rings before ring 0 the first corners lie before vertex 0, and those of later rounds take their places.
+        let rounds = -self.corner(0, node.ring).div_euclid(self.len(node.ring));
+        let (mut low, mut high) = ((rounds - 1).max(0) * k, (rounds + 1) * k);
         while low < high {
             let middle = (low + high) / 2;
             if self.corner(middle, node.ring) < at { low = middle + 1 } else { high = middle }
         }
         let mut corners = 0;
-        while low + corners < k && self.corner(low + corners, node.ring) == at {
+        while corners < k && self.corner(low + corners, node.ring) == at {
             corners += 1;
         }
         Place { before: low + round * k, corners }

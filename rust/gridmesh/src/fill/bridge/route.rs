@@ -142,7 +142,7 @@ impl<'a> Layers<'a> {
         }
         let at = node.at - round as i64 * self.wishes.rings.len(node.ring);
         let column = at - self.middles[layer][row as usize] + ALONG;
-        (0..WIDTH as i64).contains(&column).then_some(row as usize * WIDTH + column as usize)
+        (0..WIDTH as i64).contains(&column).then(|| row as usize * WIDTH + column as usize)
     }
 
     /// Cost of a vertex off its target.
