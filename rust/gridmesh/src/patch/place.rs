@@ -57,6 +57,8 @@ pub(crate) struct Placed {
     pub(crate) arcs: Vec<Vec<f64>>,
     pub(crate) corners: usize,
     pub(crate) released_corners: usize,
+    /// Those of them that are no tips: a mesh without them looks worn.
+    pub(crate) released_wide: usize,
     /// Greatest distance of the drawing from the boundary, in edges.
     pub(crate) max_deviation: f64,
     /// Boundary edges that bridge an inlet with a mesh vertex in it.
@@ -231,6 +233,8 @@ where
             let crossing = if options.relax { crossings(&beside, &vertices, &arcs) } else { Vec::new() };
             let n_corners = found.iter().map(Vec::len).sum();
             let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
+            let wide = found.iter().flatten().filter(|corner| is_wide(corner.angle)).count();
+            let kept_wide = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| is_wide(angle)).count();
             let (triangles, quads) = (self.faces)(self.cells);
             let placed = Placed {
                 patch: Patch {
@@ -244,6 +248,7 @@ where
                 arcs: own,
                 corners: n_corners,
                 released_corners: n_corners - kept,
+                released_wide: wide.saturating_sub(kept_wide),
                 max_deviation: farthest / h,
                 bridged_inlets,
                 crossings: crossing.len(),
@@ -390,6 +395,11 @@ fn blunted(
         !is_tip
     });
     held
+}
+
+/// Whether a drawn corner that turns by this angle is wider than the tips that are blunted.
+fn is_wide(turning: f64) -> bool {
+    turning != 0.0 && turning < std::f64::consts::PI - 2.0 * BLUNT
 }
 
 /// The corners of a contour, with arc lengths in edges.

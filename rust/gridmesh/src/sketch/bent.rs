@@ -65,7 +65,7 @@ impl Job<'_> {
             let faults = faults(&placed);
             let bent = Some((Arc::new(bent), lattice));
             let found = Found { faults, bent, outline, placed, mirror_error };
-            let is_good = found.faults <= SLIGHT && found.starved() == 0.0;
+            let is_good = found.faults <= SLIGHT && found.starved() == 0.0 && found.placed.released_wide == 0;
             if best.as_ref().is_none_or(|best| found.score() < best.score()) {
                 best = Some(found);
             }

@@ -59,10 +59,11 @@ impl Found {
         (1.0 - least / GOOD_ANGLE).max(0.0)
     }
 
-    /// Cost, faults and starved triangles in turns.
+    /// Cost, faults, starved triangles and lost corners in turns.
     pub(crate) fn score(&self) -> f64 {
         let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
-        self.outline.cost + price + TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved()
+        let corners = TURNS_OF_CORNER * self.placed.released_wide as f64;
+        self.outline.cost + price + TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved() + corners
     }
 
     /// True if a part of the drawing is lost in the mesh.
@@ -237,6 +238,7 @@ impl Job<'_> {
         let price = found.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
         found.faults <= SLIGHT
             && found.starved() == 0.0
+            && found.placed.released_wide == 0
             && price < 1.0
             && found.outline.turns(self.options.cells) <= FEW * self.contours.len()
     }
@@ -329,6 +331,9 @@ const MUCH: f64 = 1.2;
 /// Where a patch on a bent lattice has triangles below this angle, 20 degrees, others are placed too; and
 /// how many turns it outweighs that an angle is zero.
 pub(crate) const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
+
+/// A corner of the drawing that the mesh cuts off is worth so many turns: more than the lattices differ by.
+const TURNS_OF_CORNER: f64 = 12.0;
 
 pub(crate) const TURNS_OF_ANGLE: f64 = 16.0;
 
