@@ -1,8 +1,8 @@
 //! A tube between two loops, with every vertex of both.
 //!
-//! A tube needs no irregular vertex: it is a piece of the lattice on a cylinder or a cone ([`rings`]). The loops are closed
-//! paths on it ([`route`]), chosen with the cone ([`choose`]), what lies between them is triangulated ([`tube`]), placed on a surface
-//! that goes on from both sides ([`loft`]) and moved within it to where triangles are good ([`settle`]).
+//! A tube needs no irregular vertex: it is a piece of the lattice on a cylinder or a cone (`rings`). The loops are closed
+//! paths on it (`route`), chosen with the cone (`choose`), what lies between them is triangulated (`tube`), placed on a surface
+//! that goes on from both sides (`loft`) and moved within it to where triangles are good (`settle`).
 
 mod align;
 mod choose;
