@@ -137,7 +137,7 @@ def main() -> None:
             cutout = cut_out(pixels, Options(**options))
             n = cutout.starts[1] if len(cutout.starts) > 1 else len(cutout.vertices)
             points = cutout.vertices[:n]
-            triangles = cutout.triangles[(cutout.triangles < n).all(axis=1)]
+            triangles = cutout.faces[(cutout.triangles < n).all(axis=1)]
             bones = chain(points[:, :2], triangles)
             started = time.process_time()
             own = gridmesh.bone_weights(points[:, :2], triangles, bones)
@@ -146,7 +146,7 @@ def main() -> None:
             m = body.starts[1] if len(body.starts) > 1 else len(body.vertices)
             with quiet():
                 theirs = automatic(points, triangles, bones)
-                faces = body.triangles[(body.triangles < m).all(axis=1)]
+                faces = body.faces[(body.faces < m).all(axis=1)]
                 closed.append((automatic(body.vertices[:m], faces, bones).sum(axis=1) == 0).any())
             bare = theirs.sum(axis=1) == 0
             folded = [folds(points[:, :2], triangles, weights, bones) for weights in (own, theirs)]

@@ -68,13 +68,13 @@ def measure(pixels: np.ndarray, triangles: int, body: bool) -> dict[str, float]:
     loops = [cutout.vertices[loop, :2] for loop in cutout.silhouette]
     inside = sampled(loops, width, height, 8)[::-1].reshape(height, 8, width, 8).mean(axis=(1, 3))
     alpha = pixels[..., 3]
-    edges = np.sort(np.concatenate([cutout.triangles[:, [a, a - 1]] for a in range(3)]), axis=1)
+    edges = np.sort(np.concatenate([cutout.faces[:, [a, a - 1]] for a in range(3)]), axis=1)
     edges, counts = np.unique(edges, axis=0, return_counts=True)
     ends = cutout.vertices[edges]
     lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
     return {
         "seconds": seconds,
-        "triangles": len(cutout.triangles),
+        "triangles": len(cutout.faces),
         "refused": len(cutout.refused),
         "cut": int(((alpha >= 0.5) & (inside < 0.5)).sum()),
         "opaque_cut": float(np.maximum((alpha >= 0.5) - inside, 0).sum() / (alpha >= 0.5).sum()),
