@@ -6,7 +6,8 @@ numpy only, no bpy: everything here runs in plain Python. Points are float64 in 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +22,24 @@ Progress = Callable[[float], object]
 
 class CancelledError(Exception):
     """The user asked to stop. Nothing was made."""
+
+
+@contextmanager
+def cancelling(gridmesh: Any) -> Iterator[None]:
+    """Raise CancelledError where a call of the module ends since `progress` or Ctrl-C asked it to."""
+    try:
+        yield
+    except KeyboardInterrupt as error:
+        raise CancelledError from error
+    except gridmesh.GridMeshError as error:
+        if error.kind == "cancelled":
+            raise CancelledError from error
+        raise
+
+
+def part_of(progress: Progress | None, begin: float, end: float) -> Progress | None:
+    """Progress of a part of the work, from `begin` to `end`."""
+    return None if progress is None else lambda fraction: progress(begin + fraction * (end - begin))
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,10 +122,8 @@ def build(
     gridmesh = native("mesh_sketch", "map_sketches", "inflate", "flat")
     bodies: list[Body] = []
     failures: list[Failure] = []
-    try:
+    with cancelling(gridmesh):
         surfaces = _surfaces(gridmesh, sketches, sketch_options, body_options, progress)
-    except KeyboardInterrupt as error:
-        raise CancelledError from error
     for sketch, surface in zip(sketches, surfaces, strict=True):
         if isinstance(surface, gridmesh.GridMeshError):
             if surface.kind == "cancelled":
@@ -152,8 +169,8 @@ def _surfaces(
 
     def surface(at: int, outline: np.ndarray, holes: list[np.ndarray]) -> Any:
         meshing = 1.0 if body_options is None else _MESHING
-        first = _part(progress, at / len(drawings), (at + meshing) / len(drawings))
-        second = _part(progress, (at + meshing) / len(drawings), (at + 1) / len(drawings))
+        first = part_of(progress, at / len(drawings), (at + meshing) / len(drawings))
+        second = part_of(progress, (at + meshing) / len(drawings), (at + 1) / len(drawings))
         try:
             patch = gridmesh.mesh_sketch(outline, holes, progress=first, **sketch_options)
             if body_options is None:
@@ -163,180 +180,6 @@ def _surfaces(
             return error
 
     return [surface(at, outline, holes) for at, (outline, holes) in enumerate(drawings)]
-
-
-def _part(progress: Progress | None, begin: float, end: float) -> Progress | None:
-    """Progress of a part of the work, from `begin` to `end`."""
-    return None if progress is None else lambda fraction: progress(begin + fraction * (end - begin))
-
-
-@dataclass(frozen=True, eq=False)
-class Filled:
-    """A patch for a hole."""
-
-    vertices: np.ndarray
-    """(j, 3) the new ones."""
-    triangles: np.ndarray
-    """(t, 3), the mesh's vertices first, then the new ones."""
-    creases: np.ndarray
-    """(e, 2), hard edges of the patch."""
-    poses: list[np.ndarray]
-    """(j, 3) the new vertices in every pose."""
-    report: dict[str, Any]
-    extend: Callable[[np.ndarray], np.ndarray]
-    """From values at the loop's vertices (k, c) to values at the new ones (j, c)."""
-
-
-def fill(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    loops: Sequence[Sequence[int]],
-    *,
-    smooth: str,
-    polygons: np.ndarray | None = None,
-    poses: Sequence[np.ndarray] = (),
-    sharp: float | None = None,
-    creases: np.ndarray | None = None,
-    progress: Progress | None = None,
-) -> list[Filled | str]:
-    """Fill loops of a mesh: for each the patch, or the reason why there is none.
-
-    vertices : (n, 3), triangles : (m, 3), the mesh. loops : vertex indices in order. polygons : (m,), of which
-    each triangle is a part. poses : (n, 3) each, other positions of the same mesh. sharp, creases : which edges are
-    hard, as of `gridmesh.fill_hole`. Raises NativeError without the module, and CancelledError if `progress` or
-    Ctrl-C asked to stop.
-    """
-    gridmesh = native("fill_holes")
-    indices = [np.asarray(loop, np.int32) for loop in loops]
-
-    try:
-        fills = gridmesh.fill_holes(
-            vertices,
-            triangles,
-            indices,
-            smooth=smooth,
-            polygons=polygons,
-            sharp=sharp,
-            creases=creases,
-            progress=progress,
-        )
-        return [_filled(gridmesh, fill, vertices, poses) for fill in fills]
-    except KeyboardInterrupt as error:
-        raise CancelledError from error
-    except gridmesh.GridMeshError as error:
-        if error.kind == "cancelled":
-            raise CancelledError from error
-        return [str(error)] * len(indices)
-
-
-@dataclass(frozen=True, eq=False)
-class Regridded:
-    """A patch that takes the place of an area of a mesh."""
-
-    vertices: np.ndarray
-    """(j, 3) the new ones."""
-    triangles: np.ndarray
-    """(t, 3), the mesh's vertices first, then the new ones."""
-    source_faces: np.ndarray
-    """(j,) the old triangle on which each new vertex lies."""
-    source_weights: np.ndarray
-    """(j, 3) of its corners."""
-    unused: np.ndarray
-    """(u,) vertices that only the area used."""
-    report: dict[str, Any]
-
-
-def regrid(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    area: np.ndarray,
-    *,
-    keep_shape: bool,
-    smooth: str,
-    polygons: np.ndarray | None = None,
-    progress: Progress | None = None,
-) -> Regridded | str:
-    """Mesh an area anew, or tell why it cannot be.
-
-    vertices : (n, 3), triangles : (m, 3), the mesh. area : (f,) numbers of triangles, a disk. keep_shape : on the old
-    surface. polygons : (m,), of which each triangle is a part. Raises NativeError without the module, and
-    CancelledError if `progress` or Ctrl-C asked to stop.
-    """
-    gridmesh = native("regrid")
-    try:
-        done = gridmesh.regrid(
-            vertices,
-            triangles,
-            area,
-            keep_shape=keep_shape,
-            smooth=smooth,
-            polygons=polygons,
-            progress=progress,
-        )
-    except KeyboardInterrupt as error:
-        raise CancelledError from error
-    except gridmesh.GridMeshError as error:
-        if error.kind == "cancelled":
-            raise CancelledError from error
-        return str(error)
-    return Regridded(
-        vertices=done.fill.vertices,
-        triangles=done.fill.triangles,
-        source_faces=done.source_faces,
-        source_weights=done.source_weights,
-        unused=done.unused,
-        report={**done.fill.report, "off": done.off},
-    )
-
-
-def bridge(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    loop: Sequence[int],
-    other: Sequence[int],
-    *,
-    smooth: str,
-    rows: int | None = None,
-    twist: float = 0.0,
-    polygons: np.ndarray | None = None,
-    poses: Sequence[np.ndarray] = (),
-    progress: Progress | None = None,
-) -> Filled | str:
-    """Join two loops of a mesh by a tube: the patch, or the reason why there is none.
-
-    rows : of triangles, None for as many as suit. twist : radians from the best fit. The others are as of `fill`. Raises
-    NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
-    """
-    gridmesh = native("bridge")
-    try:
-        made = gridmesh.bridge(
-            vertices,
-            triangles,
-            np.asarray(loop, np.int32),
-            np.asarray(other, np.int32),
-            smooth=smooth,
-            rows=rows,
-            twist=twist,
-            polygons=polygons,
-            progress=progress,
-        )
-        return _filled(gridmesh, made, vertices, poses)
-    except KeyboardInterrupt as error:
-        raise CancelledError from error
-    except gridmesh.GridMeshError as error:
-        if error.kind == "cancelled":
-            raise CancelledError from error
-        return str(error)
-
-
-def _filled(gridmesh: Any, fill: Any, vertices: np.ndarray, poses: Sequence[np.ndarray]) -> Filled | str:
-    if isinstance(fill, gridmesh.GridMeshError):
-        return str(fill)
-    try:
-        solved = [fill.vertices if pose is vertices else fill.refit(pose) for pose in poses]
-    except gridmesh.GridMeshError as error:
-        return f"in another shape key {error}"
-    return Filled(fill.vertices, fill.triangles, fill.creases, solved, dict(fill.report), fill.extend)
 
 
 AUTOMATIC = 4000.0

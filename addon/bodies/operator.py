@@ -7,7 +7,7 @@ from time import perf_counter
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from .. import api
 from ..data import defaults, frames, meshes
@@ -15,6 +15,7 @@ from ..live import engine
 from ..text import entries
 from ..text.messages import counted, listed
 from ..text.telling import told
+from ..ui.patching import ResultShown
 from ..ui.progress import Pointer
 from ..ui.properties import CurveOption, SketchOptions
 from ..ui.waiting import Waiting
@@ -25,7 +26,7 @@ LONG = 50_000
 """Flat triangles; with more, which take a second or so, the work can be watched and stopped."""
 
 
-class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, ResultShown, bpy.types.Operator):  # noqa: N801
     """Make a smooth body with a clean mesh of triangles or quads from each closed stroke"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_from_strokes"
@@ -86,7 +87,6 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
         description="Let the body follow when its stroke is edited; the switch is in the sidebar",
         default=False,
     )
-    result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: Any) -> str:
@@ -180,13 +180,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, bpy.t
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        if self.result:
-            numbers = layout.column(align=True)
-            for part in self.result.split(", ", 1):  # on one line they would be cut off
-                numbers.label(text=told(part, "interface"))
+        layout = self.draw_result()
         self.draw_shape_options(layout)
         self.draw_sketch_options(layout)
         header, body = layout.panel(f"{self.bl_idname}_strokes", default_closed=True)

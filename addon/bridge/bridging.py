@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .. import api
+from ..api import Progress
+from ..fill import patches
 from ..fill.editmesh import Added, EditMesh, MeshError, Patch, Snapshot
 from ..fill.holes import Hole, Problem
 from ..text.messages import counted
@@ -49,13 +50,13 @@ class Job:
         faulty = [self.edited.faulty(hole, self.snapshot.positions) for hole in self.loops]
         self.problems += [problem for problem in faulty if problem is not None]
 
-    def bridge(self, smooth: str, rows: int, twist: float, progress: api.Progress) -> None:
+    def bridge(self, smooth: str, rows: int, twist: float, progress: Progress) -> None:
         """Make the tube, without touching the mesh. rows : 0 for as many as suit."""
         if self.problems or self.snapshot is None:
             return
         at = self.snapshot
         one, two = (hole.vertices for hole in self.loops)
-        made = api.bridge(
+        made = patches.bridge(
             at.positions,
             at.triangles,
             one,

@@ -6,18 +6,19 @@ from __future__ import annotations
 from time import perf_counter
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from .. import api
 from ..fill.editmesh import EditMesh
 from ..fill.filling import add_all
 from ..text.messages import counted, listed
 from ..text.telling import told
+from ..ui.patching import PatchOptions, faces_made
 from ..ui.progress import Pointer
 from .bridging import Job, warnings_of
 
 
-class MESH_OT_gridmesh_bridge(bpy.types.Operator):  # noqa: N801
+class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
     """Join two selected loops by a regular tube, whatever their numbers of edges"""  # noqa: D400 (the tooltip)
 
     bl_idname = "mesh.gridmesh_bridge"
@@ -52,12 +53,6 @@ class MESH_OT_gridmesh_bridge(bpy.types.Operator):  # noqa: N801
         soft_max=3.1416,
         options={"SKIP_SAVE"},
     )
-    use_quads: BoolProperty(
-        name="Quads",
-        description="Join pairs of triangles to quads where that gives good ones",
-        default=False,
-    )
-    result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -70,10 +65,7 @@ class MESH_OT_gridmesh_bridge(bpy.types.Operator):  # noqa: N801
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the loops, join them as arrays, and only then change the meshes."""
         started = perf_counter()
-        try:
-            api.native("bridge")
-        except api.NativeError as error:
-            self.report({"ERROR"}, told(str(error)))
+        if not self.has_module("bridge"):
             return {"CANCELLED"}
         edited = [EditMesh(ob) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
         # Meshes without a selection are none of the user's trouble while another one has one.
@@ -100,10 +92,7 @@ class MESH_OT_gridmesh_bridge(bpy.types.Operator):  # noqa: N801
 
     def _tell(self, jobs: list[Job], problems: list[str], seconds: float) -> None:
         """Report numbers, and what the user should know."""
-        faces = [len(face.verts) for job in jobs for face in job.added.faces]
-        quads = sum(n == 4 for n in faces)
-        made = counted(len(faces) - quads, "triangle")
-        made = f"{counted(quads, 'quad')} and {made}" if quads else made
+        made = faces_made(jobs)
         irregular = sum(job.report["irregular"] for job in jobs)
         rows = max(job.report["rows"] for job in jobs)
         self.result = f"Joined by {counted(rows, 'row')}: {made}, {counted(irregular, 'irregular vertex')}, {1000 * seconds:.0f} ms"
@@ -124,13 +113,7 @@ class MESH_OT_gridmesh_bridge(bpy.types.Operator):  # noqa: N801
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        if self.result:
-            numbers = layout.column(align=True)
-            for part in self.result.split(", ", 1):  # on one line they would be cut off
-                numbers.label(text=told(part, "interface"))
+        layout = self.draw_result()
         layout.prop(self, "rows")
         layout.prop(self, "smooth")
         layout.prop(self, "twist")

@@ -146,12 +146,9 @@ def _call(name: str, model: Model, stroke: np.ndarray, sweep: Sweep, **options: 
     how = {"direction": sweep.direction} if sweep.eye is None else {"eye": sweep.eye}
     faces = (model.corners.astype(np.int32), model.offsets.astype(np.int32))
     try:
-        return getattr(gridmesh, name)(model.vertices, faces, stroke, **how, **options)
-    except KeyboardInterrupt as error:
-        raise api.CancelledError from error
+        with api.cancelling(gridmesh):
+            return getattr(gridmesh, name)(model.vertices, faces, stroke, **how, **options)
     except gridmesh.GridMeshError as error:
-        if error.kind == "cancelled":
-            raise api.CancelledError from error
         raise CutError(str(error), error.kind) from error
 
 

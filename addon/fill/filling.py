@@ -6,8 +6,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from .. import api
+from ..api import Progress
 from ..text.messages import counted
+from . import patches
 from .editmesh import Added, EditMesh, MeshError, Patch, Snapshot
 from .holes import Found, Problem
 
@@ -50,13 +51,13 @@ class Job:
                 self.found.problems.append(problem)
                 self.found.holes.remove(hole)
 
-    def fill(self, smooth: str, progress: api.Progress, *, keep_hard: bool = False) -> None:
+    def fill(self, smooth: str, progress: Progress, *, keep_hard: bool = False) -> None:
         """Fill the holes, without touching the mesh."""
         if not self.found.holes:
             return
         at = self.snapshot
         loops = [hole.vertices for hole in self.found.holes]
-        fills = api.fill(
+        fills = patches.fill(
             at.positions,
             at.triangles,
             loops,

@@ -6,18 +6,19 @@ from __future__ import annotations
 from time import perf_counter
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty
 
 from .. import api
 from ..data import defaults
 from ..text.messages import counted, listed
 from ..text.telling import told
+from ..ui.patching import PatchOptions, faces_made
 from ..ui.progress import Pointer
 from .editmesh import EditMesh
 from .filling import Job, add_all, forgive_unselected, left_open, warnings_of
 
 
-class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
+class MESH_OT_gridmesh_fill(PatchOptions, bpy.types.Operator):  # noqa: N801
     """Fill the selected hole with a regular triangle patch that fits its edges"""  # noqa: D400 (the tooltip)
 
     bl_idname = "mesh.gridmesh_fill"
@@ -45,26 +46,11 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         min=0,
         soft_max=1000,
     )
-    smooth: EnumProperty(
-        name="Smoothness",
-        description="How a patch continues the surface around it",
-        items=[
-            ("FLAT", "Flat", "Stretched into the hole like a soap film"),
-            ("TANGENT", "Tangent", "With the slope of the surface"),
-            ("CURVATURE", "Curvature", "With the slope and the curvature of the surface"),
-        ],
-        default="TANGENT",
-    )
     close_chains: BoolProperty(
         name="Close Chains",
         description="Close selected chains of edges by a straight edge",
         default=False,
         options={"SKIP_SAVE"},
-    )
-    use_quads: BoolProperty(
-        name="Quads",
-        description="Join pairs of triangles to quads where that gives good ones",
-        default=False,
     )
     keep_hard: BoolProperty(
         name="Keep Hard Edges",
@@ -74,7 +60,6 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         ),
         default=False,
     )
-    result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -87,10 +72,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the holes, fill them as arrays, and only then change the meshes."""
         started = perf_counter()
-        try:
-            api.native("fill_holes")
-        except api.NativeError as error:
-            self.report({"ERROR"}, told(str(error)))
+        if not self.has_module("fill_holes"):
             return {"CANCELLED"}
         jobs = [Job(EditMesh(ob)) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
         several = len(jobs) > 1
@@ -132,10 +114,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
     def _tell(self, jobs: list[Job], problems: list[str], seconds: float) -> None:
         """Report numbers, and what the user should know."""
         reports = [report for job in jobs for report in job.reports]
-        faces = [len(face.verts) for job in jobs for face in job.added.faces]
-        quads = sum(n == 4 for n in faces)
-        made = counted(len(faces) - quads, "triangle")
-        made = f"{counted(quads, 'quad')} and {made}" if quads else made
+        made = faces_made(jobs)
         irregular = sum(report["irregular"] for report in reports)
         self.result = (
             f"Filled {counted(len(reports), 'hole')}: {made}, {counted(irregular, 'irregular vertex')}, "
@@ -162,13 +141,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        if self.result:
-            numbers = layout.column(align=True)
-            for part in self.result.split(", ", 1):  # on one line they would be cut off
-                numbers.label(text=told(part, "interface"))
+        layout = self.draw_result()
         layout.prop(self, "holes")
         if self.holes == "ALL":
             layout.prop(self, "max_edges")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..api import FACE_AREA, CancelledError, Progress, faces_of
+from ..api import FACE_AREA, CancelledError, Progress, cancelling, faces_of, part_of
 from ..native import native
 from .covering import covered, stretched
 
@@ -98,24 +98,21 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
     height, width = pixels.shape[:2]
     check_size(width, height)
     try:
-        traced = gridmesh.trace_image(
-            pixels,
-            background="paper" if options.paper else "transparent",
-            threshold="auto" if options.threshold is None else options.threshold,
-            smooth=options.smooth,
-            min_area=options.min_area,
-            margin=options.margin,
-            progress=_part(progress, 0.0, _TRACING),
-        )
-        parts = list(traced) if options.holes else _filled(traced)
-        if not parts:
-            raise PictureError(_nothing(traced.dropped))
-        surfaces = _meshed(gridmesh, parts, options, _part(progress, _TRACING, 1.0))
-    except KeyboardInterrupt as error:
-        raise CancelledError from error
+        with cancelling(gridmesh):
+            traced = gridmesh.trace_image(
+                pixels,
+                background="paper" if options.paper else "transparent",
+                threshold="auto" if options.threshold is None else options.threshold,
+                smooth=options.smooth,
+                min_area=options.min_area,
+                margin=options.margin,
+                progress=part_of(progress, 0.0, _TRACING),
+            )
+            parts = list(traced) if options.holes else _filled(traced)
+            if not parts:
+                raise PictureError(_nothing(traced.dropped))
+            surfaces = _meshed(gridmesh, parts, options, part_of(progress, _TRACING, 1.0))
     except gridmesh.GridMeshError as error:
-        if error.kind == "cancelled":
-            raise CancelledError from error
         raise PictureError(str(error)) from error
     refused = [str(surface) for surface in surfaces if isinstance(surface, gridmesh.GridMeshError)]
     meshed = [surface for surface in surfaces if not isinstance(surface, gridmesh.GridMeshError)]
@@ -149,11 +146,6 @@ def _nothing(dropped: int) -> str:
     return "nothing in it is covered; choose another background or a lower threshold"
 
 
-def _part(progress: Progress | None, begin: float, end: float) -> Callable[[float], object] | None:
-    """Progress of a part of the work, from `begin` to `end`."""
-    return None if progress is None else lambda fraction: progress(begin + fraction * (end - begin))
-
-
 def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progress | None) -> list[Any]:
     """Surface or GridMeshError for each part, all with edges of about the same length."""
     total = sum(_area(outline) + sum(map(_area, holes)) for outline, holes in parts)
@@ -170,7 +162,7 @@ def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progres
             [parts[k] for k in left],
             {"cells": cells, "edge_length": finer * length, "least": False},
             options,
-            _part(progress, step / len(FINER), (step + 1) / len(FINER)),
+            part_of(progress, step / len(FINER), (step + 1) / len(FINER)),
         )
         for k, surface in zip(left, found, strict=True):
             results[k] = surface
@@ -198,17 +190,17 @@ def _surfaces(
     slack = max(0.0, chosen.margin - _SQUARE)
 
     def surface(at: int, outline: np.ndarray, holes: list[np.ndarray]) -> Any:
-        part = _part(progress, at / len(parts), (at + 1) / len(parts))
+        part = part_of(progress, at / len(parts), (at + 1) / len(parts))
         try:
             if chosen.margin <= 0:
-                patch = gridmesh.mesh_sketch(outline, holes, progress=_part(part, 0.0, 0.7), **options)
-                return _of_patch(gridmesh, patch, {}, body, _part(part, 0.7, 1.0))
-            patch, moved, left = _covering(gridmesh, outline, holes, slack, options, _part(part, 0.0, 0.5))
+                patch = gridmesh.mesh_sketch(outline, holes, progress=part_of(part, 0.0, 0.7), **options)
+                return _of_patch(gridmesh, patch, {}, body, part_of(part, 0.7, 1.0))
+            patch, moved, left = _covering(gridmesh, outline, holes, slack, options, part_of(part, 0.0, 0.5))
             if left > CUT_OFF:
                 finer = {**options, "edge_length": FINER[1] * options["edge_length"]}
-                other = _covering(gridmesh, outline, holes, slack, finer, _part(part, 0.5, 0.7))
+                other = _covering(gridmesh, outline, holes, slack, finer, part_of(part, 0.5, 0.7))
                 patch, moved, _ = min((patch, moved, left), other, key=lambda one: one[2])
-            return _of_patch(gridmesh, patch, moved, body, _part(part, 0.7, 1.0))
+            return _of_patch(gridmesh, patch, moved, body, part_of(part, 0.7, 1.0))
         except gridmesh.GridMeshError as error:
             return error
 

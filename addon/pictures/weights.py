@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from mathutils.bvhtree import BVHTree
 
-from ..api import CancelledError
+from ..api import cancelling
 from ..native import native
 
 FLAT = 1e-3
@@ -61,19 +61,16 @@ def for_bones(
         raise WeightError("it is not flat; Blender's automatic weights are for bodies")
     across = axes[:2].T
     try:
-        return gridmesh.bone_weights(
-            (places - middle) @ across,
-            triangles.reshape(-1, 3),
-            (ends - middle) @ across,
-            most=most,
-            reach=reach,
-            progress=progress,
-        )
-    except KeyboardInterrupt as error:
-        raise CancelledError from error
+        with cancelling(gridmesh):
+            return gridmesh.bone_weights(
+                (places - middle) @ across,
+                triangles.reshape(-1, 3),
+                (ends - middle) @ across,
+                most=most,
+                reach=reach,
+                progress=progress,
+            )
     except gridmesh.GridMeshError as error:
-        if error.kind == "cancelled":
-            raise CancelledError from error
         raise WeightError(str(error)) from error
 
 

@@ -6,18 +6,19 @@ from __future__ import annotations
 from time import perf_counter
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, StringProperty
+from bpy.props import BoolProperty
 
 from .. import api
 from ..fill.editmesh import EditMesh
 from ..fill.filling import warnings_of
 from ..text.messages import counted, listed
 from ..text.telling import told
+from ..ui.patching import PatchOptions, faces_made
 from ..ui.progress import Pointer
 from .regridding import Job, replace_all
 
 
-class MESH_OT_gridmesh_regrid(bpy.types.Operator):  # noqa: N801
+class MESH_OT_gridmesh_regrid(PatchOptions, bpy.types.Operator):  # noqa: N801
     """Mesh the selected faces, or the area inside a selected loop, anew with a regular grid on the same surface"""  # noqa: D400
 
     bl_idname = "mesh.gridmesh_regrid"
@@ -29,22 +30,6 @@ class MESH_OT_gridmesh_regrid(bpy.types.Operator):  # noqa: N801
         description="Lay the grid on the old surface; without, the area becomes a smooth patch between its edges",
         default=True,
     )
-    smooth: EnumProperty(
-        name="Smoothness",
-        description="How a patch continues the surface around it",
-        items=[
-            ("FLAT", "Flat", "Stretched into the hole like a soap film"),
-            ("TANGENT", "Tangent", "With the slope of the surface"),
-            ("CURVATURE", "Curvature", "With the slope and the curvature of the surface"),
-        ],
-        default="TANGENT",
-    )
-    use_quads: BoolProperty(
-        name="Quads",
-        description="Join pairs of triangles to quads where that gives good ones",
-        default=False,
-    )
-    result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -57,10 +42,7 @@ class MESH_OT_gridmesh_regrid(bpy.types.Operator):  # noqa: N801
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the areas, mesh them as arrays, and only then change the meshes."""
         started = perf_counter()
-        try:
-            api.native("regrid")
-        except api.NativeError as error:
-            self.report({"ERROR"}, told(str(error)))
+        if not self.has_module("regrid"):
             return {"CANCELLED"}
         jobs = [Job(EditMesh(ob)) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
         for job in jobs:
@@ -89,10 +71,7 @@ class MESH_OT_gridmesh_regrid(bpy.types.Operator):  # noqa: N801
     def _tell(self, jobs: list[Job], problems: list[str], seconds: float) -> None:
         """Report numbers, and what the user should know."""
         reports = [region.made.report for job in jobs for region in job.regions]
-        faces = [len(face.verts) for job in jobs for face in job.added.faces]
-        quads = sum(n == 4 for n in faces)
-        made = counted(len(faces) - quads, "triangle")
-        made = f"{counted(quads, 'quad')} and {made}" if quads else made
+        made = faces_made(jobs)
         irregular = sum(report["irregular"] for report in reports)
         self.result = (
             f"Meshed {counted(len(reports), 'area')} anew: {made}, {counted(irregular, 'irregular vertex')}, "
@@ -106,13 +85,7 @@ class MESH_OT_gridmesh_regrid(bpy.types.Operator):  # noqa: N801
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        if self.result:
-            numbers = layout.column(align=True)
-            for part in self.result.split(", ", 1):  # on one line they would be cut off
-                numbers.label(text=told(part, "interface"))
+        layout = self.draw_result()
         layout.prop(self, "keep_shape")
         if not self.keep_shape:
             layout.prop(self, "smooth")

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..api import Regridded
 from ..fill.editmesh import Added, EditMesh, Snapshot
+from ..fill.patches import Regridded
 from .carried import Carried, Places
 
 

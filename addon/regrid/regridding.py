@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .. import api
+from ..api import Progress, part_of
+from ..fill import patches
 from ..fill.editmesh import Added, EditMesh, MeshError, Snapshot
 from .regionmesh import AreaError, Region, areas, replace
 
@@ -36,21 +37,20 @@ class Job:
             self.problems.append(f"'{self.edited.name}': {error}")
             self.areas = []
 
-    def solve(self, smooth: str, progress: api.Progress, *, keep_shape: bool) -> None:
+    def solve(self, smooth: str, progress: Progress, *, keep_shape: bool) -> None:
         """Mesh the areas anew, without touching the mesh."""
         at = self.snapshot
         taken: set[frozenset[int]] = set()
         for index, faces in enumerate(self.areas):
             triangles = np.flatnonzero(np.isin(at.polygons, faces)).astype(np.int32)
-            begin, whole = index / len(self.areas), 1 / len(self.areas)
-            made = api.regrid(
+            made = patches.regrid(
                 at.positions,
                 at.triangles,
                 triangles,
                 keep_shape=keep_shape,
                 smooth=smooth,
                 polygons=at.polygons,
-                progress=lambda part, begin=begin, whole=whole: progress(begin + whole * part),
+                progress=part_of(progress, index / len(self.areas), (index + 1) / len(self.areas)),
             )
             if not isinstance(made, str):
                 own = _chords(made.triangles, len(at.positions))

@@ -36,6 +36,7 @@ WITHOUT_BLENDER = {
     "bodies/sampling",
     "bodies/density",
     "fill/holes",
+    "fill/patches",
     "fill/creases",
     "cut/cutsweep",
     "cut/cutting",

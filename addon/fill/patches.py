@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Patches of meshes as arrays: holes filled, areas meshed anew, loops joined. numpy only, no bpy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..api import Progress, cancelling
+from ..native import native
+
+
+@dataclass(frozen=True, eq=False)
+class Filled:
+    """A patch for a hole."""
+
+    vertices: np.ndarray
+    """(j, 3) the new ones."""
+    triangles: np.ndarray
+    """(t, 3), the mesh's vertices first, then the new ones."""
+    creases: np.ndarray
+    """(e, 2), hard edges of the patch."""
+    poses: list[np.ndarray]
+    """(j, 3) the new vertices in every pose."""
+    report: dict[str, Any]
+    extend: Callable[[np.ndarray], np.ndarray]
+    """From values at the loop's vertices (k, c) to values at the new ones (j, c)."""
+
+
+def fill(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    loops: Sequence[Sequence[int]],
+    *,
+    smooth: str,
+    polygons: np.ndarray | None = None,
+    poses: Sequence[np.ndarray] = (),
+    sharp: float | None = None,
+    creases: np.ndarray | None = None,
+    progress: Progress | None = None,
+) -> list[Filled | str]:
+    """Fill loops of a mesh: for each the patch, or the reason why there is none.
+
+    vertices : (n, 3), triangles : (m, 3), the mesh. loops : vertex indices in order. polygons : (m,), of which
+    each triangle is a part. poses : (n, 3) each, other positions of the same mesh. sharp, creases : which edges are
+    hard, as of `gridmesh.fill_hole`. Raises NativeError without the module, and CancelledError if `progress` or
+    Ctrl-C asked to stop.
+    """
+    gridmesh = native("fill_holes")
+    indices = [np.asarray(loop, np.int32) for loop in loops]
+
+    try:
+        with cancelling(gridmesh):
+            fills = gridmesh.fill_holes(
+                vertices,
+                triangles,
+                indices,
+                smooth=smooth,
+                polygons=polygons,
+                sharp=sharp,
+                creases=creases,
+                progress=progress,
+            )
+            return [_filled(gridmesh, fill, vertices, poses) for fill in fills]
+    except gridmesh.GridMeshError as error:
+        return [str(error)] * len(indices)
+
+
+@dataclass(frozen=True, eq=False)
+class Regridded:
+    """A patch that takes the place of an area of a mesh."""
+
+    vertices: np.ndarray
+    """(j, 3) the new ones."""
+    triangles: np.ndarray
+    """(t, 3), the mesh's vertices first, then the new ones."""
+    source_faces: np.ndarray
+    """(j,) the old triangle on which each new vertex lies."""
+    source_weights: np.ndarray
+    """(j, 3) of its corners."""
+    unused: np.ndarray
+    """(u,) vertices that only the area used."""
+    report: dict[str, Any]
+
+
+def regrid(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    area: np.ndarray,
+    *,
+    keep_shape: bool,
+    smooth: str,
+    polygons: np.ndarray | None = None,
+    progress: Progress | None = None,
+) -> Regridded | str:
+    """Mesh an area anew, or tell why it cannot be.
+
+    vertices : (n, 3), triangles : (m, 3), the mesh. area : (f,) numbers of triangles, a disk. keep_shape : on the old
+    surface. polygons : (m,), of which each triangle is a part. Raises NativeError without the module, and
+    CancelledError if `progress` or Ctrl-C asked to stop.
+    """
+    gridmesh = native("regrid")
+    try:
+        with cancelling(gridmesh):
+            done = gridmesh.regrid(
+                vertices,
+                triangles,
+                area,
+                keep_shape=keep_shape,
+                smooth=smooth,
+                polygons=polygons,
+                progress=progress,
+            )
+    except gridmesh.GridMeshError as error:
+        return str(error)
+    return Regridded(
+        vertices=done.fill.vertices,
+        triangles=done.fill.triangles,
+        source_faces=done.source_faces,
+        source_weights=done.source_weights,
+        unused=done.unused,
+        report={**done.fill.report, "off": done.off},
+    )
+
+
+def bridge(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    loop: Sequence[int],
+    other: Sequence[int],
+    *,
+    smooth: str,
+    rows: int | None = None,
+    twist: float = 0.0,
+    polygons: np.ndarray | None = None,
+    poses: Sequence[np.ndarray] = (),
+    progress: Progress | None = None,
+) -> Filled | str:
+    """Join two loops of a mesh by a tube: the patch, or the reason why there is none.
+
+    rows : of triangles, None for as many as suit. twist : radians from the best fit. The others are as of `fill`. Raises
+    NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
+    """
+    gridmesh = native("bridge")
+    try:
+        with cancelling(gridmesh):
+            made = gridmesh.bridge(
+                vertices,
+                triangles,
+                np.asarray(loop, np.int32),
+                np.asarray(other, np.int32),
+                smooth=smooth,
+                rows=rows,
+                twist=twist,
+                polygons=polygons,
+                progress=progress,
+            )
+            return _filled(gridmesh, made, vertices, poses)
+    except gridmesh.GridMeshError as error:
+        return str(error)
+
+
+def _filled(gridmesh: Any, fill: Any, vertices: np.ndarray, poses: Sequence[np.ndarray]) -> Filled | str:
+    if isinstance(fill, gridmesh.GridMeshError):
+        return str(fill)
+    try:
+        solved = [fill.vertices if pose is vertices else fill.refit(pose) for pose in poses]
+    except gridmesh.GridMeshError as error:
+        return f"in another shape key {error}"
+    return Filled(fill.vertices, fill.triangles, fill.creases, solved, dict(fill.report), fill.extend)

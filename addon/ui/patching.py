@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What operators have in common: those that tell numbers, and those that put patches into meshes being edited."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, StringProperty
+
+from .. import api
+from ..text.messages import counted
+from ..text.telling import told
+
+
+class ResultShown:
+    """Mixed into operators: the numbers of what was made, in the redo panel."""
+
+    result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    def draw_result(self) -> bpy.types.UILayout:
+        """Draw the numbers, and return the layout for the options below."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        if self.result:
+            numbers = layout.column(align=True)
+            for part in self.result.split(", ", 1):  # on one line they would be cut off
+                numbers.label(text=told(part, "interface"))
+        return layout
+
+
+class PatchOptions(ResultShown):
+    """Mixed into operators that put patches into meshes: how these continue what is around them."""
+
+    smooth: EnumProperty(
+        name="Smoothness",
+        description="How a patch continues the surface around it",
+        items=[
+            ("FLAT", "Flat", "Stretched into the hole like a soap film"),
+            ("TANGENT", "Tangent", "With the slope of the surface"),
+            ("CURVATURE", "Curvature", "With the slope and the curvature of the surface"),
+        ],
+        default="TANGENT",
+    )
+    use_quads: BoolProperty(
+        name="Quads",
+        description="Join pairs of triangles to quads where that gives good ones",
+        default=False,
+    )
+
+    def has_module(self, function: str) -> bool:
+        """Whether the native module is there with this function; if not, it is told."""
+        try:
+            api.native(function)
+        except api.NativeError as error:
+            self.report({"ERROR"}, told(str(error)))
+            return False
+        return True
+
+
+def faces_made(jobs: Sequence[Any]) -> str:
+    """How many quads and triangles were added to the meshes of jobs."""
+    faces = [len(face.verts) for job in jobs for face in job.added.faces]
+    quads = sum(n == 4 for n in faces)
+    made = counted(len(faces) - quads, "triangle")
+    return f"{counted(quads, 'quad')} and {made}" if quads else made
