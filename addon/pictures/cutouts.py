@@ -11,7 +11,6 @@ import numpy as np
 
 from ..api import FACE_AREA, CancelledError, Progress, cancelling, faces_of, part_of
 from ..native import native
-from .covering import covered, stretched
 
 PIXELS = 100_000_000
 """The most pixels of a picture, as the module has it; asked for before they are read."""
@@ -187,62 +186,38 @@ def _surfaces(
     if body is not None and "corner_angle" in body:
         options = {**options, "corner_angle": body["corner_angle"]}
 
-    slack = max(0.0, chosen.margin - _SQUARE)
+    slack = None if chosen.margin <= 0 else max(0.0, chosen.margin - _SQUARE)
 
     def surface(at: int, outline: np.ndarray, holes: list[np.ndarray]) -> Any:
         part = part_of(progress, at / len(parts), (at + 1) / len(parts))
         try:
-            if chosen.margin <= 0:
-                patch = gridmesh.mesh_sketch(outline, holes, progress=part_of(part, 0.0, 0.7), **options)
-                return _of_patch(gridmesh, patch, {}, body, part_of(part, 0.7, 1.0))
-            patch, moved, left = _covering(gridmesh, outline, holes, slack, options, part_of(part, 0.0, 0.5))
-            if left > CUT_OFF:
-                finer = {**options, "edge_length": FINER[1] * options["edge_length"]}
-                other = _covering(gridmesh, outline, holes, slack, finer, part_of(part, 0.5, 0.7))
-                patch, moved, _ = min((patch, moved, left), other, key=lambda one: one[2])
-            return _of_patch(gridmesh, patch, moved, body, part_of(part, 0.7, 1.0))
+            patch = _patch(gridmesh, outline, holes, slack, options, part_of(part, 0.0, 0.7))
+            if body is None:
+                return gridmesh.flat(patch)
+            return gridmesh.inflate(patch, progress=part_of(part, 0.7, 1.0), **body)
         except gridmesh.GridMeshError as error:
             return error
 
     return [surface(at, *part) for at, part in enumerate(parts)]
 
 
-@dataclass(frozen=True, eq=False)
-class _Made:
-    """The surface of a part, whose vertices may be moved."""
-
-    vertices: np.ndarray
-    triangles: np.ndarray
-    quads: np.ndarray
-    silhouette: list[np.ndarray]
-    corner: list[np.ndarray]
-
-
-def _covering(
+def _patch(
     gridmesh: Any,
     outline: np.ndarray,
     holes: list[np.ndarray],
-    slack: float,
+    slack: float | None,
     options: dict[str, Any],
-    progress: Callable[[float], object] | None,
-) -> tuple[Any, dict[int, np.ndarray], float]:
-    """Patch that covers a part, new places of some of its vertices, and what is left outside."""
-    patch = covered(gridmesh, outline, holes, slack, options, progress)
-    return patch, *stretched(patch, outline, holes, slack)
-
-
-def _of_patch(
-    gridmesh: Any,
-    patch: Any,
-    moved: dict[int, np.ndarray],
-    body: dict[str, Any] | None,
-    progress: Callable[[float], object] | None,
-) -> _Made:
-    surface = gridmesh.flat(patch) if body is None else gridmesh.inflate(patch, progress=progress, **body)
-    vertices = np.array(surface.vertices)
-    for vertex, place in moved.items():
-        vertices[vertex, :2] = place
-    return _Made(vertices, surface.triangles, surface.quads, surface.silhouette, surface.corner)
+    progress: Progress | None,
+) -> Any:
+    """Patch on the outline, or one that covers it but for a rim of `slack`."""
+    if slack is None:
+        return gridmesh.mesh_sketch(outline, holes, progress=progress, **options)
+    patch = gridmesh.cover_sketch(outline, holes, slack=slack, progress=part_of(progress, 0.0, 0.7), **options)
+    if patch.report["outside"] <= CUT_OFF:
+        return patch
+    finer = {**options, "edge_length": FINER[1] * options["edge_length"]}
+    other = gridmesh.cover_sketch(outline, holes, slack=slack, progress=part_of(progress, 0.7, 1.0), **finer)
+    return min(patch, other, key=lambda one: one.report["outside"])
 
 
 def _filled(traced: list[tuple[np.ndarray, list[np.ndarray]]]) -> list[tuple[np.ndarray, list[np.ndarray]]]:

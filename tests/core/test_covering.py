@@ -1,12 +1,12 @@
 """Meshes of pictures cover what is opaque."""
 
+import gridmesh
 import numpy as np
 import pytest
 from checks import distance_to_curve
 from rasters import coverage, placed, sampled
 from sketches import DRAWINGS
 
-from addon.pictures import covering
 from addon.pictures.cutouts import Options, cut_out
 
 NAMES = sorted(DRAWINGS)[::3]
@@ -62,20 +62,39 @@ def test_without_a_margin_the_mesh_lies_on_the_outline():
     assert np.hypot(*(cutout.vertices[cutout.silhouette[0], :2] - 32).T) == pytest.approx(20, abs=0.1)
 
 
-def test_what_is_spread_is_nowhere_below_the_need():
-    rng = np.random.default_rng(4)
-    turns = np.sort(rng.uniform(0, 2 * np.pi, 300))
-    contour = covering.dense(np.column_stack([np.cos(turns), np.sin(turns)]), 0.02)
-    need = rng.random(len(contour)) * (rng.random(len(contour)) > 0.97)
-    assert (covering.spread(contour, need, 0.2) >= need - 1e-12).all()
-    out = covering.normals(contour)
-    assert np.linalg.norm(out, axis=1) == pytest.approx(np.ones(len(out)))
-    assert (np.einsum("ij,ij->i", out, contour) > 0.9).all()
+@pytest.mark.parametrize("cells", ["triangles", "quads"])
+@pytest.mark.parametrize("name", NAMES[::2])
+def test_covering_patches_hold_the_outline_but_for_what_they_report(name, cells):
+    outline = np.asarray(DRAWINGS[name]["points"], float)
+    patch = gridmesh.cover_sketch(outline, slack=0.0, **{cells: 500})
+    h = patch.edge_length
+    corners = patch.vertices[patch.loops[0]]
+    ahead = np.roll(outline, -1, axis=0)
+    points = np.concatenate([outline + t * (ahead - outline) for t in np.linspace(0, 1, 8, endpoint=False)])
+    out = ~np.array([encloses(corners, point) for point in points])
+    far = distance_to_curve(points[out], corners) if out.any() else np.zeros(1)
+    assert far.max() <= patch.report["outside"] + 0.03 * h
+    assert distance_to_curve(corners, outline).max() < 0.9 * h
+    for contour, source in zip((outline,), patch.source, strict=True):
+        segment, share = source[:, 0].astype(int), source[:, 1:]
+        nearest = contour[segment] + share * (contour[(segment + 1) % len(contour)] - contour[segment])
+        assert np.linalg.norm(nearest - corners, axis=1).max() < 0.9 * h
 
 
-def test_dense_points_lie_on_the_contour():
-    square = np.array([[0, 0], [4, 0], [4, 3], [0, 3.0]])
-    found = covering.dense(square, 0.7)
-    assert distance_to_curve(found, square).max() < 1e-12
-    assert np.linalg.norm(np.roll(found, -1, axis=0) - found, axis=1).max() <= 0.7
-    assert all((found == corner).all(axis=1).any() for corner in square)
+def encloses(polygon, point):
+    a, b = polygon, np.roll(polygon, -1, axis=0)
+    crossed = (a[:, 1] <= point[1]) != (b[:, 1] <= point[1])
+    a, b = a[crossed], b[crossed]
+    return (a[:, 0] + (point[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]) > point[0]).sum() % 2 == 1
+
+
+def test_the_same_drawing_is_covered_by_the_same_bytes():
+    outline = np.asarray(DRAWINGS[NAMES[0]]["points"], float)
+    one, other = (gridmesh.cover_sketch(outline, triangles=400) for _ in range(2))
+    assert one.vertices.tobytes() == other.vertices.tobytes()
+
+
+def test_slack_is_a_length():
+    outline = np.asarray(DRAWINGS[NAMES[0]]["points"], float)
+    with pytest.raises(gridmesh.GridMeshError, match="slack"):
+        gridmesh.cover_sketch(outline, slack=-1.0)

@@ -48,6 +48,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Patch>()?;
     module.add_class::<Surface>()?;
     module.add_function(wrap_pyfunction!(sketch::mesh_sketch, module)?)?;
+    module.add_function(wrap_pyfunction!(sketch::cover_sketch, module)?)?;
     module.add_function(wrap_pyfunction!(body::stitch, module)?)?;
     module.add_function(wrap_pyfunction!(body::flat, module)?)?;
     module.add_function(wrap_pyfunction!(body::inflate, module)?)?;

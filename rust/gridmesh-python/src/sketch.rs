@@ -156,6 +156,69 @@ pub fn mesh_sketch(
     Ok(Patch::new(sketch.patch, report, sketch.kept))
 }
 
+/// Mesh the inside of a drawing so that the mesh covers it: for pictures on meshes, whose opaque pixels must not be cut off.
+///
+/// Where boundary edges would cut off what is drawn the outline is moved outward, by a quarter of an edge length at
+/// most, and single vertices are moved to tips.
+///
+/// Parameters
+/// ----------
+/// outline, holes, progress
+///     As of `mesh_sketch`.
+/// slack : float
+///     So much of the drawing's rim may stay outside, in the units of the outline; at least 0.
+/// **options
+///     All others of `mesh_sketch` but `keep`.
+///
+/// Returns
+/// -------
+/// Patch
+///     As of `mesh_sketch`, but its boundary vertices lie near the contours, not on them: `source` tells the nearest
+///     points of the given contours, `arc` lengths along those moved outward. `report` has "outside" besides: how far the
+///     drawing still reaches beyond the mesh and the slack, in the units of the outline.
+///
+/// Raises
+/// ------
+/// GridMeshError
+///     As of `mesh_sketch`, and if the slack is negative or not finite.
+///
+/// Notes
+/// -----
+/// Takes the time of up to five meshes, four of them on a known lattice. Other Python threads run meanwhile.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, gridmesh
+/// >>> t = np.linspace(0, 2 * np.pi, 100, endpoint=False)
+/// >>> patch = gridmesh.cover_sketch(np.c_[np.cos(t), np.sin(t)], triangles=100)
+/// >>> patch.report["outside"] < 0.01 * patch.edge_length
+/// True
+#[pyfunction]
+#[pyo3(
+    signature = (outline, holes = None, *, slack = 0.0, progress = None, **options),
+    text_signature = "(outline, holes=(), *, slack=0.0, progress=None, **options)"
+)]
+pub fn cover_sketch(
+    py: Python<'_>,
+    outline: &Bound<'_, PyAny>,
+    holes: Option<&Bound<'_, PyAny>>,
+    slack: f64,
+    progress: Option<&Bound<'_, PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Patch> {
+    let drawing = drawing(outline, holes)?;
+    let mut chosen = SketchOptions::default();
+    let mut shape = Shape::default();
+    options::read("cover_sketch", options, |name, value| shape.set(&mut chosen, name, value))?;
+    shape.settle(py, &mut chosen)?;
+    let covering = Watch::new(progress)?.run(py, |progress| {
+        gridmesh::cover::cover_sketch(&drawing.outline, &drawing.holes, slack, &chosen, progress)
+    })?;
+    let report = reports::sketch(py, &covering.sketch.report)?;
+    report.bind(py).set_item("outside", covering.outside)?;
+    Ok(Patch::new(covering.sketch.patch, report, covering.sketch.kept))
+}
+
 /// The lattice of a patch.
 fn kept(value: &Bound<'_, PyAny>) -> PyResult<Kept> {
     let argument = Argument { name: "keep", value, allowed: "a Patch whose lattice stays, or None" };

@@ -42,6 +42,7 @@
 
 pub mod bend;
 pub mod body;
+pub mod cover;
 pub mod cut;
 pub mod drawing;
 pub mod error;

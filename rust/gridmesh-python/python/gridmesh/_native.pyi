@@ -25,6 +25,7 @@ __all__ = [
     "bone_weights",
     "bridge",
     "combine",
+    "cover_sketch",
     "cut",
     "cut_reach",
     "decode_image",
@@ -163,6 +164,14 @@ def mesh_sketch(
     relax: bool = True,
     least: bool = True,
     progress: _Progress | None = None,
+) -> Patch: ...
+def cover_sketch(
+    outline: _Points,
+    holes: Sequence[_Points] = (),
+    *,
+    slack: float = 0.0,
+    progress: _Progress | None = None,
+    **options: Any,
 ) -> Patch: ...
 def combine(
     outline: _Points,

@@ -1,0 +1,259 @@
+//! Patches that cover what was drawn: outlines moved outward where the edges of a mesh cut them off.
+//!
+//! [`cover_sketch`] meshes an outline a few times, each time moved outward where the mesh of before left it outside (`outside`), then
+//! moves ends of short edges apart (`short`) and single vertices to tips (`tips`).
+
+mod outside;
+mod short;
+mod tips;
+
+use glam::DVec2;
+
+use crate::cover::outside::LoopEdges;
+use crate::drawing::contours::read_contours;
+use crate::drawing::curve::ClosedCurve;
+use crate::drawing::union::{nearest_source, outer_outline};
+use crate::error::{Error, Result};
+use crate::options::{SelfCrossing, SketchOptions};
+use crate::patch::Patch;
+use crate::patch::place::min_angle;
+use crate::progress::Progress;
+use crate::sketch::{Sketch, mesh_sketch, mesh_sketch_on};
+
+/// Patches made at most after the first, each of a wider outline.
+const ROUNDS: usize = 4;
+
+/// What may stay outside, in edge lengths, when no wider outline is tried any more: at 500 triangles a few hundredths of a
+/// pixel of a picture 64 pixels wide.
+const ENOUGH: f64 = 0.01;
+
+/// How far an outline is moved at most, in edge lengths: tips that the mesh cannot follow are left to single vertices.
+///
+const MOST: f64 = 0.25;
+
+/// Points of a contour for each edge of the mesh: where it is compared with the mesh.
+const POINTS_OF_EDGE: f64 = 5.0;
+
+/// A patch that covers its drawing.
+#[derive(Clone, Debug)]
+pub struct Covering {
+    /// The patch. Its boundary lies on outlines that were moved outward; `source` tells the nearest points of the given
+    /// contours, `arc` lengths along the moved ones.
+    pub sketch: Sketch,
+    /// How far the drawing still reaches beyond the patch and the slack, in the units of the outline.
+    pub outside: f64,
+}
+
+/// Meshes the inside of a drawing as [`mesh_sketch`] does, but so that the patch covers the drawing, except a rim of
+/// `slack`: where boundary edges would cut off what is drawn the outline is moved outward, by a quarter of an edge at
+/// most, and single vertices are moved to tips. For pictures on meshes, whose opaque pixels must not be cut off.
+///
+/// Topology, valences and orientation are as of [`mesh_sketch`]; boundary vertices lie near the contours, not on them.
+/// Takes the time of up to five meshes, four of them on a known lattice.
+///
+/// # Errors
+/// Those of [`mesh_sketch`]; [`Error::InvalidOption`] if the slack is negative or not finite.
+pub fn cover_sketch(
+    outline: &[DVec2],
+    holes: &[Vec<DVec2>],
+    slack: f64,
+    options: &SketchOptions,
+    progress: Progress<'_>,
+) -> Result<Covering> {
+    if !(slack.is_finite() && slack >= 0.0) {
+        let allowed = "a finite length, at least 0";
+        return Err(Error::InvalidOption { name: "slack", value: slack.to_string(), allowed });
+    }
+    let part = |k: usize| progress.part(k as f64 / (ROUNDS + 1) as f64, (k + 1) as f64 / (ROUNDS + 1) as f64);
+    let first = mesh_sketch(outline, holes, options, part(0))?;
+    let edge_length = first.patch.lattice.edge_length;
+    let contours = match options.self_crossing {
+        SelfCrossing::Error => read_contours(outline, holes)?,
+        SelfCrossing::Union => read_contours(&outer_outline(outline, "outline")?.0, holes)?,
+    };
+    let fine: Vec<Vec<DVec2>> =
+        contours.iter().map(|contour| dense(contour, edge_length / POINTS_OF_EDGE)).collect();
+    let (mut best, mut least) = widened(first, &fine, slack, options, &part)?;
+    let patch = &mut best.patch;
+    // Boundary vertices may move where no more is cut off by that than could stay outside anyway.
+    let most = least.max(ENOUGH * edge_length);
+    short::lengthened(patch, |patch, vertex| {
+        let k = patch.loops.iter().rposition(|contour| contour.start as usize <= vertex).unwrap_or(0);
+        let edges = LoopEdges::new(patch, k);
+        fine[k].iter().all(|&point| edges.outside(point, slack) <= most)
+    });
+    least = largest(&needs(&fine, patch, slack));
+    if least > ENOUGH * edge_length {
+        least = tips::moved(patch, &fine, slack);
+    }
+    best.report.min_angle = min_angle(patch);
+    for (contour, own) in
+        best.patch.loops.iter_mut().zip(std::iter::once(outline).chain(holes.iter().map(Vec::as_slice)))
+    {
+        let vertices = &best.patch.vertices[contour.start as usize..];
+        for (source, &vertex) in contour.source.iter_mut().zip(vertices) {
+            *source = nearest_source(own, vertex);
+        }
+    }
+    progress.report(1.0)?;
+    Ok(Covering { sketch: best, outside: least })
+}
+
+/// The best of a few patches of wider and wider outlines, and how far the drawing reaches beyond it.
+fn widened<'p>(
+    first: Sketch,
+    fine: &[Vec<DVec2>],
+    slack: f64,
+    options: &SketchOptions,
+    part: &impl Fn(usize) -> Progress<'p>,
+) -> Result<(Sketch, f64)> {
+    let reach = first.patch.lattice.edge_length;
+    let kept = first.kept.clone();
+    let options = SketchOptions {
+        edge_length: None,
+        triangles: None,
+        automatic: false,
+        angle: None,
+        origin: None,
+        mirror: None,
+        density: None,
+        self_crossing: SelfCrossing::Union,
+        least: false,
+        ..options.clone()
+    };
+    let mut moved: Vec<Vec<f64>> = fine.iter().map(|contour| vec![0.0; contour.len()]).collect();
+    let mut needs = needs(fine, &first.patch, slack);
+    let mut least = largest(&needs);
+    let mut best = first;
+    for round in 1..=ROUNDS {
+        if largest(&needs) <= ENOUGH * reach {
+            break;
+        }
+        let mut wider = Vec::with_capacity(fine.len());
+        for ((contour, far), need) in fine.iter().zip(&mut moved).zip(&needs) {
+            for (far, more) in far.iter_mut().zip(spread(contour, need, reach)) {
+                *far = (*far + more).min(MOST * reach);
+            }
+            let outward = normals(contour);
+            wider.push(contour.iter().zip(&*far).zip(outward).map(|((&p, &far), n)| p + far * n).collect());
+        }
+        let outer: Vec<DVec2> = wider.remove(0);
+        let sketch = match mesh_sketch_on(&kept, &outer, &wider, &options, part(round)) {
+            Ok(sketch) => sketch,
+            Err(Error::Cancelled) => return Err(Error::Cancelled),
+            // Wider, it meets itself or is too thin elsewhere: the best so far serves.
+            Err(_) => break,
+        };
+        needs = self::needs(fine, &sketch.patch, slack);
+        let most = largest(&needs);
+        if most < least {
+            (least, best) = (most, sketch);
+        }
+    }
+    Ok((best, least))
+}
+
+/// For each contour how far its points lie outside the patch, less the slack; 0 inside.
+fn needs(fine: &[Vec<DVec2>], patch: &Patch, slack: f64) -> Vec<Vec<f64>> {
+    let of = |k: usize| {
+        let edges = LoopEdges::new(patch, k);
+        fine[k].iter().map(|&point| edges.outside(point, slack)).collect()
+    };
+    (0..fine.len()).map(of).collect()
+}
+
+fn largest(needs: &[Vec<f64>]) -> f64 {
+    needs.iter().flatten().copied().fold(0.0, f64::max)
+}
+
+/// Points along a contour at most `step` apart, its own among them.
+fn dense(contour: &ClosedCurve, step: f64) -> Vec<DVec2> {
+    let mut points = Vec::new();
+    for [a, b] in contour.segments() {
+        let count = (a.distance(b) / step).ceil().max(1.0) as usize;
+        points.extend((0..count).map(|k| a.lerp(b, k as f64 / count as f64)));
+    }
+    points
+}
+
+/// Unit vectors out of the drawing at the points of a contour that has the drawing on its left.
+fn normals(contour: &[DVec2]) -> Vec<DVec2> {
+    let n = contour.len();
+    let along = |k: usize| (contour[(k + 1) % n] - contour[k]).normalize_or_zero();
+    (0..n).map(|k| -(along((k + n - 1) % n) + along(k)).normalize_or_zero().perp()).collect()
+}
+
+/// A smooth course along a contour that is nowhere below the need: its largest value within `reach`, averaged.
+fn spread(contour: &[DVec2], need: &[f64], reach: f64) -> Vec<f64> {
+    let n = contour.len();
+    let length: f64 = (0..n).map(|k| contour[k].distance(contour[(k + 1) % n])).sum();
+    let steps = ((reach * n as f64 / length).round().max(1.0) as usize).min((n - 1) / 2);
+    let around = |values: &[f64], k: usize, half: usize| -> Vec<f64> {
+        (0..=2 * half).map(|at| values[(k + n - half + at) % n]).collect()
+    };
+    let highest: Vec<f64> = (0..n).map(|k| around(need, k, steps).into_iter().fold(0.0, f64::max)).collect();
+    let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
+    (0..n).map(|k| mean(around(&highest, k, steps / 2))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ring(n: usize, radius: f64) -> Vec<DVec2> {
+        (0..n).map(|k| radius * DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect()
+    }
+
+    #[test]
+    fn what_is_spread_is_nowhere_below_the_need() {
+        let contour = ring(240, 3.0);
+        let need: Vec<f64> = (0..240).map(|k| if k % 37 == 5 { 0.1 * (k % 7) as f64 } else { 0.0 }).collect();
+        let course = spread(&contour, &need, 0.4);
+        assert!(course.iter().zip(&need).all(|(course, need)| course + 1e-12 >= *need));
+        let steps = course.iter().zip(course.iter().cycle().skip(1)).map(|(a, b)| (a - b).abs());
+        assert!(steps.fold(0.0, f64::max) < 0.2);
+    }
+
+    #[test]
+    fn normals_point_out_of_the_drawing() {
+        let contour = ring(50, 2.0);
+        for (normal, point) in normals(&contour).into_iter().zip(contour) {
+            assert!(normal.dot(point) > 1.99);
+        }
+    }
+
+    #[test]
+    fn dense_points_lie_on_the_contour() {
+        let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]].map(DVec2::from);
+        let contour = read_contours(&square, &[]).unwrap().remove(0);
+        let points = dense(&contour, 0.7);
+        assert!(square.iter().all(|corner| points.contains(corner)));
+        for (k, point) in points.iter().enumerate() {
+            assert!(point.distance(points[(k + 1) % points.len()]) <= 0.7);
+            let (x, y) = (point.x, point.y);
+            assert!(x == 0.0 || x == 4.0 || y == 0.0 || y == 3.0);
+        }
+    }
+
+    #[test]
+    fn a_disk_is_covered_with_and_without_a_hole() {
+        let options = SketchOptions { triangles: Some(300), ..SketchOptions::default() };
+        for holes in [vec![], vec![ring(90, 0.8)]] {
+            let plain = mesh_sketch(&ring(200, 2.0), &holes, &options, Progress::NONE).unwrap();
+            let covering = cover_sketch(&ring(200, 2.0), &holes, 0.0, &options, Progress::NONE).unwrap();
+            let (patch, h) = (&covering.sketch.patch, plain.patch.lattice.edge_length);
+            assert!(covering.outside <= ENOUGH * h, "{}", covering.outside / h);
+            let area = patch.area() / plain.patch.area();
+            assert!(area > 1.0 && area < 1.05, "{area}");
+            assert_eq!(patch.loops.len(), 1 + holes.len());
+        }
+    }
+
+    #[test]
+    fn slack_that_is_no_length_is_refused() {
+        for slack in [-1.0, f64::NAN, f64::INFINITY] {
+            let made = cover_sketch(&ring(20, 1.0), &[], slack, &SketchOptions::default(), Progress::NONE);
+            assert!(matches!(made, Err(Error::InvalidOption { name: "slack", .. })));
+        }
+    }
+}
