@@ -211,7 +211,9 @@ def _patch(
     """Patch on the outline, or one that covers it but for a rim of `slack`."""
     if slack is None:
         return gridmesh.mesh_sketch(outline, holes, progress=progress, **options)
-    patch = gridmesh.cover_sketch(outline, holes, slack=slack, progress=part_of(progress, 0.0, 0.7), **options)
+    patch = gridmesh.cover_sketch(
+        outline, holes, slack=slack, progress=part_of(progress, 0.0, 0.7), **options
+    )
     if patch.report["outside"] <= CUT_OFF:
         return patch
     finer = {**options, "edge_length": FINER[1] * options["edge_length"]}

@@ -85,7 +85,9 @@ def encloses(polygon, point):
     a, b = polygon, np.roll(polygon, -1, axis=0)
     crossed = (a[:, 1] <= point[1]) != (b[:, 1] <= point[1])
     a, b = a[crossed], b[crossed]
-    return (a[:, 0] + (point[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]) > point[0]).sum() % 2 == 1
+    return (
+        a[:, 0] + (point[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]) > point[0]
+    ).sum() % 2 == 1
 
 
 def test_the_same_drawing_is_covered_by_the_same_bytes():
