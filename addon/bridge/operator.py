@@ -94,7 +94,7 @@ class MESH_OT_gridmesh_bridge(bpy.types.Operator):  # noqa: N801
                 job.edited.point_out(job.problems)
             self.report({"ERROR"}, told(listed(problems)))
             return {"CANCELLED"}
-        add_all(made, quads=self.use_quads)
+        add_all(made, join=self.use_quads)
         self._tell(made, problems, perf_counter() - started)
         return {"FINISHED"}
 

@@ -50,8 +50,10 @@ class Job:
                 self.found.problems.append(problem)
                 self.found.holes.remove(hole)
 
-    def fill(self, smooth: str, progress: api.Progress, *, keep_hard: bool = False) -> None:
-        """Fill the holes, without touching the mesh."""
+    def fill(
+        self, smooth: str, progress: api.Progress, *, keep_hard: bool = False, cells: str = "triangles"
+    ) -> None:
+        """Fill the holes, without touching the mesh. cells : "triangles" or "quads"."""
         if not self.found.holes:
             return
         at = self.snapshot
@@ -65,6 +67,7 @@ class Job:
             poses=at.poses,
             sharp=_HARD if keep_hard else None,
             creases=self.edited.sharp_edges() if keep_hard else None,
+            cells=cells,
             progress=progress,
         )
         for loop, fill in zip(loops, fills, strict=True):
@@ -77,7 +80,7 @@ class Job:
                     loop=loop,
                     first=len(at.positions),
                     vertices=fill.vertices @ at.to_local.T,
-                    triangles=fill.triangles,
+                    faces=[*fill.quads.tolist(), *fill.triangles.tolist()],
                     creases=fill.creases,
                     poses=[pose @ at.to_local.T for pose in fill.poses],
                     extend=fill.extend,
@@ -91,7 +94,7 @@ class Job:
         return f"{own}: {problem.reason}" if several and own not in problem.reason else problem.reason
 
 
-def add_all(jobs: list[Job], *, quads: bool) -> None:
+def add_all(jobs: list[Job]) -> None:
     """Put all patches into their meshes; if one fails, no mesh keeps any."""
     try:
         for job in jobs:
@@ -101,7 +104,16 @@ def add_all(jobs: list[Job], *, quads: bool) -> None:
             job.edited.take_back(job.added)
         raise
     for job in jobs:
-        job.edited.finish(job.added, quads=quads)
+        job.edited.finish(job.added)
+
+
+def faces_made(quads: int, triangles: int) -> str:
+    """Tell how many faces there are of each kind."""
+    if not quads:
+        return counted(triangles, "triangle")
+    if not triangles:
+        return counted(quads, "quad")
+    return f"{counted(quads, 'quad')} and {counted(triangles, 'triangle')}"
 
 
 def forgive_unselected(jobs: list[Job]) -> None:

@@ -13,12 +13,13 @@ from ..data import defaults
 from ..text.messages import counted, listed
 from ..text.telling import told
 from ..ui.progress import Pointer
+from ..ui.properties import PATCH_FACES
 from .editmesh import EditMesh
-from .filling import Job, add_all, forgive_unselected, left_open, warnings_of
+from .filling import Job, add_all, faces_made, forgive_unselected, left_open, warnings_of
 
 
 class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
-    """Fill the selected hole with a regular triangle patch that fits its edges"""  # noqa: D400 (the tooltip)
+    """Fill the selected hole with a regular patch of triangles or quads that fits its edges"""  # noqa: D400 (the tooltip)
 
     bl_idname = "mesh.gridmesh_fill"
     bl_label = "Grid Patch Fill"
@@ -61,10 +62,11 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         default=False,
         options={"SKIP_SAVE"},
     )
-    use_quads: BoolProperty(
-        name="Quads",
-        description="Join pairs of triangles to quads where that gives good ones",
-        default=False,
+    cells: EnumProperty(
+        name="Faces",
+        description="What patches are made of",
+        items=PATCH_FACES,
+        default=defaults.CELLS,
     )
     keep_hard: BoolProperty(
         name="Keep Hard Edges",
@@ -105,14 +107,14 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
             with Pointer(context) as pointer:
                 for index, job in enumerate(jobs):
                     part = pointer.part(index / len(jobs), (index + 1) / len(jobs))
-                    job.fill(self.smooth.lower(), part, keep_hard=self.keep_hard)
+                    job.fill(self.smooth.lower(), part, keep_hard=self.keep_hard, cells=self.cells.lower())
         except api.CancelledError:
             self.report({"WARNING"}, told("Cancelled; nothing was filled"))
             return {"CANCELLED"}
         problems = [job.name(problem, several) for job in jobs for problem in job.found.problems]
         if not any(job.patches for job in jobs):
             return self._refuse(jobs, problems)
-        add_all([job for job in jobs if job.patches], quads=self.use_quads)
+        add_all([job for job in jobs if job.patches])
         self._tell(jobs, problems, perf_counter() - started)
         return {"FINISHED"}
 
@@ -134,8 +136,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
         reports = [report for job in jobs for report in job.reports]
         faces = [len(face.verts) for job in jobs for face in job.added.faces]
         quads = sum(n == 4 for n in faces)
-        made = counted(len(faces) - quads, "triangle")
-        made = f"{counted(quads, 'quad')} and {made}" if quads else made
+        made = faces_made(quads, len(faces) - quads)
         irregular = sum(report["irregular"] for report in reports)
         self.result = (
             f"Filled {counted(len(reports), 'hole')}: {made}, {counted(irregular, 'irregular vertex')}, "
@@ -169,6 +170,7 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
             numbers = layout.column(align=True)
             for part in self.result.split(", ", 1):  # on one line they would be cut off
                 numbers.label(text=told(part, "interface"))
+        layout.prop(self, "cells")
         layout.prop(self, "holes")
         if self.holes == "ALL":
             layout.prop(self, "max_edges")
@@ -176,7 +178,6 @@ class MESH_OT_gridmesh_fill(bpy.types.Operator):  # noqa: N801
             layout.prop(self, "close_chains")
         layout.prop(self, "smooth")
         layout.prop(self, "keep_hard")
-        layout.prop(self, "use_quads")
 
 
 classes = (MESH_OT_gridmesh_fill,)

@@ -9,11 +9,13 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from .. import api
+from ..data import defaults
 from ..fill.editmesh import EditMesh
-from ..fill.filling import warnings_of
+from ..fill.filling import faces_made, warnings_of
 from ..text.messages import counted, listed
 from ..text.telling import told
 from ..ui.progress import Pointer
+from ..ui.properties import PATCH_FACES
 from .regridding import Job, replace_all
 
 
@@ -39,10 +41,11 @@ class MESH_OT_gridmesh_regrid(bpy.types.Operator):  # noqa: N801
         ],
         default="TANGENT",
     )
-    use_quads: BoolProperty(
-        name="Quads",
-        description="Join pairs of triangles to quads where that gives good ones",
-        default=False,
+    cells: EnumProperty(
+        name="Faces",
+        description="What patches are made of",
+        items=PATCH_FACES,
+        default=defaults.CELLS,
     )
     result: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
@@ -73,7 +76,7 @@ class MESH_OT_gridmesh_regrid(bpy.types.Operator):  # noqa: N801
             with Pointer(context) as pointer:
                 for index, job in enumerate(jobs):
                     part = pointer.part(index / len(jobs), (index + 1) / len(jobs))
-                    job.solve(self.smooth.lower(), part, keep_shape=self.keep_shape)
+                    job.solve(self.smooth.lower(), part, keep_shape=self.keep_shape, cells=self.cells.lower())
         except api.CancelledError:
             self.report({"WARNING"}, told("Cancelled; nothing was changed"))
             return {"CANCELLED"}
@@ -82,7 +85,7 @@ class MESH_OT_gridmesh_regrid(bpy.types.Operator):  # noqa: N801
         if not done:
             self.report({"ERROR"}, told(listed(problems)))
             return {"CANCELLED"}
-        replace_all(done, quads=self.use_quads)
+        replace_all(done)
         self._tell(done, problems, perf_counter() - started)
         return {"FINISHED"}
 
@@ -91,8 +94,7 @@ class MESH_OT_gridmesh_regrid(bpy.types.Operator):  # noqa: N801
         reports = [region.made.report for job in jobs for region in job.regions]
         faces = [len(face.verts) for job in jobs for face in job.added.faces]
         quads = sum(n == 4 for n in faces)
-        made = counted(len(faces) - quads, "triangle")
-        made = f"{counted(quads, 'quad')} and {made}" if quads else made
+        made = faces_made(quads, len(faces) - quads)
         irregular = sum(report["irregular"] for report in reports)
         self.result = (
             f"Meshed {counted(len(reports), 'area')} anew: {made}, {counted(irregular, 'irregular vertex')}, "
@@ -113,10 +115,10 @@ class MESH_OT_gridmesh_regrid(bpy.types.Operator):  # noqa: N801
             numbers = layout.column(align=True)
             for part in self.result.split(", ", 1):  # on one line they would be cut off
                 numbers.label(text=told(part, "interface"))
+        layout.prop(self, "cells")
         layout.prop(self, "keep_shape")
         if not self.keep_shape:
             layout.prop(self, "smooth")
-        layout.prop(self, "use_quads")
 
 
 classes = (MESH_OT_gridmesh_regrid,)
