@@ -1,6 +1,5 @@
 //! Two loops and the tube between them.
 
-
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashSet;
 

@@ -325,7 +325,8 @@ pub(in crate::fill) fn conflicts<G: Steps>(
         }
     }
     for (i, &p) in points.iter().enumerate() {
-        let (Some(enter), Some(leave)) = (G::step(points[(i + n - 1) % n], p), G::step(p, points[(i + 1) % n]))
+        let (Some(enter), Some(leave)) =
+            (G::step(points[(i + n - 1) % n], p), G::step(p, points[(i + 1) % n]))
         else {
             continue;
         };

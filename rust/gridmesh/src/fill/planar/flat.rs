@@ -333,7 +333,8 @@ impl Contest<'_> {
                         }
                     }
                     BoundaryMethod::Grown => {
-                        let path = grown(target).filter(|path| conflicts::<Triangular>(path, self.taken).is_empty());
+                        let path =
+                            grown(target).filter(|path| conflicts::<Triangular>(path, self.taken).is_empty());
                         if let Some(path) = path {
                             self.place(&path, Method::Grown, here)?;
                         }

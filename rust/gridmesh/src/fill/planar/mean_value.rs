@@ -34,8 +34,7 @@ pub(in crate::fill) fn spread<G: Laid>(outline: &[Axial], values: &[DVec2], inne
     coarse.sort_unstable();
     coarse.dedup();
     let polygon: Vec<DVec2> = outline.iter().map(|&p| G::units(p)).collect();
-    let at =
-        |c: &Axial| (*c, mean_value(&polygon, values, G::units(Axial::new(c.q * step, c.r * step))));
+    let at = |c: &Axial| (*c, mean_value(&polygon, values, G::units(Axial::new(c.q * step, c.r * step))));
     let known: FxHashMap<Axial, DVec2> = coarse.into_par_iter().map(|c| at(&c)).collect();
     let corners: FxHashMap<Axial, [DVec2; 4]> =
         cells.into_iter().map(|c| (c, around.map(|d| known[&(c + d)]))).collect();

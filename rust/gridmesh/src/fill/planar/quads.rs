@@ -96,9 +96,10 @@ impl Contest<'_> {
                 return Ok(());
             }
         }
-        self.lattice(false, progress.part(0.0, 0.4))?;
+        let search = Search::new(self.points, self.wanted, self.taken);
+        self.lattice(&search, false, progress.part(0.0, 0.4))?;
         if !self.is_good() {
-            self.lattice(true, progress.part(0.4, 0.8))?;
+            self.lattice(&search, true, progress.part(0.4, 0.8))?;
         }
         if self.best.as_ref().is_none_or(|(badness, _)| *badness > refined::WORSE) {
             self.refined(progress.part(0.8, 1.0))?;
@@ -110,12 +111,11 @@ impl Contest<'_> {
         self.best.as_ref().is_some_and(|(badness, _)| *badness < GOOD)
     }
 
-    /// Regions of the lattice, with a row of quads around them or none.
-    fn lattice(&mut self, belt: bool, progress: Progress<'_>) -> Result<()> {
-        let search = Search::new(self.points, self.wanted, self.taken, belt);
+    /// Regions of the lattice, with rows of quads around them or none.
+    fn lattice(&mut self, search: &Search<'_>, belts: bool, progress: Progress<'_>) -> Result<()> {
         for round in 0..Search::ROUNDS {
             let share = |part: f64| (round as f64 + part) / Search::ROUNDS as f64;
-            let found = search.paths(round, progress.part(share(0.0), share(0.8)))?;
+            let found = search.paths(belts, round, progress.part(share(0.0), share(0.8)))?;
             for plan in found.into_iter().flatten() {
                 self.place(&Cells::of(&plan), Method::Optimal, progress.part(share(0.8), share(1.0)))?;
             }

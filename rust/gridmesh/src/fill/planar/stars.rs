@@ -94,7 +94,7 @@ impl CornerStars {
                 near[i].extend([next, last]);
             }
         }
-        for triangle in odd {
+        if let Some(triangle) = odd {
             for k in 0..3 {
                 let Some(i) = (triangle[k] as usize).checked_sub(n_loop) else { continue };
                 let [next, last] = [1, 2].map(|ahead| triangle[(k + ahead) % 3]);

@@ -10,10 +10,10 @@ use crate::relax::first_inverted;
 
 /// Corners beyond these, in degrees, weigh on a patch.
 const LEAST: f64 = 45.0;
-const MOST: f64 = 130.0;
+const MOST: f64 = 135.0;
 
 /// What a pole costs.
-const POLE: f64 = 0.12;
+const POLE: f64 = 0.2;
 
 pub(super) struct Measured {
     pub quality: Quality,
@@ -43,7 +43,7 @@ pub(super) fn measure(
         (0..4).for_each(|k| side(quad[k], quad[(k + 1) % 4]));
         quad.iter().for_each(|&v| faces[v as usize] += 1);
     }
-    for triangle in &cells.odd {
+    if let Some(triangle) = &cells.odd {
         (0..3).for_each(|k| side(triangle[k], triangle[(k + 1) % 3]));
         triangle.iter().for_each(|&v| faces[v as usize] += 1);
     }

@@ -1,6 +1,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
+use super::cells::{Belt, Name};
 use super::*;
 use crate::lattice::axial::Axial;
 
@@ -37,9 +38,10 @@ fn check(polygon: &[DVec2], fill: &FlatFill) {
     assert_eq!(used.len() + faces.len(), undirected + 1, "not a disk");
     if !fill.folded {
         let positions = [polygon, &fill.interior].concat();
-        let corners = faces.iter().filter(|f| f.len() == 4).flat_map(|f| {
-            (0..4).map(|k| [f[(k + 3) % 4], f[k], f[(k + 1) % 4]]).collect::<Vec<_>>()
-        });
+        let corners = faces
+            .iter()
+            .filter(|f| f.len() == 4)
+            .flat_map(|f| (0..4).map(|k| [f[(k + 3) % 4], f[k], f[(k + 1) % 4]]).collect::<Vec<_>>());
         let centre = polygon.iter().sum::<DVec2>() / n as f64;
         let corners = corners.collect::<Vec<_>>();
         assert_eq!(crate::relax::first_inverted(&positions, &corners, centre), None);
@@ -116,9 +118,8 @@ fn loops_that_no_lattice_fits_are_filled() {
         (0..40).map(|k| DVec2::from_angle(TAU * f64::from(k) / 40.0) * DVec2::new(1.0, 1e-4)).collect();
     let uneven: Vec<DVec2> =
         (0..51).map(|k| DVec2::from_angle(TAU * (f64::from(k) / 51.0).powi(4))).collect();
-    let noise: Vec<DVec2> = (0..37u32)
-        .map(|k| DVec2::new(f64::from(k * 7919 % 101), f64::from(k * 104_729 % 103)))
-        .collect();
+    let noise: Vec<DVec2> =
+        (0..37u32).map(|k| DVec2::new(f64::from(k * 7919 % 101), f64::from(k * 104_729 % 103))).collect();
     for polygon in [comb, needle, uneven, noise] {
         fill(&polygon, &|_, _| false, true);
     }
@@ -128,7 +129,25 @@ fn loops_that_no_lattice_fits_are_filled() {
 fn a_plan_whose_corner_has_two_quads_is_none() {
     let path = [[0, 0], [1, 0], [2, 0], [2, 1], [1, 1], [0, 1]].map(|[q, r]| Axial::new(q, r)).to_vec();
     for (apex, sound) in [(0, true), (1, false), (2, true)] {
-        let plan = Plan { path: path.clone(), apex: Some(apex), belt: false };
+        let name = |k: usize| if k == apex { Name::Apex } else { Name::Loop(k - usize::from(k > apex)) };
+        let plan = Plan { path: path.clone(), names: (0..6).map(name).collect(), belt: Belt::None, n: 5 };
         assert_eq!(Cells::of(&plan).is_some(), sound, "{apex}");
+    }
+}
+
+#[test]
+fn a_row_along_a_part_ends_at_corners_of_one_quad() {
+    // A square of three by three, its lowest row between two corners.
+    let path: Vec<Axial> = [[0, 0], [1, 0], [2, 0], [3, 0], [3, 1], [3, 2], [2, 2], [1, 2], [0, 2], [0, 1]]
+        .map(|[q, r]| Axial::new(q, r))
+        .to_vec();
+    // The loop begins at the left end of the row.
+    let names = [11, 1, 2, 4, 5, 6, 7, 8, 9, 10];
+    let name = |k: usize| if k == 1 || k == 2 { Name::Behind(k) } else { Name::Loop(k) };
+    let plan = Plan { path, names: names.map(name).to_vec(), belt: Belt::Part { from: 0, to: 3 }, n: 12 };
+    let cells = Cells::of(&plan).unwrap();
+    assert_eq!((cells.quads.len(), cells.start.len()), (9, 16));
+    for (k, p) in rectangle(3, 3).into_iter().enumerate() {
+        assert_eq!(cells.start[k], p - DVec2::Y);
     }
 }
