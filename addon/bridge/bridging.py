@@ -78,7 +78,7 @@ class Job:
                 split=len(one),
                 first=len(at.positions),
                 vertices=made.vertices @ at.to_local.T,
-                triangles=made.triangles,
+                faces=made.triangles.tolist(),
                 creases=made.creases,
                 poses=[pose @ at.to_local.T for pose in made.poses],
                 extend=made.extend,

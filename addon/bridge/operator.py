@@ -6,7 +6,7 @@ from __future__ import annotations
 from time import perf_counter
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from .. import api
 from ..fill.editmesh import EditMesh
@@ -54,6 +54,12 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
         options={"SKIP_SAVE"},
     )
 
+    use_quads: BoolProperty(
+        name="Quads",
+        description="Join pairs of triangles to quads where that gives good ones",
+        default=False,
+    )
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Ask for a mesh in Edit Mode."""
@@ -86,7 +92,7 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
                 job.edited.point_out(job.problems)
             self.report({"ERROR"}, told(listed(problems)))
             return {"CANCELLED"}
-        add_all(made, quads=self.use_quads)
+        add_all(made, join=self.use_quads)
         self._tell(made, problems, perf_counter() - started)
         return {"FINISHED"}
 

@@ -16,6 +16,7 @@ from .process import Limits
 _HELP = {
     "strokes": "make smooth bodies of closed strokes",
     "fill": "fill the holes of meshes",
+    "regrid": "mesh areas of meshes anew with a regular grid",
     "cut": "cut meshes along a stroke",
     "sprites": "make meshes of pictures, with the picture on them",
 }
@@ -79,6 +80,8 @@ def _add(verb: argparse.ArgumentParser, name: str, param: params.Param) -> None:
         verb.add_argument(option, action=argparse.BooleanOptionalAction, default=None, help=text)
     elif param.kind == "choice":
         verb.add_argument(option, choices=param.choices, help=text)
+    elif param.kind == "text":
+        verb.add_argument(option, metavar="NAME", help=text)
     elif param.kind == "stroke":
         verb.add_argument(option, type=_stroke, required=True, metavar="FILE|OBJECT|POINTS", help=text)
     elif param.kind == "numbers":

@@ -21,12 +21,13 @@ MESHES = (".obj", ".ply", ".stl", ".glb", ".gltf")
 INPUTS = {
     "strokes": (*CURVES, ".blend"),
     "fill": (*MESHES, ".blend"),
+    "regrid": (*MESHES, ".blend"),
     "cut": (*MESHES, ".blend"),
     "sprites": (".png", ".jpg", ".jpeg", ".webp"),
 }
 _OUTPUTS = (".ply", ".obj", ".stl", ".glb", ".blend")
 OUTPUTS = {
-    **dict.fromkeys(("strokes", "fill", "cut"), _OUTPUTS),
+    **dict.fromkeys(("strokes", "fill", "regrid", "cut"), _OUTPUTS),
     "sprites": (".glb", ".gltf", ".blend", ".json", ".tscn"),
 }
 BESIDE = (".json", ".tscn")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The three operations on a loaded file, through what the operators are made of."""
+"""The operations on a loaded file, through what the operators are made of."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from ..cut.cutobject import Caps, Target
 from ..data import defaults
 from ..fill import filling
 from ..fill.editmesh import EditMesh
+from ..regrid import regridding
 from . import jobs, loading, outputs, params
 from .loading import LoadError
 from .outputs import placed
@@ -130,9 +131,53 @@ def _filled(ob: bpy.types.Object, options: dict[str, Any]) -> filling.Job:
     try:
         job = filling.Job(EditMesh(ob))
         job.find_all(options.get("max_edges", defaults.MAX_HOLE_EDGES))
-        job.fill(options.get("smooth", "tangent"), lambda _: True)
+        job.fill(
+            options.get("smooth", "tangent"),
+            lambda _: True,
+            cells=options.get("cells", defaults.CELLS.lower()),
+        )
         if job.patches:
-            filling.add_all([job], quads=options.get("quads", False))
+            filling.add_all([job])
+    finally:
+        bpy.ops.object.mode_set(mode="OBJECT")
+    return job
+
+
+def regrid(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: bool) -> Made:
+    """Mesh areas of every mesh anew. Meshes that have none of what is selected stay as they are."""
+    found, notes = loading.meshes(source, pattern, scripts=scripts, weld=options.get("weld"))
+    reports: list[dict[str, Any]] = []
+    reasons: list[str] = []
+    for ob in found:
+        if not ob.is_editable or not ob.data.is_editable:
+            raise MakeError("linked", f"'{ob.name}' is linked from another file; make it local first")
+        job = _regridded(ob, options)
+        reports += [region.made.report for region in job.regions]
+        reasons += job.problems
+    if not reports:
+        chosen = options.get("select")
+        nothing = f"no face belongs to '{chosen}'" if chosen else "it has no faces"
+        raise MakeError("areas", "; ".join(reasons) or nothing)
+    notes = notes + reasons + filling.warnings_of(reports)
+    return Made(found, _numbers("areas", len(reports), reports), notes)
+
+
+def _regridded(ob: bpy.types.Object, options: dict[str, Any]) -> regridding.Job:
+    """Mesh areas of one mesh anew; the job tells what came of it."""
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.object.mode_set(mode="EDIT")
+    try:
+        job = regridding.Job(EditMesh(ob))
+        job.find_named(options.get("select"))
+        if job.areas:
+            job.solve(
+                options.get("smooth", "tangent"),
+                lambda _: True,
+                keep_shape=options.get("keep_shape", True),
+                cells=options.get("cells", defaults.CELLS.lower()),
+            )
+        if job.regions:
+            regridding.replace_all([job])
     finally:
         bpy.ops.object.mode_set(mode="OBJECT")
     return job
@@ -228,4 +273,4 @@ def _of_object(name: str) -> list[Stroke]:
     return reading.strokes
 
 
-OPS = {"strokes": strokes_to_bodies, "fill": fill, "cut": cut}
+OPS = {"strokes": strokes_to_bodies, "fill": fill, "regrid": regrid, "cut": cut}

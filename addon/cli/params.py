@@ -24,7 +24,7 @@ class Param:
     """One parameter. Whether a value suits a drawing is told when the item runs, not here."""
 
     kind: str
-    """"number", "numbers" (a list), "count" (a whole number from 0), "switch", "choice" or "stroke"."""
+    """"number", "numbers" (a list), "count" (a whole number from 0), "switch", "choice", "text" or "stroke"."""
     help: str
     choices: tuple[str, ...] = ()
     least: float = -math.inf
@@ -36,6 +36,11 @@ class Param:
             good, allowed = isinstance(value, bool), "true or false"
         elif self.kind == "choice":
             good, allowed = value in self.choices, " or ".join(self.choices)
+        elif self.kind == "text":
+            good, allowed = (
+                isinstance(value, str) and bool(value) and "\0" not in value,
+                "a text that is not empty",
+            )
         elif self.kind == "stroke":
             good = (isinstance(value, str) and bool(value) and "\0" not in value) or _is_line(value)
             allowed = "a file, the name of an object, or a list of points"
@@ -83,6 +88,12 @@ _WELD = Param(
     "switch", "join vertices at the same place (in .ply, .glb and .gltf files, which tear meshes at seams)"
 )
 
+_PATCH_CELLS = Param(
+    "choice",
+    "what patches are made of; of quads, one triangle if a rim is odd (triangles)",
+    ("triangles", "quads"),
+)
+
 OPS: Mapping[str, Mapping[str, Param]] = {
     "strokes": {
         **SKETCH,
@@ -96,10 +107,20 @@ OPS: Mapping[str, Mapping[str, Param]] = {
         "max_edges": Param(
             "count", f"holes with more edges stay open; 0: none does ({defaults.MAX_HOLE_EDGES})"
         ),
-        "quads": Param("switch", "join triangles to quads where that gives good ones (false)"),
+        "cells": _PATCH_CELLS,
         "max_open_edges": Param(
             "count", f"meshes with more open edges are refused ({defaults.MAX_OPEN_EDGES})"
         ),
+    },
+    "regrid": {
+        "weld": _WELD,
+        "select": Param(
+            "text",
+            "only the faces of this vertex group, material or face attribute; without, every connected area of one material",
+        ),
+        "cells": _PATCH_CELLS,
+        "keep_shape": Param("switch", "lay the grid on the old surface (true)"),
+        "smooth": Param("choice", "without keep_shape: how patches continue the surface (tangent)", _SMOOTH),
     },
     "cut": {
         "weld": _WELD,

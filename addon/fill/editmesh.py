@@ -167,12 +167,12 @@ class EditMesh:
                 if isinstance(element, kind):
                     elements.remove(element)
 
-    def finish(self, added: Added, *, quads: bool) -> None:
-        """Select what was made, joined to quads where asked for, and hand it to Blender."""
+    def finish(self, added: Added, *, join: bool = False) -> None:
+        """Select what was made, its triangles joined to quads where asked for, and hand it to Blender."""
         self.deselect()
         for edge in added.hard:
             edge.smooth = False
-        if quads:
+        if join:
             joined = bmesh.ops.join_triangles(
                 self.bm,
                 faces=added.faces,
@@ -204,11 +204,11 @@ class EditMesh:
         by_number = dict(zip(patch.loop, around.loop, strict=True))
         by_number.update(enumerate(new, patch.first))
         faces = []
-        for triangle in patch.triangles.tolist():
-            corners = [by_number[index] for index in triangle]
-            for a, b in ((0, 1), (1, 2), (2, 0)):
-                if max(triangle[a], triangle[b]) < patch.first:
-                    ends = (corners[a], corners[b])
+        for numbers in patch.faces:
+            corners = [by_number[index] for index in numbers]
+            for at, vertex in enumerate(corners):
+                if max(numbers[at], numbers[at - 1]) < patch.first:
+                    ends = (corners[at - 1], vertex)
                     if bm.edges.get(ends) is None:
                         made.append(bm.edges.new(ends))
             face = bm.faces.new(corners, model) if model is not None else bm.faces.new(corners)
@@ -286,12 +286,13 @@ class Patch:
 
     loop: Sequence[int]
     first: int
-    """Number of the first new vertex in `triangles`; lower ones are the mesh's."""
+    """Number of the first new vertex in `faces`; lower ones are the mesh's."""
     vertices: np.ndarray
     """(j, 3) new vertices."""
-    triangles: np.ndarray
+    faces: list[list[int]]
+    """Vertices of each new face."""
     creases: np.ndarray
-    """(e, 2) edges to be marked sharp, numbered as `triangles` are."""
+    """(e, 2) edges to be marked sharp, numbered as `faces` are."""
     poses: list[np.ndarray]
     """(j, 3) new vertices for every shape key."""
     extend: attributes.Extend

@@ -51,8 +51,10 @@ class Job:
                 self.found.problems.append(problem)
                 self.found.holes.remove(hole)
 
-    def fill(self, smooth: str, progress: Progress, *, keep_hard: bool = False) -> None:
-        """Fill the holes, without touching the mesh."""
+    def fill(
+        self, smooth: str, progress: Progress, *, keep_hard: bool = False, cells: str = "triangles"
+    ) -> None:
+        """Fill the holes, without touching the mesh. cells : "triangles" or "quads"."""
         if not self.found.holes:
             return
         at = self.snapshot
@@ -66,6 +68,7 @@ class Job:
             poses=at.poses,
             sharp=_HARD if keep_hard else None,
             creases=self.edited.sharp_edges() if keep_hard else None,
+            cells=cells,
             progress=progress,
         )
         for loop, fill in zip(loops, fills, strict=True):
@@ -78,7 +81,7 @@ class Job:
                     loop=loop,
                     first=len(at.positions),
                     vertices=fill.vertices @ at.to_local.T,
-                    triangles=fill.triangles,
+                    faces=[*fill.quads.tolist(), *fill.triangles.tolist()],
                     creases=fill.creases,
                     poses=[pose @ at.to_local.T for pose in fill.poses],
                     extend=fill.extend,
@@ -92,8 +95,8 @@ class Job:
         return f"{own}: {problem.reason}" if several and own not in problem.reason else problem.reason
 
 
-def add_all(jobs: list[Job], *, quads: bool) -> None:
-    """Put all patches into their meshes; if one fails, no mesh keeps any."""
+def add_all(jobs: list[Job], *, join: bool = False) -> None:
+    """Put all patches into their meshes; if one fails, no mesh keeps any. join : triangles to quads where that gives good ones."""
     try:
         for job in jobs:
             job.edited.add(job.patches, job.added)
@@ -102,7 +105,7 @@ def add_all(jobs: list[Job], *, quads: bool) -> None:
             job.edited.take_back(job.added)
         raise
     for job in jobs:
-        job.edited.finish(job.added, quads=quads)
+        job.edited.finish(job.added, join=join)
 
 
 def forgive_unselected(jobs: list[Job]) -> None:

@@ -12,14 +12,14 @@ from .. import api
 from ..data import defaults
 from ..text.messages import counted, listed
 from ..text.telling import told
-from ..ui.patching import PatchOptions, faces_made
+from ..ui.patching import PatchFaces, faces_made
 from ..ui.progress import Pointer
 from .editmesh import EditMesh
 from .filling import Job, add_all, forgive_unselected, left_open, warnings_of
 
 
-class MESH_OT_gridmesh_fill(PatchOptions, bpy.types.Operator):  # noqa: N801
-    """Fill the selected hole with a regular triangle patch that fits its edges"""  # noqa: D400 (the tooltip)
+class MESH_OT_gridmesh_fill(PatchFaces, bpy.types.Operator):  # noqa: N801
+    """Fill the selected hole with a regular patch of triangles or quads that fits its edges"""  # noqa: D400 (the tooltip)
 
     bl_idname = "mesh.gridmesh_fill"
     bl_label = "Grid Patch Fill"
@@ -87,14 +87,14 @@ class MESH_OT_gridmesh_fill(PatchOptions, bpy.types.Operator):  # noqa: N801
             with Pointer(context) as pointer:
                 for index, job in enumerate(jobs):
                     part = pointer.part(index / len(jobs), (index + 1) / len(jobs))
-                    job.fill(self.smooth.lower(), part, keep_hard=self.keep_hard)
+                    job.fill(self.smooth.lower(), part, keep_hard=self.keep_hard, cells=self.cells.lower())
         except api.CancelledError:
             self.report({"WARNING"}, told("Cancelled; nothing was filled"))
             return {"CANCELLED"}
         problems = [job.name(problem, several) for job in jobs for problem in job.found.problems]
         if not any(job.patches for job in jobs):
             return self._refuse(jobs, problems)
-        add_all([job for job in jobs if job.patches], quads=self.use_quads)
+        add_all([job for job in jobs if job.patches])
         self._tell(jobs, problems, perf_counter() - started)
         return {"FINISHED"}
 
@@ -142,6 +142,7 @@ class MESH_OT_gridmesh_fill(PatchOptions, bpy.types.Operator):  # noqa: N801
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
         layout = self.draw_result()
+        layout.prop(self, "cells")
         layout.prop(self, "holes")
         if self.holes == "ALL":
             layout.prop(self, "max_edges")
@@ -149,7 +150,6 @@ class MESH_OT_gridmesh_fill(PatchOptions, bpy.types.Operator):  # noqa: N801
             layout.prop(self, "close_chains")
         layout.prop(self, "smooth")
         layout.prop(self, "keep_hard")
-        layout.prop(self, "use_quads")
 
 
 classes = (MESH_OT_gridmesh_fill,)

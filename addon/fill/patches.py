@@ -21,6 +21,8 @@ class Filled:
     """(j, 3) the new ones."""
     triangles: np.ndarray
     """(t, 3), the mesh's vertices first, then the new ones."""
+    quads: np.ndarray
+    """(q, 4) in the same way. Together they are the new faces."""
     creases: np.ndarray
     """(e, 2), hard edges of the patch."""
     poses: list[np.ndarray]
@@ -40,14 +42,15 @@ def fill(
     poses: Sequence[np.ndarray] = (),
     sharp: float | None = None,
     creases: np.ndarray | None = None,
+    cells: str = "triangles",
     progress: Progress | None = None,
 ) -> list[Filled | str]:
     """Fill loops of a mesh: for each the patch, or the reason why there is none.
 
     vertices : (n, 3), triangles : (m, 3), the mesh. loops : vertex indices in order. polygons : (m,), of which
     each triangle is a part. poses : (n, 3) each, other positions of the same mesh. sharp, creases : which edges are
-    hard, as of `gridmesh.fill_hole`. Raises NativeError without the module, and CancelledError if `progress` or
-    Ctrl-C asked to stop.
+    hard, as of `gridmesh.fill_hole`. cells : "triangles" or "quads". Raises NativeError without the module, and
+    CancelledError if `progress` or Ctrl-C asked to stop.
     """
     gridmesh = native("fill_holes")
     indices = [np.asarray(loop, np.int32) for loop in loops]
@@ -62,6 +65,7 @@ def fill(
                 polygons=polygons,
                 sharp=sharp,
                 creases=creases,
+                cells=cells,
                 progress=progress,
             )
             return [_filled(gridmesh, fill, vertices, poses) for fill in fills]
@@ -77,6 +81,8 @@ class Regridded:
     """(j, 3) the new ones."""
     triangles: np.ndarray
     """(t, 3), the mesh's vertices first, then the new ones."""
+    quads: np.ndarray
+    """(q, 4) in the same way. Together they are the new faces."""
     source_faces: np.ndarray
     """(j,) the old triangle on which each new vertex lies."""
     source_weights: np.ndarray
@@ -94,13 +100,14 @@ def regrid(
     keep_shape: bool,
     smooth: str,
     polygons: np.ndarray | None = None,
+    cells: str = "triangles",
     progress: Progress | None = None,
 ) -> Regridded | str:
     """Mesh an area anew, or tell why it cannot be.
 
     vertices : (n, 3), triangles : (m, 3), the mesh. area : (f,) numbers of triangles, a disk. keep_shape : on the old
-    surface. polygons : (m,), of which each triangle is a part. Raises NativeError without the module, and
-    CancelledError if `progress` or Ctrl-C asked to stop.
+    surface. polygons : (m,), of which each triangle is a part. cells : "triangles" or "quads". Raises
+    NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
     """
     gridmesh = native("regrid")
     try:
@@ -112,6 +119,7 @@ def regrid(
                 keep_shape=keep_shape,
                 smooth=smooth,
                 polygons=polygons,
+                cells=cells,
                 progress=progress,
             )
     except gridmesh.GridMeshError as error:
@@ -119,6 +127,7 @@ def regrid(
     return Regridded(
         vertices=done.fill.vertices,
         triangles=done.fill.triangles,
+        quads=done.fill.quads,
         source_faces=done.source_faces,
         source_weights=done.source_weights,
         unused=done.unused,
@@ -170,4 +179,6 @@ def _filled(gridmesh: Any, fill: Any, vertices: np.ndarray, poses: Sequence[np.n
         solved = [fill.vertices if pose is vertices else fill.refit(pose) for pose in poses]
     except gridmesh.GridMeshError as error:
         return f"in another shape key {error}"
-    return Filled(fill.vertices, fill.triangles, fill.creases, solved, dict(fill.report), fill.extend)
+    return Filled(
+        fill.vertices, fill.triangles, fill.quads, fill.creases, solved, dict(fill.report), fill.extend
+    )

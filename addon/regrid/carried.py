@@ -37,8 +37,8 @@ class Places:
     """(j, 3) of that triangle's corners."""
     points: np.ndarray
     """(j, 3) of the new vertices."""
-    faces: np.ndarray
-    """(f, k) of the patch: the n old vertices come first."""
+    faces: list[list[int]]
+    """Those of the patch: the n old vertices come first."""
 
     def at_vertices(self, values: np.ndarray) -> np.ndarray:
         """Values (j, c) at the new vertices from those at the old ones (n, c)."""
@@ -102,7 +102,7 @@ class Carried:
             for v in triangle:
                 around.setdefault(v, []).append(polygon)
         found = []
-        for face in places.faces.tolist():
+        for face in places.faces:
             seen = [int(places.polygons[places.sources[v - n]]) for v in face if v >= n]
             if not seen:
                 seen = [polygon for v in face for polygon in dict.fromkeys(around[v])]
@@ -164,7 +164,7 @@ class _Corners:
             for k, v in enumerate(triangle):
                 around.setdefault(v, {}).setdefault(int(self.island[t]), self.values[t, k])
         found = []
-        for face in places.faces.tolist():
+        for face in places.faces:
             seen = [int(self.island[places.sources[v - n]]) for v in face if v >= n]
             if not seen:
                 seen = [island for v in face for island in around[v]]

@@ -13,12 +13,12 @@ from ..fill.editmesh import EditMesh
 from ..fill.filling import warnings_of
 from ..text.messages import counted, listed
 from ..text.telling import told
-from ..ui.patching import PatchOptions, faces_made
+from ..ui.patching import PatchFaces, faces_made
 from ..ui.progress import Pointer
 from .regridding import Job, replace_all
 
 
-class MESH_OT_gridmesh_regrid(PatchOptions, bpy.types.Operator):  # noqa: N801
+class MESH_OT_gridmesh_regrid(PatchFaces, bpy.types.Operator):  # noqa: N801
     """Mesh the selected faces, or the area inside a selected loop, anew with a regular grid on the same surface"""  # noqa: D400
 
     bl_idname = "mesh.gridmesh_regrid"
@@ -55,7 +55,7 @@ class MESH_OT_gridmesh_regrid(PatchOptions, bpy.types.Operator):  # noqa: N801
             with Pointer(context) as pointer:
                 for index, job in enumerate(jobs):
                     part = pointer.part(index / len(jobs), (index + 1) / len(jobs))
-                    job.solve(self.smooth.lower(), part, keep_shape=self.keep_shape)
+                    job.solve(self.smooth.lower(), part, keep_shape=self.keep_shape, cells=self.cells.lower())
         except api.CancelledError:
             self.report({"WARNING"}, told("Cancelled; nothing was changed"))
             return {"CANCELLED"}
@@ -64,7 +64,7 @@ class MESH_OT_gridmesh_regrid(PatchOptions, bpy.types.Operator):  # noqa: N801
         if not done:
             self.report({"ERROR"}, told(listed(problems)))
             return {"CANCELLED"}
-        replace_all(done, quads=self.use_quads)
+        replace_all(done)
         self._tell(done, problems, perf_counter() - started)
         return {"FINISHED"}
 
@@ -86,10 +86,10 @@ class MESH_OT_gridmesh_regrid(PatchOptions, bpy.types.Operator):  # noqa: N801
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
         layout = self.draw_result()
+        layout.prop(self, "cells")
         layout.prop(self, "keep_shape")
         if not self.keep_shape:
             layout.prop(self, "smooth")
-        layout.prop(self, "use_quads")
 
 
 classes = (MESH_OT_gridmesh_regrid,)

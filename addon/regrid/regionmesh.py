@@ -13,6 +13,9 @@ from ..fill.editmesh import Added, EditMesh, Snapshot
 from ..fill.patches import Regridded
 from .carried import Carried, Places
 
+_MEMBER = 0.5
+"""Weight from which on a vertex belongs to a group."""
+
 
 class AreaError(ValueError):
     """There is no area to mesh anew. The message says why and what to do."""
@@ -33,6 +36,38 @@ def areas(edited: EditMesh) -> list[list[int]]:
     if not chosen:
         return []
     return _enclosed(chosen)
+
+
+def named_areas(edited: EditMesh, name: str | None) -> list[list[int]]:
+    """Faces of the areas of a name: connected faces whose vertices are all in this group, that have this material, or for
+    which this attribute is not zero, those with different values apart. Without a name: connected faces of one material.
+    """  # noqa: D205 (one sentence)
+    bm = edited.bm
+    if name is None:
+        kinds = {face.index: face.material_index for face in bm.faces}
+    else:
+        kinds = {face.index: kind for face in bm.faces if (kind := _kind(edited, face, name))}
+    faces = [face for face in bm.faces if face.index in kinds]
+
+    def parts(edge: Any) -> bool:
+        return len({kinds.get(face.index) for face in edge.link_faces}) > 1
+
+    return _components(faces, parts)
+
+
+def _kind(edited: EditMesh, face: Any, name: str) -> int:
+    """A number above 0 if the face is meant by the name, the same for those that belong together."""
+    bm, ob = edited.bm, edited.ob
+    group = ob.vertex_groups.get(name)
+    deform = bm.verts.layers.deform.active
+    if group is not None and deform is not None:
+        return int(all(vertex[deform].get(group.index, 0.0) >= _MEMBER for vertex in face.verts))
+    slot = ob.material_slots.find(name)
+    if slot >= 0:
+        return int(face.material_index == slot)
+    layers = bm.faces.layers
+    layer = layers.bool.get(name) or layers.int.get(name)
+    return int(face[layer]) if layer is not None else 0
 
 
 def _components(faces: Sequence[Any], stops: Any) -> list[list[int]]:
@@ -102,7 +137,7 @@ class Region:
             sources=number[self.made.source_faces],
             weights=self.made.source_weights,
             points=self.made.vertices,
-            faces=self.made.triangles,
+            faces=[*self.made.quads.tolist(), *self.made.triangles.tolist()],
         )
 
     def poses(self, at: Snapshot, places: Places) -> list[np.ndarray]:
@@ -133,10 +168,10 @@ def replace(edited: EditMesh, at: Snapshot, regions: Sequence[Region], added: Ad
             for vertex, place in zip(new, (pose @ at.to_local.T).tolist(), strict=True):
                 vertex[layer] = place
         numbered = verts + new
-        faces = [bm.faces.new([numbered[v] for v in face]) for face in places.faces.tolist()]
+        faces = [bm.faces.new([numbered[v] for v in face]) for face in places.faces]
         carried.write(new, faces)
         for face in faces:
-            face.normal_update()  # by which triangles are joined
+            face.normal_update()
         for v in region.made.unused.tolist():
             bm.verts.remove(verts[v])
         added.faces += faces

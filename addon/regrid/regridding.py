@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,7 +12,7 @@ import numpy as np
 from ..api import Progress, part_of
 from ..fill import patches
 from ..fill.editmesh import Added, EditMesh, MeshError, Snapshot
-from .regionmesh import AreaError, Region, areas, replace
+from .regionmesh import AreaError, Region, areas, named_areas, replace
 
 
 @dataclass
@@ -29,16 +31,23 @@ class Job:
 
     def find(self) -> None:
         """Find the areas that the selection means."""
+        self._take(lambda: areas(self.edited))
+
+    def find_named(self, name: str | None) -> None:
+        """Find the areas of a vertex group, material or face attribute; without a name, those of one material each."""
+        self._take(lambda: named_areas(self.edited, name))
+
+    def _take(self, found: Callable[[], list[list[int]]]) -> None:
         try:
-            self.areas = areas(self.edited)
+            self.areas = found()
             if self.areas:
                 self.snapshot = self.edited.snapshot()
         except (AreaError, MeshError) as error:
             self.problems.append(f"'{self.edited.name}': {error}")
             self.areas = []
 
-    def solve(self, smooth: str, progress: Progress, *, keep_shape: bool) -> None:
-        """Mesh the areas anew, without touching the mesh."""
+    def solve(self, smooth: str, progress: Progress, *, keep_shape: bool, cells: str = "triangles") -> None:
+        """Mesh the areas anew, without touching the mesh. cells : "triangles" or "quads"."""
         at = self.snapshot
         taken: set[frozenset[int]] = set()
         for index, faces in enumerate(self.areas):
@@ -50,10 +59,11 @@ class Job:
                 keep_shape=keep_shape,
                 smooth=smooth,
                 polygons=at.polygons,
+                cells=cells,
                 progress=part_of(progress, index / len(self.areas), (index + 1) / len(self.areas)),
             )
             if not isinstance(made, str):
-                own = _chords(made.triangles, len(at.positions))
+                own = _chords([*made.quads.tolist(), *made.triangles.tolist()], len(at.positions))
                 if own & taken:
                     made = (
                         "it would have an edge that another area gets, too; choose them one after the other"
@@ -67,15 +77,14 @@ class Job:
                 self.regions.append(Region(faces, triangles, made))
 
 
-def _chords(triangles: np.ndarray, n: int) -> set[frozenset[int]]:
+def _chords(faces: list[list[int]], n: int) -> set[frozenset[int]]:
     """Edges inside a patch between two vertices of the mesh."""
-    sides = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
-    sides, times = np.unique(np.sort(sides[sides.max(axis=1) < n], axis=1), axis=0, return_counts=True)
-    return set(map(frozenset, sides[times == 2].tolist()))
+    times = Counter(frozenset((face[k - 1], face[k])) for face in faces for k in range(len(face)))
+    return {side for side, count in times.items() if count == 2 and max(side) < n}
 
 
-def replace_all(jobs: list[Job], *, quads: bool) -> None:
+def replace_all(jobs: list[Job]) -> None:
     """Put all patches in the place of their areas, and select them."""
     for job in jobs:
         replace(job.edited, job.snapshot, job.regions, job.added)
-        job.edited.finish(job.added, quads=quads)
+        job.edited.finish(job.added)

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, StringProperty
+from bpy.props import EnumProperty, StringProperty
 
 from .. import api
+from ..data import defaults
 from ..text.messages import counted
 from ..text.telling import told
+from .properties import PATCH_FACES
 
 
 class ResultShown:
@@ -44,11 +46,6 @@ class PatchOptions(ResultShown):
         ],
         default="TANGENT",
     )
-    use_quads: BoolProperty(
-        name="Quads",
-        description="Join pairs of triangles to quads where that gives good ones",
-        default=False,
-    )
 
     def has_module(self, function: str) -> bool:
         """Whether the native module is there with this function; if not, it is told."""
@@ -60,9 +57,24 @@ class PatchOptions(ResultShown):
         return True
 
 
+class PatchFaces(PatchOptions):
+    """Mixed into operators whose patches are of triangles or of quads."""
+
+    cells: EnumProperty(
+        name="Faces",
+        description="What patches are made of",
+        items=PATCH_FACES,
+        default=defaults.CELLS,
+    )
+
+
 def faces_made(jobs: Sequence[Any]) -> str:
     """How many quads and triangles were added to the meshes of jobs."""
     faces = [len(face.verts) for job in jobs for face in job.added.faces]
     quads = sum(n == 4 for n in faces)
-    made = counted(len(faces) - quads, "triangle")
-    return f"{counted(quads, 'quad')} and {made}" if quads else made
+    triangles = len(faces) - quads
+    if not quads:
+        return counted(triangles, "triangle")
+    if not triangles:
+        return counted(quads, "quad")
+    return f"{counted(quads, 'quad')} and {counted(triangles, 'triangle')}"

@@ -23,6 +23,16 @@ FACES = [
 ]
 
 
+PATCH_FACES = [
+    ("TRIANGLES", "Triangles", "Triangles, six around almost every vertex"),
+    (
+        "QUADS",
+        "Quads",
+        "Quads, four around almost every vertex, that go on from those around; one triangle where the number of edges is odd",
+    ),
+]
+
+
 def fineness_of(options: Any) -> str:
     """Name of the option that gives the fineness."""
     return "edge_length" if options.resolution == "EDGE_LENGTH" else options.cells.lower()

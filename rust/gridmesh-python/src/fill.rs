@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use gridmesh::fill::{Bridged, Fill as CoreFill, FillOptions, FillParts, FillReport, Smooth};
+use gridmesh::options::CellShape;
 use numpy::{
     AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods, PyReadonlyArray1,
     PyReadonlyArray2, PyUntypedArrayMethods,
@@ -41,6 +42,9 @@ use crate::{arrays, reports};
 ///     "creases" and "creases_kept". None: always smooth.
 /// creases : (e, 2) array of int, optional
 ///     With `sharp`: edges that are hard whatever their angle is.
+/// cells : {"triangles", "quads"}
+///     "quads": all new faces are quads if the loop has an even number of edges; if it is odd one is a triangle.
+///     Quads of the mesh go on through the loop where counts allow: tell them by `polygons`.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1, which never falls; cancels by returning False. What it raises is
 ///     raised here.
@@ -48,7 +52,7 @@ use crate::{arrays, reports};
 /// Returns
 /// -------
 /// Fill
-///     The loop's vertices are neither moved nor added to; each loop edge gets exactly one new triangle,
+///     The loop's vertices are neither moved nor added to; each loop edge gets exactly one new face,
 ///     wound against its neighbour (against most of them where the neighbours disagree); the patch is a
 ///     disk; no new edge or face repeats one of the mesh. The same input gives the same bytes, for any
 ///     number of threads.
@@ -77,8 +81,8 @@ use crate::{arrays, reports};
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, triangles, r#loop, *, smooth = None, strict = None, polygons = None, sharp = None, creases = None, progress = None),
-    text_signature = "(vertices, triangles, loop, *, smooth='tangent', strict=False, polygons=None, sharp=None, creases=None, progress=None)"
+    signature = (vertices, triangles, r#loop, *, smooth = None, strict = None, polygons = None, sharp = None, creases = None, cells = None, progress = None),
+    text_signature = "(vertices, triangles, loop, *, smooth='tangent', strict=False, polygons=None, sharp=None, creases=None, cells='triangles', progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn fill_hole(
@@ -91,11 +95,13 @@ pub fn fill_hole(
     polygons: Option<&Bound<'_, PyAny>>,
     sharp: Option<&Bound<'_, PyAny>>,
     creases: Option<&Bound<'_, PyAny>>,
+    cells: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Fill> {
     let mesh = Mesh::read(vertices, triangles)?;
     let indices = indices(&loop_argument("loop", r#loop))?;
-    let options = hard(options(smooth, strict, polygons)?, sharp, creases)?;
+    let mut options = hard(options(smooth, strict, polygons)?, sharp, creases)?;
+    options.cells = shape(cells)?;
     let (positions, faces) = (mesh.positions()?.into_owned(), mesh.faces()?.into_owned());
     let fill = Watch::new(progress)?
         .run(py, |progress| gridmesh::fill::fill_hole(&positions, &faces, &indices, &options, progress))?;
@@ -112,7 +118,7 @@ pub fn fill_hole(
 ///     Loops as `fill_hole` takes them; None: all boundary loops of the mesh.
 /// max_edges : int, optional
 ///     Without `loops`: holes with more edges are left open (an open sheet's own border, say).
-/// smooth, strict, polygons, sharp, creases, progress
+/// smooth, strict, polygons, sharp, creases, cells, progress
 ///     As in `fill_hole`.
 ///
 /// Returns
@@ -140,8 +146,8 @@ pub fn fill_hole(
 /// [22, 22]
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, triangles, loops = None, *, max_edges = None, smooth = None, strict = None, polygons = None, sharp = None, creases = None, progress = None),
-    text_signature = "(vertices, triangles, loops=None, *, max_edges=None, smooth='tangent', strict=False, polygons=None, sharp=None, creases=None, progress=None)"
+    signature = (vertices, triangles, loops = None, *, max_edges = None, smooth = None, strict = None, polygons = None, sharp = None, creases = None, cells = None, progress = None),
+    text_signature = "(vertices, triangles, loops=None, *, max_edges=None, smooth='tangent', strict=False, polygons=None, sharp=None, creases=None, cells='triangles', progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn fill_holes(
@@ -155,10 +161,12 @@ pub fn fill_holes(
     polygons: Option<&Bound<'_, PyAny>>,
     sharp: Option<&Bound<'_, PyAny>>,
     creases: Option<&Bound<'_, PyAny>>,
+    cells: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Py<PyList>> {
     let mesh = Mesh::read(vertices, triangles)?;
     let mut options = hard(options(smooth, strict, polygons)?, sharp, creases)?;
+    options.cells = shape(cells)?;
     if let Some(value) = max_edges {
         let it = Argument { name: "max_edges", value, allowed: "a whole number not below 0, or None" };
         options.max_edges = Some(it.count()?);
@@ -202,17 +210,21 @@ pub fn fill_holes(
 ///     The new vertices only.
 /// triangles : (t, 3) int32
 ///     The new triangles only. Numbers below n are those of the mesh; n + i is the new vertex i.
+/// quads : (q, 4) int32
+///     The new quads, numbered as `triangles`, wound as they are; (0, 4) unless asked for. Together they are the
+///     new faces: of quads there is one triangle if the loop is odd, none if it is even.
 /// creases : (e, 2) int32
 ///     Edges of the patch along which hard edges of the mesh go on, numbered as `triangles` are.
 /// report : dict
-///     Plain numbers: "triangles", "vertices", "irregular" (new vertices whose valence is not 6),
-///     "irregular_loop" (loop vertices whose valence is not 6 now), "grid" ("lattice", "grown", "graded",
+///     Plain numbers: "triangles", "quads", "vertices", "irregular" (new vertices whose valence is not 6, or 4 with
+///     quads), "irregular_loop" (loop vertices whose valence is not 6 now; with quads those whose number of new faces
+///     is not what the mesh leaves room for), "grid" ("lattice", "grown", "graded", "refined",
 ///     "centre" or "no_interior": how the patch was made), "rows" (of triangles between two loops; 0 for one), "folded" (True if it could not be laid out in the
 ///     plane), "rim_angle" (mean angle between the surface and a film in the loop, radians: near zero where
 ///     the surface goes on, about pi / 2 at the end of a tube), "unrolling" ("projected", "developed",
 ///     "evened" or "circle": how the loop was laid out in the plane), "distortion" (largest relative change
 ///     of a loop edge thereby), "winding_conflicts" (loop edges whose neighbour is wound against most
-///     others), "wire_edges" (loop edges without a neighbour), "min_angle" (radians), "folds" (edges with
+///     others), "wire_edges" (loop edges without a neighbour), "min_angle" and "max_angle" (of all corners of new faces, radians; above pi where a quad is concave), "folds" (edges with
 ///     more than 120 degrees between new triangles), "self_intersections" (pairs of triangles that meet, at
 ///     least one of them new), "creases" (hard edges that run into the loop, counted with `sharp`) and
 ///     "creases_kept" (those that go on: all or none), "repaired" (fallbacks taken), and "seconds", a dict of times per stage.
@@ -225,6 +237,8 @@ pub struct Fill {
     vertices: Py<PyArray2<f64>>,
     #[pyo3(get)]
     triangles: Py<PyArray2<i32>>,
+    #[pyo3(get)]
+    quads: Py<PyArray2<i32>>,
     #[pyo3(get)]
     creases: Py<PyArray2<i32>>,
     #[pyo3(get)]
@@ -242,6 +256,7 @@ impl Fill {
             r#loop: arrays::indices(py, inner.loop_.iter().copied()),
             vertices: arrays::space_points(py, &inner.vertices)?,
             triangles: arrays::triangles(py, &inner.triangles)?,
+            quads: arrays::quads(py, &inner.quads)?,
             creases: arrays::edges(py, &inner.creases)?,
             report,
             inner,
@@ -253,7 +268,12 @@ impl Fill {
 impl Fill {
     fn __repr__(&self) -> String {
         let (triangles, edges) = (self.inner.triangles.len(), self.inner.loop_.len());
-        format!("<gridmesh.Fill: {triangles} triangles in a loop of {edges} edges>")
+        let faces = match self.inner.quads.len() {
+            0 => format!("{triangles} triangles"),
+            quads if triangles > 0 => format!("{quads} quads and a triangle"),
+            quads => format!("{quads} quads"),
+        };
+        format!("<gridmesh.Fill: {faces} in a loop of {edges} edges>")
     }
 
     /// Extend data at the loop into the patch.
@@ -343,7 +363,7 @@ impl Fill {
             arrays::space_points(py, &parts.positions)?,
             arrays::indices(py, parts.outer.into_iter()),
             arrays::triangles(py, &parts.triangles)?,
-            parts.patch,
+            (parts.patch, parts.quads),
             arrays::edges(py, &parts.creases)?,
             slf.get().report.clone_ref(py),
         );
@@ -365,7 +385,7 @@ pub fn _fill(
     positions: PyReadonlyArray2<'_, f64>,
     outer: PyReadonlyArray1<'_, i32>,
     triangles: PyReadonlyArray2<'_, i32>,
-    patch: usize,
+    patch: (usize, usize),
     creases: PyReadonlyArray2<'_, i32>,
     report: Py<PyDict>,
 ) -> PyResult<Fill> {
@@ -391,7 +411,8 @@ pub fn _fill(
         positions: positions.as_array().rows().into_iter().map(|p| DVec3::new(p[0], p[1], p[2])).collect(),
         outer: numbers(&outer),
         triangles: triangles.as_array().rows().into_iter().map(|t| [0, 1, 2].map(|k| t[k] as u32)).collect(),
-        patch,
+        patch: patch.0,
+        quads: patch.1,
         creases: creases.as_array().rows().into_iter().map(|e| [0, 1].map(|k| e[k] as u32)).collect(),
     };
     let inner = CoreFill::from_parts(parts, FillReport::default()).map_err(|_| broken())?;
@@ -422,6 +443,13 @@ pub(crate) fn options(
     Ok(options)
 }
 
+/// What the new faces are to be.
+pub(crate) fn shape(cells: Option<&Bound<'_, PyAny>>) -> PyResult<CellShape> {
+    let words = [("triangles", CellShape::Triangle), ("quads", CellShape::Quad)];
+    let read = |value| Argument { name: "cells", value, allowed: "'triangles' or 'quads'" }.word(&words);
+    cells.map_or(Ok(CellShape::Triangle), read)
+}
+
 /// Adds what is said about hard edges.
 fn hard(
     mut options: FillOptions,
@@ -442,6 +470,7 @@ fn hard(
 fn report(py: Python<'_>, report: &FillReport) -> PyResult<Py<PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("triangles", report.triangles)?;
+    dict.set_item("quads", report.quads)?;
     dict.set_item("vertices", report.vertices)?;
     dict.set_item("irregular", report.irregular)?;
     dict.set_item("irregular_loop", report.irregular_loop)?;
@@ -454,6 +483,7 @@ fn report(py: Python<'_>, report: &FillReport) -> PyResult<Py<PyDict>> {
     dict.set_item("winding_conflicts", report.winding_conflicts)?;
     dict.set_item("wire_edges", report.wire_edges)?;
     dict.set_item("min_angle", report.min_angle)?;
+    dict.set_item("max_angle", report.max_angle)?;
     dict.set_item("folds", report.folds)?;
     dict.set_item("self_intersections", report.self_intersections)?;
     dict.set_item("creases", report.creases)?;

@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays;
-use crate::fill::{Fill, options};
+use crate::fill::{Fill, options, shape};
 use crate::input::Argument;
 use crate::mesh::{Mesh, indices};
 use crate::watch::Watch;
@@ -20,7 +20,7 @@ use crate::watch::Watch;
 ///     The triangles of the region, which must be a disk: connected, one border, not touching itself.
 /// keep_shape : bool
 ///     True: the new vertices are laid on the old surface. False: the hole is filled as by `fill_hole`.
-/// smooth, strict, polygons, progress
+/// smooth, strict, polygons, cells, progress
 ///     As in `fill_hole`; `smooth` matters without `keep_shape` only.
 ///
 /// Returns
@@ -51,8 +51,8 @@ use crate::watch::Watch;
 /// (32, True)
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, triangles, faces, *, keep_shape = None, smooth = None, strict = None, polygons = None, progress = None),
-    text_signature = "(vertices, triangles, faces, *, keep_shape=True, smooth='tangent', strict=False, polygons=None, progress=None)"
+    signature = (vertices, triangles, faces, *, keep_shape = None, smooth = None, strict = None, polygons = None, cells = None, progress = None),
+    text_signature = "(vertices, triangles, faces, *, keep_shape=True, smooth='tangent', strict=False, polygons=None, cells='triangles', progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn regrid(
@@ -64,12 +64,14 @@ pub fn regrid(
     smooth: Option<&Bound<'_, PyAny>>,
     strict: Option<&Bound<'_, PyAny>>,
     polygons: Option<&Bound<'_, PyAny>>,
+    cells: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Regrid> {
     let mesh = Mesh::read(vertices, triangles)?;
     let allowed = "an (f,) array of whole numbers";
     let region = indices(&Argument { name: "faces", value: faces, allowed })?;
-    let options = options(smooth, strict, polygons)?;
+    let mut options = options(smooth, strict, polygons)?;
+    options.cells = shape(cells)?;
     let keep = keep_shape
         .map_or(Ok(true), |value| Argument { name: "keep_shape", value, allowed: "True or False" }.bool())?;
     let (positions, all) = (mesh.positions()?.into_owned(), mesh.faces()?.into_owned());
@@ -94,7 +96,7 @@ pub fn regrid(
 /// Attributes
 /// ----------
 /// fill : Fill
-///     The patch; its triangles take the place of the region's.
+///     The patch; its faces take the place of the region's.
 /// source_faces : (j,) int32
 ///     For each new vertex the old triangle that it lies on, or that is nearest.
 /// source_weights : (j, 3) float64

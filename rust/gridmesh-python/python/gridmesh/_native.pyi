@@ -132,6 +132,8 @@ class Fill:
     @property
     def triangles(self) -> npt.NDArray[np.int32]: ...
     @property
+    def quads(self) -> npt.NDArray[np.int32]: ...
+    @property
     def creases(self) -> npt.NDArray[np.int32]: ...
     @property
     def report(self) -> dict[str, Any]: ...
@@ -244,6 +246,7 @@ def fill_hole(
     polygons: npt.ArrayLike | None = None,
     sharp: float | None = None,
     creases: npt.ArrayLike | None = None,
+    cells: Literal["triangles", "quads"] = "triangles",
     progress: _Progress | None = None,
 ) -> Fill: ...
 def fill_holes(
@@ -257,6 +260,7 @@ def fill_holes(
     polygons: npt.ArrayLike | None = None,
     sharp: float | None = None,
     creases: npt.ArrayLike | None = None,
+    cells: Literal["triangles", "quads"] = "triangles",
     progress: _Progress | None = None,
 ) -> list[Fill | GridMeshError]: ...
 def bridge(
@@ -281,6 +285,7 @@ def regrid(
     smooth: Literal["flat", "tangent", "curvature"] = "tangent",
     strict: bool = False,
     polygons: npt.ArrayLike | None = None,
+    cells: Literal["triangles", "quads"] = "triangles",
     progress: _Progress | None = None,
 ) -> Regrid: ...
 

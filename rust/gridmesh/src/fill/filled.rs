@@ -6,6 +6,7 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::error::{Error, Result};
+use crate::fill::loops::reserve::edges;
 use crate::fill::options::Smooth;
 use crate::fill::report::FillReport;
 use crate::fill::surface::patchwork::Patchwork;
@@ -21,6 +22,9 @@ pub struct Fill {
     /// The new triangles: numbers below that of the mesh's vertices are those, the following ones the new
     /// vertices in order. Wound against the triangles at the loop.
     pub triangles: Vec<[u32; 3]>,
+    /// The new quads, numbered and wound in the same way. With `triangles` they are the faces: of a patch of quads
+    /// that is one triangle if the loop is odd, none if it is even.
+    pub quads: Vec<[u32; 4]>,
     /// Numbers about it.
     pub report: FillReport,
     /// Edges of the patch along which a hard edge of the surroundings goes on, numbered as the triangles are.
@@ -53,9 +57,45 @@ pub(crate) struct Shape {
     pub(crate) creases: Vec<[u32; 2]>,
 }
 
+impl Shape {
+    /// What the patch's vertices are called in the mesh with the new ones after its own.
+    fn name(&self, v: u32) -> u32 {
+        match self.loop_.get(v as usize) {
+            Some(&name) => name,
+            None => v - self.loop_.len() as u32 + self.vertices as u32,
+        }
+    }
+}
+
 pub(crate) const NO_ITEM: Error = Error::Internal { reason: "a loop has neither a fill nor an error" };
 
 impl Fill {
+    /// The fill that a solved shape is.
+    pub(in crate::fill) fn of(loop_: Vec<u32>, shape: Shape, report: FillReport) -> Fill {
+        let work = &shape.work;
+        Fill {
+            loop_,
+            vertices: shape.positions[work.inner()].to_vec(),
+            triangles: work.single().iter().map(|t| t.map(|v| shape.name(v))).collect(),
+            quads: work.quads().map(|quad| quad.map(|v| shape.name(v))).collect(),
+            creases: shape.creases.iter().map(|edge| edge.map(|v| shape.name(v))).collect(),
+            report,
+            shape: Arc::new(shape),
+        }
+    }
+
+    /// The new faces as triangles, quads cut in two.
+    pub(crate) fn facets(&self) -> Vec<[u32; 3]> {
+        let work = &self.shape.work;
+        work.triangles[..work.n_patch].iter().map(|t| t.map(|v| self.shape.name(v))).collect()
+    }
+
+    /// The edges of the new faces, once for each face, lower vertex first.
+    pub(in crate::fill) fn sides(&self) -> impl Iterator<Item = [u32; 2]> {
+        let quads = self.quads.iter().flat_map(|q| [0, 1, 2, 3].map(|k| [q[k], q[(k + 1) % 4]]));
+        self.triangles.iter().flat_map(edges).chain(quads.map(|[a, b]| [a.min(b), a.max(b)]))
+    }
+
     /// Extends data at the loop (`columns` values for each of its vertices, in the order of the loop as
     /// given, row by row) to the new vertices: harmonically, one factorisation for all columns, each
     /// value within the range of its column.
@@ -97,7 +137,10 @@ impl Fill {
 
 impl PartialEq for Fill {
     fn eq(&self, other: &Self) -> bool {
-        self.vertices == other.vertices && self.triangles == other.triangles && self.loop_ == other.loop_
+        self.vertices == other.vertices
+            && self.triangles == other.triangles
+            && self.quads == other.quads
+            && self.loop_ == other.loop_
     }
 }
 

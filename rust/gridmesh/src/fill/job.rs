@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::fill::filled::Fill;
 use crate::fill::loops::check::{check_loop, check_near};
 use crate::fill::loops::mesh::Rim;
-use crate::fill::loops::reserve::{edges, groups, refuse_shared_edges};
+use crate::fill::loops::reserve::{groups, refuse_shared_edges};
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::parallel::in_parallel;
 use crate::fill::surface::around::is_around;
@@ -74,7 +74,7 @@ impl Job<'_> {
                     Ok(mut fill) => {
                         fill.report.seconds.insert(0, ("search", search));
                         let old = |e: &[u32; 2]| e.iter().all(|&v| (v as usize) < n_vertices);
-                        reserved.extend(fill.triangles.iter().flat_map(edges).filter(old));
+                        reserved.extend(fill.sides().filter(old));
                         fills.push((k, Ok(fill)));
                     }
                     Err(Error::Cancelled) => return Err(Error::Cancelled),
@@ -107,7 +107,7 @@ impl Job<'_> {
         let n = self.vertices.len() as u32;
         let done = fills.iter().flatten().map(|fill| {
             // New vertices of all fills get numbers of their own here.
-            (fill.triangles.as_slice(), fill.vertices.as_slice(), fill.shape.as_ref())
+            (fill.facets(), fill.vertices.as_slice(), fill.shape.as_ref())
         });
         let done = done.collect::<Vec<_>>();
         let mut first = vec![n];

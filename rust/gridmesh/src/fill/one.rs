@@ -1,7 +1,5 @@
 //! One loop filled: laid out, triangulated, placed, and tried another way if that went wrong.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
@@ -11,13 +9,14 @@ use crate::fill::job::Job;
 use crate::fill::layout::unroll::{Unrolled, unroll, unroll_least_bent};
 use crate::fill::loops::check::Checked;
 use crate::fill::loops::mesh::Rim;
-use crate::fill::loops::reserve::{Taken, wanted};
+use crate::fill::loops::reserve::{Taken, room, wanted};
 use crate::fill::options::Smooth;
 use crate::fill::planar::flat::{FlatFill, FlatOptions, fill_flat};
+use crate::fill::planar::quads::fill_flat_quads;
 use crate::fill::report::{FillReport, Grid};
 use crate::fill::surface::fit::{Faults, Solved};
 use crate::fill::surface::patchwork::Patchwork;
-use crate::geometry::metrics::min_angle;
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// A patch in space.
@@ -75,11 +74,20 @@ impl Task<'_> {
     fn attempt(&self, unrolled: Unrolled, clock: &mut Clock, progress: Progress<'_>) -> Result<Attempt> {
         let loop_ = &self.checked.vertices;
         let smooth = self.job.options.smooth;
-        let wanted = wanted(loop_, self.rim, &self.job.options.polygons);
+        let polygons = &self.job.options.polygons;
         let is_taken = |i: usize, j: usize| self.taken.has(i, j);
-        // A triangle that the mesh has already is filled with three others.
-        let options = FlatOptions { single: !self.taken.face, ..FlatOptions::default() };
-        let patch = fill_flat(&unrolled.points, &wanted, &is_taken, &options, progress.part(0.0, 0.6))?;
+        // A face that the mesh has already is filled with others.
+        let single = !self.taken.face;
+        let here = progress.part(0.0, 0.6);
+        let patch = match self.job.options.cells {
+            CellShape::Triangle => {
+                let options = FlatOptions { single, ..FlatOptions::default() };
+                fill_flat(&unrolled.points, &wanted(loop_, self.rim, polygons), &is_taken, &options, here)?
+            }
+            CellShape::Quad => {
+                fill_flat_quads(&unrolled.points, &room(loop_, self.rim, polygons), &is_taken, single, here)?
+            }
+        };
         if patch.quality.repeated > 0 {
             return Err(Error::NoPatch {
                 reason: "every patch repeats an edge of the mesh".into(),
@@ -91,6 +99,7 @@ impl Task<'_> {
 
         let rings = if smooth == Smooth::Curvature { 2 } else { 1 };
         let work = Patchwork::new(loop_, patch.interior.len(), &patch.triangles, self.rim, rings)?;
+        let work = work.of_quads(patch.quads);
         let shape = Shape {
             work,
             loop_: loop_.clone(),
@@ -128,16 +137,23 @@ impl Task<'_> {
         let loop_ = &checked.vertices;
         let n = loop_.len();
         shape.positions = solved.positions;
-        let first_new = self.job.vertices.len() as u32;
-        let name = |v: u32| if (v as usize) < n { loop_[v as usize] } else { first_new + v - n as u32 };
         let work = &shape.work;
-        let own = &shape.work.triangles[..work.n_patch];
-        let valence = |v: usize| work.range(v).len();
+        let [min_angle, max_angle] = work.corner_range(&shape.positions);
+        let valence = |v: &usize| work.range(*v).len() != 6;
+        let (irregular, irregular_loop) = if work.quads > 0 {
+            let faces = work.faces_at();
+            let room = room(loop_, self.rim, &self.job.options.polygons);
+            let off = room.iter().zip(&faces).filter(|(room, faces)| (*room - **faces as f64).abs() > 0.5);
+            (work.inner().filter(|&v| faces[v] != 4).count(), off.count())
+        } else {
+            (work.inner().filter(valence).count(), (0..n).filter(valence).count())
+        };
         let report = FillReport {
-            triangles: own.len(),
+            triangles: work.single().len(),
+            quads: work.quads,
             vertices: work.inner().len(),
-            irregular: work.inner().filter(|&v| valence(v) != 6).count(),
-            irregular_loop: (0..n).filter(|&v| valence(v) != 6).count(),
+            irregular,
+            irregular_loop,
             grid: Grid::of(patch.method),
             rows: 0,
             folded: patch.folded,
@@ -146,7 +162,8 @@ impl Task<'_> {
             distortion: unrolled.distortion,
             winding_conflicts: checked.conflicts,
             wire_edges: checked.wire,
-            min_angle: min_angle(&shape.positions, own),
+            min_angle,
+            max_angle,
             folds: solved.faults.folds,
             self_intersections: 0,
             creases,
@@ -154,13 +171,7 @@ impl Task<'_> {
             repaired: solved.repaired,
             seconds: clock.seconds,
         };
-        Fill {
-            loop_: if checked.reversed { loop_.iter().rev().copied().collect() } else { loop_.clone() },
-            vertices: shape.positions[work.inner()].to_vec(),
-            triangles: own.iter().map(|t| t.map(name)).collect(),
-            report,
-            creases: shape.creases.iter().map(|edge| edge.map(name)).collect(),
-            shape: Arc::new(shape),
-        }
+        let given = if checked.reversed { loop_.iter().rev().copied().collect() } else { loop_.clone() };
+        Fill::of(given, shape, report)
     }
 }

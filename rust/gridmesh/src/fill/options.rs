@@ -1,6 +1,7 @@
 //! What can be chosen about a fill.
 
 use crate::error::{Error, Result};
+use crate::options::CellShape;
 
 /// How a patch continues the surface around its loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,6 +18,8 @@ pub enum Smooth {
 /// Options of [`fill_hole`](super::fill_hole) and [`fill_holes`](super::fill_holes).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FillOptions {
+    /// What the new faces are: with quads one triangle, if the loop is odd.
+    pub cells: CellShape,
     /// How the patch continues the surface.
     pub smooth: Smooth,
     /// Refuse fills that meet themselves or the mesh, instead of counting that.

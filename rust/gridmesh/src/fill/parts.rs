@@ -1,7 +1,5 @@
 //! A fill taken apart and put together again, for those who store it.
 
-use std::sync::Arc;
-
 use glam::{DVec2, DVec3};
 
 use crate::error::{Error, Result};
@@ -33,6 +31,8 @@ pub struct FillParts {
     pub triangles: Vec<[u32; 3]>,
     /// How many of them are the patch's.
     pub patch: usize,
+    /// How many pairs of those, from the first on, are quads: `[a, b, c]` and `[a, c, d]`.
+    pub quads: usize,
     /// Hard edges, by the place of their vertices in `positions`.
     pub creases: Vec<[u32; 2]>,
 }
@@ -53,6 +53,7 @@ impl Fill {
             outer: work.outer.clone(),
             triangles: work.triangles.clone(),
             patch: work.n_patch,
+            quads: work.quads,
             creases: shape.creases.clone(),
         }
     }
@@ -73,6 +74,7 @@ impl Fill {
             outer,
             triangles,
             patch,
+            quads,
             creases,
         } = parts;
         let (n, end) = (loop_.len(), flat.len());
@@ -88,6 +90,9 @@ impl Fill {
             && positions.len() == end + outer.len()
             && loop_.iter().chain(&outer).all(known)
             && patch <= triangles.len()
+            && quads <= patch / 2
+            && (bridged.is_none() || quads == 0)
+            && triangles[..2 * quads].chunks_exact(2).all(|t| t[0][0] == t[1][0] && t[0][2] == t[1][1])
             && triangles.iter().all(|t| within(t, positions.len()))
             && triangles[..patch].iter().all(|t| within(t, end))
             && creases.iter().flatten().all(|&v| (v as usize) < end)
@@ -99,9 +104,6 @@ impl Fill {
                 allowed: "the parts of one fill",
             });
         }
-        let name = |v: u32| if (v as usize) < n { loop_[v as usize] } else { v - n as u32 + vertices as u32 };
-        let named = triangles[..patch].iter().map(|t| t.map(name)).collect();
-        let hard = creases.iter().map(|edge| edge.map(name)).collect();
         let mut given = loop_.clone();
         let (one, two) = given.split_at_mut(bridged.map_or(n, |b| b.first));
         if reversed {
@@ -112,10 +114,9 @@ impl Fill {
         }
         let mut work = Patchwork::of(n, end, outer, triangles, patch)?;
         work.first = bridged.map_or(n, |b| b.first);
-        let new = positions[n..end].to_vec();
-        let shape =
-            Arc::new(Shape { work, loop_, reversed, bridged, flat, smooth, vertices, positions, creases });
-        Ok(Fill { loop_: given, vertices: new, triangles: named, report, creases: hard, shape })
+        let work = work.of_quads(quads);
+        let shape = Shape { work, loop_, reversed, bridged, flat, smooth, vertices, positions, creases };
+        Ok(Fill::of(given, shape, report))
     }
 }
 
@@ -124,9 +125,10 @@ mod tests {
     use super::*;
     use crate::fill::fill_hole;
     use crate::fill::options::FillOptions;
+    use crate::options::CellShape;
     use crate::progress::Progress;
 
-    fn filled() -> (Vec<DVec3>, Fill) {
+    fn filled(cells: CellShape) -> (Vec<DVec3>, Fill) {
         // The wall of a drum, its upper rim open.
         let n = 20;
         let place = |k: u32, z: f64| {
@@ -139,14 +141,20 @@ mod tests {
             [[k, next, k + n], [next, next + n, k + n]]
         });
         let rim = (n..2 * n).collect::<Vec<_>>();
-        let options = FillOptions::default();
+        let options = FillOptions { cells, ..FillOptions::default() };
         let fill = fill_hole(&vertices, &wall.collect::<Vec<_>>(), &rim, &options, Progress::NONE).unwrap();
         (vertices, fill)
     }
 
     #[test]
     fn a_fill_put_together_again_is_the_same() {
-        let (mut vertices, fill) = filled();
+        for cells in [CellShape::Triangle, CellShape::Quad] {
+            put_together_again(cells);
+        }
+    }
+
+    fn put_together_again(cells: CellShape) {
+        let (mut vertices, fill) = filled(cells);
         let again = Fill::from_parts(fill.parts(), fill.report.clone()).unwrap();
         assert_eq!((&again, again.parts()), (&fill, fill.parts()));
         vertices[3].z -= 0.2;
@@ -157,8 +165,10 @@ mod tests {
 
     #[test]
     fn parts_that_do_not_fit_are_refused() {
-        let parts = filled().1.parts();
-        let damages: [fn(&mut FillParts); 8] = [
+        let parts = filled(CellShape::Quad).1.parts();
+        let damages: [fn(&mut FillParts); 10] = [
+            |p| p.quads = 10_000,
+            |p| p.triangles[1] = p.triangles[0],
             |p| p.loop_[0] = 99,
             |p| p.outer.push(1),
             |p| p.triangles[0][0] = 10_000,

@@ -15,7 +15,6 @@ use crate::fill::surface::fair::Membrane;
 use crate::fill::surface::fit::{LEAST_WEIGHT, folds};
 use crate::fill::surface::patchwork::Patchwork;
 use crate::fill::surface::sweep::sweep;
-use crate::geometry::metrics::min_angle;
 use crate::progress::Progress;
 
 /// Rounds of sweeps and projections.
@@ -167,7 +166,7 @@ fn lay_back(
     }
     fill.vertices = positions[work.inner()].to_vec();
     fill.report.folds = folds(work, &positions);
-    fill.report.min_angle = min_angle(&positions, &work.triangles[..work.n_patch]);
+    [fill.report.min_angle, fill.report.max_angle] = work.corner_range(&positions);
     let shape = std::sync::Arc::make_mut(&mut fill.shape);
     shape.positions = positions;
     Ok(())

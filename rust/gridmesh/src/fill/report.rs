@@ -6,13 +6,16 @@ use crate::fill::planar::flat::Method;
 /// Numbers about a [`super::Fill`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FillReport {
-    /// New triangles.
+    /// New triangles; of a patch of quads one if its loop is odd.
     pub triangles: usize,
+    /// New quads.
+    pub quads: usize,
     /// New vertices.
     pub vertices: usize,
-    /// New vertices of valence other than six.
+    /// New vertices of valence other than six, or four in a patch of quads: poles.
     pub irregular: usize,
-    /// Loop vertices that have a valence other than six now, edges of the mesh counted.
+    /// Loop vertices that have a valence other than six now, edges of the mesh counted; with quads those whose number
+    /// of new faces is not what the corners of the mesh there leave room for.
     pub irregular_loop: usize,
     /// How the patch was made.
     pub grid: Grid,
@@ -31,8 +34,10 @@ pub struct FillReport {
     pub winding_conflicts: usize,
     /// Loop edges without a neighbour.
     pub wire_edges: usize,
-    /// Smallest angle of a new triangle, in radians.
+    /// Smallest corner of a new face, in radians.
     pub min_angle: f64,
+    /// Largest corner, in radians; more than pi where a quad is concave.
+    pub max_angle: f64,
     /// Inner edges of the patch with more than 120 degrees between the triangles.
     pub folds: usize,
     /// Pairs of triangles, at least one of them new, that meet where they should not; counted up to 100,000.
@@ -61,6 +66,8 @@ pub enum Grid {
     Grown,
     /// Points of nested lattices, for loops too uneven for one.
     Graded,
+    /// Triangles for every second vertex of the loop, each cut into three quads.
+    Refined,
 }
 
 impl Grid {
@@ -71,6 +78,7 @@ impl Grid {
             Method::Optimal => Grid::Lattice,
             Method::Grown => Grid::Grown,
             Method::Graded => Grid::Graded,
+            Method::Refined => Grid::Refined,
         }
     }
 
@@ -82,6 +90,7 @@ impl Grid {
             Grid::Lattice => "lattice",
             Grid::Grown => "grown",
             Grid::Graded => "graded",
+            Grid::Refined => "refined",
         }
     }
 }

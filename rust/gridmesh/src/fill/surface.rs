@@ -1,6 +1,7 @@
 //! A patch brought to space: smooth to its surroundings, free of intersections.
 
 pub(crate) mod around;
+pub(crate) mod faces;
 pub(crate) mod fair;
 pub(crate) mod fit;
 pub(crate) mod meet;

@@ -26,38 +26,51 @@ pub struct Belted {
 ///
 /// O(number of quads + rows of the layout).
 pub fn assemble_squares(paths: &[Vec<Axial>]) -> Belted {
-    const NONE: u32 = u32::MAX;
-    let mut points: Vec<Axial> = paths.concat();
-    let n_rim = points.len();
-    let layout = Arc::new(Layout::around(points.iter().copied(), 0));
-    let mut number = Cells::new(layout, NONE);
-    for (i, &p) in points.iter().enumerate() {
-        number.set(p, (n_rim + i) as u32);
-    }
+    let n_rim = paths.iter().map(Vec::len).sum::<usize>();
     let mut quads = Vec::new();
-    // Steps across the strip above row r, each by its column.
-    let mut walls: Vec<(i32, i32)> = Vec::new();
     let mut start = 0;
     for path in paths {
         let n = path.len();
-        for (i, &from) in path.iter().enumerate() {
+        for i in 0..n {
             let (here, next) = ((start + i) as u32, (start + (i + 1) % n) as u32);
             quads.push([here, next, n_rim as u32 + next, n_rim as u32 + here]);
+        }
+        start += n;
+    }
+    let (points, squares) = squares_within(paths);
+    quads.extend(squares.into_iter().map(|quad| quad.map(|v| v + n_rim as u32)));
+    Belted { points, quads, n_rim }
+}
+
+/// The lattice points of such paths, then those inside row by row; and the squares between them, counter-clockwise.
+pub fn squares_within(paths: &[Vec<Axial>]) -> (Vec<Axial>, Vec<[u32; 4]>) {
+    const NONE: u32 = u32::MAX;
+    let mut points: Vec<Axial> = paths.concat();
+    let layout = Arc::new(Layout::around(points.iter().copied(), 0));
+    let mut number = Cells::new(layout, NONE);
+    for (i, &p) in points.iter().enumerate() {
+        number.set(p, i as u32);
+    }
+    // Steps across the strip above row r, each by its column.
+    let mut walls: Vec<(i32, i32)> = Vec::new();
+    for path in paths {
+        let n = path.len();
+        for (i, &from) in path.iter().enumerate() {
             let to = path[(i + 1) % n];
             if from.r != to.r {
                 walls.push((from.r.min(to.r), from.q));
             }
         }
-        start += n;
     }
     walls.sort_unstable();
+    let mut quads = Vec::new();
     for wall in walls.chunks_exact(2) {
         let (r, from, to) = (wall[0].0, wall[0].1, wall[1].1);
         for q in from..to {
             let corners = [[q, r], [q + 1, r], [q + 1, r + 1], [q, r + 1]].map(|[q, r]| Axial::new(q, r));
             quads.push(corners.map(|p| match number.get(p) {
                 NONE => {
-                    let new = (n_rim + points.len()) as u32;
+                    let new = points.len() as u32;
                     number.set(p, new);
                     points.push(p);
                     new
@@ -66,7 +79,7 @@ pub fn assemble_squares(paths: &[Vec<Axial>]) -> Belted {
             }));
         }
     }
-    Belted { points, quads, n_rim }
+    (points, quads)
 }
 
 #[cfg(test)]

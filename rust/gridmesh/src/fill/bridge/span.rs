@@ -1,7 +1,5 @@
 //! Two loops and the tube between them.
 
-use std::sync::Arc;
-
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashSet;
 
@@ -244,12 +242,11 @@ impl<'a> Span<'a> {
     fn finish(&self, attempt: Attempt, clock: Clock) -> Fill {
         let Attempt { shape, lattice, rows, min_angle } = attempt;
         let work = &shape.work;
-        let (n, first_new) = (work.n as u32, self.vertices.len() as u32);
-        let name = |v: u32| if v < n { shape.loop_[v as usize] } else { first_new + v - n };
         let own = &work.triangles[..work.n_patch];
         let irregular = |v: &usize| work.range(*v).len() != 6;
         let report = FillReport {
             triangles: own.len(),
+            quads: 0,
             vertices: work.inner().len(),
             irregular: work.inner().filter(irregular).count(),
             irregular_loop: (0..work.n).filter(irregular).count(),
@@ -262,6 +259,7 @@ impl<'a> Span<'a> {
             winding_conflicts: self.conflicts,
             wire_edges: self.loops.iter().map(|l| l.wire).sum(),
             min_angle,
+            max_angle: work.corner_range(&shape.positions)[1],
             folds: folds(work, &shape.positions),
             self_intersections: 0,
             creases: 0,
@@ -270,14 +268,7 @@ impl<'a> Span<'a> {
             seconds: clock.seconds,
         };
         let given = |l: &Checked| if l.reversed { reversed(&l.vertices) } else { l.vertices.clone() };
-        Fill {
-            loop_: self.loops.iter().flat_map(given).collect(),
-            vertices: shape.positions[work.inner()].to_vec(),
-            triangles: own.iter().map(|t| t.map(name)).collect(),
-            report,
-            creases: vec![],
-            shape: Arc::new(shape),
-        }
+        Fill::of(self.loops.iter().flat_map(given).collect(), shape, report)
     }
 }
 

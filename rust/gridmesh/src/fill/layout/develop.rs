@@ -9,7 +9,7 @@
 
 use glam::DVec2;
 
-use crate::path::placement::ROW_HEIGHT;
+use crate::fill::planar::steps::Steps;
 
 /// The loop's edges and angles.
 pub(in crate::fill) struct Loop {
@@ -33,10 +33,10 @@ impl Loop {
         Loop { turning, heading, flux }
     }
 
-    /// Positions of the vertices when every edge is one lattice step long in the hexagonal norm
+    /// Positions of the vertices when every edge is one step of the grid long
     /// and `strength` (0 to 1) of the flux is taken off the turning, turned clockwise by `angle`;
     /// centred at the origin.
-    pub fn developed(&self, strength: f64, angle: f64) -> Vec<DVec2> {
+    pub fn developed<G: Steps>(&self, strength: f64, angle: f64) -> Vec<DVec2> {
         let n = self.turning.len();
         let mut heading = self.heading - angle;
         let mut steps: Vec<DVec2> = Vec::with_capacity(n);
@@ -44,7 +44,8 @@ impl Loop {
             if k > 0 {
                 heading += self.turning[k] - strength * self.flux[k];
             }
-            steps.push(step(heading));
+            let unit = DVec2::from_angle(heading);
+            steps.push(unit / G::along(unit));
         }
         // What does not close is spread over the steps. (Turning them instead was no better.)
         let gap = steps.iter().sum::<DVec2>() / n as f64;
@@ -58,19 +59,6 @@ impl Loop {
         places.iter_mut().for_each(|p| *p -= centre);
         places
     }
-}
-
-/// One lattice step long in the hexagonal norm.
-fn step(heading: f64) -> DVec2 {
-    let unit = DVec2::from_angle(heading);
-    unit / hexagonal_length(unit)
-}
-
-/// Lattice steps along a vector: one for the six unit vectors, up to 1.1547 per length between.
-pub(in crate::fill) fn hexagonal_length(v: DVec2) -> f64 {
-    let r = v.y / ROW_HEIGHT;
-    let q = v.x - 0.5 * r;
-    q.abs().max(r.abs()).max((q + r).abs())
 }
 
 fn flux(points: &[DVec2], lengths: &[f64]) -> Vec<f64> {
@@ -98,6 +86,7 @@ fn flux(points: &[DVec2], lengths: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lattice::grid::{Square, Triangular};
 
     #[test]
     fn a_strip_between_short_and_long_edges_becomes_a_ring_segment() {
@@ -117,10 +106,14 @@ mod tests {
     fn even_loops_keep_their_shape() {
         let points: Vec<DVec2> =
             (0..24).map(|k| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / 24.0)).collect();
-        let places = Loop::new(&points).developed(1.0, 0.0);
-        for k in 0..24 {
-            let step = places[(k + 1) % 24] - places[k];
-            assert!((hexagonal_length(step) - 1.0).abs() < 1e-9);
+        fn even<G: Steps>(points: &[DVec2]) {
+            let places = Loop::new(points).developed::<G>(1.0, 0.0);
+            for k in 0..24 {
+                let step = places[(k + 1) % 24] - places[k];
+                assert!((G::along(step) - 1.0).abs() < 1e-9);
+            }
         }
+        even::<Triangular>(&points);
+        even::<Square>(&points);
     }
 }

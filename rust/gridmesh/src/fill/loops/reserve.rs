@@ -31,6 +31,22 @@ pub(in crate::fill) fn wanted(loop_: &[u32], rim: &Rim, polygons: &[u32]) -> Vec
     (0..n).map(outside).collect()
 }
 
+/// How many right angles the mesh leaves each loop vertex: the number of quads that make it regular. What counts are
+/// the corners of faces, as they are in regular polygons; without faces there is room for two.
+pub(in crate::fill) fn room(loop_: &[u32], rim: &Rim, polygons: &[u32]) -> Vec<f64> {
+    // A triangle takes two thirds, a corner of a polygon of t triangles 2 t / (t + 2).
+    let corner = |cut: f64| 2.0 * cut / (cut + 2.0);
+    let left = |v: &u32| {
+        let Some(v) = rim.local(*v) else { return 2.0 };
+        let taken = match polygons {
+            [] => rim.around(v).len() as f64 * corner(1.0),
+            _ => sizes(rim, v, polygons).into_iter().map(corner).sum(),
+        };
+        (4.0 - taken).clamp(0.5, 4.0)
+    };
+    loop_.iter().map(left).collect()
+}
+
 /// Corners of polygons of more triangles count as straight, for all this matters.
 const MANY: usize = 100;
 
@@ -40,19 +56,24 @@ fn surplus(rim: &Rim, v: u32, polygons: &[u32]) -> f64 {
     if polygons.is_empty() {
         return 0.0;
     }
+    let worth = sizes(rim, v, polygons).into_iter().map(|cut| 3.0 * cut / (cut + 2.0));
+    rim.around(v).len() as f64 - worth.sum::<f64>()
+}
+
+/// Of how many triangles each polygon at a vertex is.
+fn sizes(rim: &Rim, v: u32, polygons: &[u32]) -> Vec<f64> {
     let number = |&t: &u32| rim.numbers[t as usize] as usize;
     let mut around = rim.around(v).iter().map(number).collect::<Vec<_>>();
     let own = |t: usize| polygons[t];
     around.sort_unstable_by_key(|&t| (own(t), t));
-    let worth = around.chunk_by(|&a, &b| own(a) == own(b)).map(|same| {
+    let size = |same: &[usize]| {
         // The triangles of a polygon follow each other.
         let (t, polygon) = (same[0], own(same[0]));
         let after = polygons[t..].iter().take(MANY).take_while(|&&p| p == polygon).count();
         let before = polygons[..t].iter().rev().take(MANY).take_while(|&&p| p == polygon).count();
-        let cut = (before + after) as f64;
-        3.0 * cut / (cut + 2.0)
-    });
-    around.len() as f64 - worth.sum::<f64>()
+        (before + after) as f64
+    };
+    around.chunk_by(|&a, &b| own(a) == own(b)).map(size).collect()
 }
 
 /// Edges between vertices of one loop that exist already.
@@ -157,5 +178,9 @@ mod tests {
             assert_eq!(at(&triangles, &[0, 1, 2, 3]), at(&triangles, &[]));
         }
         assert_ne!(at(&cuts(true, true), &[]), at(&cuts(false, true), &[]));
+        let triangles = cuts(true, false);
+        let rim = Rim::new(9, &triangles, &row, 1).unwrap();
+        assert_eq!(room(&row, &rim, &[7, 7, 2, 2]), [3.0, 2.0, 3.0, 2.0, 2.0, 2.0]);
+        assert_eq!(room(&row, &Rim::default(), &[]), [2.0; 6]);
     }
 }

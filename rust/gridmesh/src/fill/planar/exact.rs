@@ -9,14 +9,18 @@
 //! Paths that meet themselves, and edges across the patch that the mesh already has, are priced
 //! away: both ends become dearer and the search runs again.
 
+use std::marker::PhantomData;
+
 use glam::DVec2;
 use rustc_hash::FxHashMap;
 
+use super::steps::Steps;
 use crate::error::Result;
 use crate::lattice::axial::Axial;
-use crate::lattice::dir::Dir;
-use crate::path::placement::Lattice;
 use crate::progress::Progress;
+
+/// Directions of a grid, at most.
+const DIRECTIONS: usize = 6;
 
 /// Integer cost of one turn.
 pub(in crate::fill) const TURN: u32 = 64;
@@ -45,7 +49,7 @@ pub(in crate::fill) struct Wishes<'a> {
 ///
 /// A *cell* is a lattice point of a layer; a *state* is a cell with the direction in which the path
 /// enters it. The number of a cell beyond the last stands for all points outside the layer.
-pub(in crate::fill) struct Layers<'a> {
+pub(in crate::fill) struct Layers<'a, G> {
     wishes: &'a Wishes<'a>,
     /// Offsets of the cells of a layer from its centre.
     stencil: Vec<Axial>,
@@ -54,31 +58,32 @@ pub(in crate::fill) struct Layers<'a> {
     table: Vec<u16>,
     /// For each cell and direction the cell of the next layer that it leads to, by the shift
     /// between the two centres.
-    tables: Vec<(Axial, Vec<[u16; 6]>)>,
+    tables: Vec<(Axial, Vec<[u16; DIRECTIONS]>)>,
     /// Cost of each cell of each layer, prices included.
     nodes: Vec<u32>,
     /// Least cost from a state of a layer to any state of the last.
-    to_go: Vec<[u32; 6]>,
+    to_go: Vec<[u32; DIRECTIONS]>,
+    grid: PhantomData<G>,
 }
 
-impl<'a> Layers<'a> {
-    pub fn new(wishes: &'a Wishes<'a>) -> Layers<'a> {
+impl<'a, G: Steps> Layers<'a, G> {
+    pub fn new(wishes: &'a Wishes<'a>) -> Self {
         let reach = wishes.reach;
         let stencil: Vec<Axial> = (-reach..=reach)
             .flat_map(|r| (-reach..=reach).map(move |q| Axial::new(q, r)))
-            .filter(|o| (o.q + o.r).abs() <= reach)
+            .filter(|&o| G::cell(o, reach).is_some())
             .collect();
         let n = wishes.target.len();
-        let centres: Vec<Axial> = wishes.target.iter().map(|&t| Lattice::nearest(t)).collect();
+        let centres: Vec<Axial> = wishes.target.iter().map(|&t| G::nearest(t)).collect();
         let mut nodes = Vec::with_capacity(n * (stencil.len() + 1));
-        let places: Vec<DVec2> = stencil.iter().map(|&o| Lattice::units(o)).collect();
+        let places: Vec<DVec2> = stencil.iter().map(|&o| G::units(o)).collect();
         for (&centre, &target) in centres.iter().zip(wishes.target) {
-            let off = Lattice::units(centre) - target;
+            let off = G::units(centre) - target;
             let price = |p: &DVec2| (f64::from(TURN) * wishes.closeness * (*p + off).length_squared()) as u32;
             nodes.extend(places.iter().map(price));
             nodes.push(NEVER);
         }
-        let to_go = vec![[0; 6]; (n + 1) * stencil.len()];
+        let to_go = vec![[0; DIRECTIONS]; (n + 1) * stencil.len()];
         let mut layers = Layers {
             wishes,
             stencil,
@@ -87,13 +92,17 @@ impl<'a> Layers<'a> {
             tables: Vec::new(),
             nodes,
             to_go,
+            grid: PhantomData,
         };
         for layer in 0..n {
             let shift = layers.centres[layer] - layers.centres[(layer + 1) % n];
             let known = layers.tables.iter().position(|t| t.0 == shift);
             let table = known.unwrap_or_else(|| {
-                let ways = layers.stencil.iter().map(|&o| Dir::ALL.map(|d| layers.cell(o + shift + d)));
-                let ways = ways.collect();
+                let outside = layers.stencil.len() as u16;
+                let way = |o: Axial, d: usize| {
+                    if d < Self::D { layers.cell(o + shift + G::offset(d as u32)) } else { outside }
+                };
+                let ways = layers.stencil.iter().map(|&o| std::array::from_fn(|d| way(o, d))).collect();
                 layers.tables.push((shift, ways));
                 layers.tables.len() - 1
             });
@@ -107,7 +116,10 @@ impl<'a> Layers<'a> {
         self.centres.len()
     }
 
-    fn ways(&self, layer: usize) -> &[[u16; 6]] {
+    /// Directions of the grid.
+    const D: usize = G::DIRECTIONS as usize;
+
+    fn ways(&self, layer: usize) -> &[[u16; DIRECTIONS]] {
         &self.tables[usize::from(self.table[layer])].1
     }
 
@@ -119,17 +131,7 @@ impl<'a> Layers<'a> {
 
     /// Number of the cell at an offset from the centre.
     fn cell(&self, offset: Axial) -> u16 {
-        let reach = self.wishes.reach;
-        if offset.distance(Axial::default()) > reach {
-            return self.stencil.len() as u16;
-        }
-        // Cells before this row: the rows of a hexagon, of 2 reach + 1 - |r| cells each.
-        let below = offset.r + reach;
-        let full = |rows: i32| rows * (2 * reach + 1);
-        let cut: i32 =
-            if offset.r <= 0 { below * (2 * reach + 1 - below) / 2 } else { hexagon_cut(reach, offset.r) };
-        let first = (-reach).max(-reach - offset.r);
-        (full(below) - cut + offset.q - first) as u16
+        G::cell(offset, self.wishes.reach).unwrap_or(self.stencil.len()) as u16
     }
 
     /// The sweep backwards.
@@ -146,17 +148,18 @@ impl<'a> Layers<'a> {
             let turns = &self.wishes.turns[layer];
             for (ways, here) in ways.iter().zip(here) {
                 // Round more than once, so that a turn needs no modulo.
-                let mut ahead = [NEVER; 10];
-                for (d, &to) in ways.iter().enumerate() {
+                let mut ahead = [NEVER; DIRECTIONS + 4];
+                for (d, &to) in ways[..Self::D].iter().enumerate() {
                     let to = usize::from(to);
                     if to < cells {
                         ahead[d + 2] = nodes[to] + after[to][d];
                     }
                 }
-                (ahead[0], ahead[1], ahead[8], ahead[9]) = (ahead[6], ahead[7], ahead[2], ahead[3]);
-                let mut least = [NEVER; 6];
+                (ahead[0], ahead[1]) = (ahead[Self::D], ahead[Self::D + 1]);
+                (ahead[Self::D + 2], ahead[Self::D + 3]) = (ahead[2], ahead[3]);
+                let mut least = [NEVER; DIRECTIONS];
                 for (t, &cost) in turns.iter().enumerate() {
-                    for d in 0..6 {
+                    for d in 0..Self::D {
                         least[d] = least[d].min(ahead[d + t] + cost);
                     }
                 }
@@ -172,8 +175,8 @@ impl<'a> Layers<'a> {
 
     /// The cheapest closed path, if there is one; with `starts` the number of starts tried at most.
     pub fn solve(&self, starts: usize, progress: Progress<'_>) -> Result<Option<(Vec<Axial>, u32)>> {
-        let states = self.stencil.len() * 6;
-        let bound = |s: usize| self.to_go[s / 6][s % 6];
+        let states = self.stencil.len() * Self::D;
+        let bound = |s: usize| self.to_go[s / Self::D][s % Self::D];
         let mut order: Vec<usize> = (0..states).filter(|&s| bound(s) < NEVER).collect();
         order.sort_by_key(|&s| (bound(s), s));
         let mut came = vec![0; (self.len() + 1) * states];
@@ -203,7 +206,7 @@ impl<'a> Layers<'a> {
     /// The cheapest path from a state of layer 0 back to it that costs less than `limit`.
     fn closed_from(&self, start: usize, limit: u32, came: &mut [u8]) -> Option<(Vec<Axial>, u32)> {
         let cells = self.stencil.len();
-        let states = cells * 6;
+        let states = cells * Self::D;
         let n = self.len();
         let mut here = vec![NEVER; states];
         let mut there = vec![NEVER; states];
@@ -215,22 +218,22 @@ impl<'a> Layers<'a> {
             let to_go = &self.to_go[(layer + 1) * cells..(layer + 2) * cells];
             let ways = self.ways(layer);
             for &state in &active {
-                let (cell, d) = (state / 6, state % 6);
+                let (cell, d) = (state / Self::D, state % Self::D);
                 let so_far = std::mem::replace(&mut here[state], NEVER);
                 for (t, &turn) in self.wishes.turns[layer].iter().enumerate() {
-                    let out = (d + 4 + t) % 6;
+                    let out = (d + Self::D - 2 + t) % Self::D;
                     let to = usize::from(ways[cell][out]);
                     if to == cells {
                         continue;
                     }
                     let cost = so_far + turn + nodes[to];
-                    let known = &mut there[to * 6 + out];
+                    let known = &mut there[to * Self::D + out];
                     if cost < *known && cost + to_go[to][out] < limit {
                         if *known == NEVER {
-                            reached.push(to * 6 + out);
+                            reached.push(to * Self::D + out);
                         }
                         *known = cost;
-                        came[(layer + 1) * states + to * 6 + out] = d as u8;
+                        came[(layer + 1) * states + to * Self::D + out] = d as u8;
                     }
                 }
             }
@@ -243,11 +246,11 @@ impl<'a> Layers<'a> {
             return None;
         }
         let mut points = vec![Axial::default(); n];
-        let (mut at, mut d) = (self.centres[0] + self.stencil[start / 6], start % 6);
+        let (mut at, mut d) = (self.centres[0] + self.stencil[start / Self::D], start % Self::D);
         for layer in (1..=n).rev() {
             let cell = self.cell(at - self.centres[layer % n]);
-            let before = came[layer * states + usize::from(cell) * 6 + d];
-            at = at - Dir::ALL[d];
+            let before = came[layer * states + usize::from(cell) * Self::D + d];
+            at = at - G::offset(d as u32);
             points[layer - 1] = at;
             d = usize::from(before);
         }
@@ -263,28 +266,22 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// Cells that the rows of a hexagon up to row r > 0 lack against full ones.
-fn hexagon_cut(reach: i32, r: i32) -> i32 {
-    // Rows -reach..=0 lack reach, ..., 0; rows 1..r lack 1, ..., r - 1.
-    reach * (reach + 1) / 2 + (r - 1) * r / 2
-}
-
 /// The cheapest closed path, vertex k for target k, that does not meet itself, and across whose
 /// inside no edge runs that the mesh has already (`taken`). `None` if prices did not lead to one within `rounds`.
-pub(in crate::fill) fn route(
+pub(in crate::fill) fn route<G: Steps>(
     wishes: &Wishes<'_>,
     taken: &dyn Fn(usize, usize) -> bool,
     starts: usize,
     rounds: usize,
     progress: Progress<'_>,
 ) -> Result<Option<Vec<Axial>>> {
-    let mut layers = Layers::new(wishes);
+    let mut layers = Layers::<G>::new(wishes);
     for round in 0..=rounds {
         progress.report(0.0)?;
         let starts = if round == 0 { starts } else { REPAIR_STARTS };
         let Some((points, _)) = layers.solve(starts, progress)? else { return Ok(None) };
-        let conflicts = conflicts(&points, taken);
-        if conflicts.is_empty() && turning(&points) == 6 {
+        let conflicts = conflicts::<G>(&points, taken);
+        if conflicts.is_empty() && turning::<G>(&points) == G::DIRECTIONS as i32 {
             return Ok(Some(points));
         }
         for &(i, j) in &conflicts {
@@ -303,19 +300,19 @@ pub(in crate::fill) fn route(
 }
 
 /// The sum of turns of a closed path; 100 stands for a step that is none.
-pub(in crate::fill) fn turning(points: &[Axial]) -> i32 {
+pub(in crate::fill) fn turning<G: Steps>(points: &[Axial]) -> i32 {
     let n = points.len();
     (0..n)
         .map(|k| {
-            let enter = points[(k + n - 1) % n].step_to(points[k]);
-            let leave = points[k].step_to(points[(k + 1) % n]);
-            enter.zip(leave).map_or(100, |(enter, leave)| enter.turn_to(leave))
+            let enter = G::step(points[(k + n - 1) % n], points[k]);
+            let leave = G::step(points[k], points[(k + 1) % n]);
+            enter.zip(leave).map_or(100, |(enter, leave)| G::turn(enter, leave))
         })
         .sum()
 }
 
 /// Pairs of vertices that share a point, or are joined by an edge inside the patch that is taken.
-pub(in crate::fill) fn conflicts(
+pub(in crate::fill) fn conflicts<G: Steps>(
     points: &[Axial],
     taken: &dyn Fn(usize, usize) -> bool,
 ) -> Vec<(usize, usize)> {
@@ -328,12 +325,13 @@ pub(in crate::fill) fn conflicts(
         }
     }
     for (i, &p) in points.iter().enumerate() {
-        let (Some(enter), Some(leave)) = (points[(i + n - 1) % n].step_to(p), p.step_to(points[(i + 1) % n]))
+        let (Some(enter), Some(leave)) =
+            (G::step(points[(i + n - 1) % n], p), G::step(p, points[(i + 1) % n]))
         else {
             continue;
         };
-        for inner in 1..=2 - enter.turn_to(leave) {
-            match at.get(&(p + leave.rotate(inner))) {
+        for inner in 1..G::OPPOSITE as i32 - G::turn(enter, leave) {
+            match at.get(&(p + G::offset(G::turned(leave, inner)))) {
                 Some(&j) if i < j && taken(i, j) => found.push((i, j)),
                 _ => {}
             }
@@ -346,6 +344,7 @@ pub(in crate::fill) fn conflicts(
 mod tests {
     use super::*;
     use crate::fill::layout::develop::Loop;
+    use crate::lattice::grid::{Square, Triangular};
 
     fn plain(n: usize) -> Vec<[u32; 5]> {
         vec![[2 * TURN, TURN, 0, TURN, 4 * TURN]; n]
@@ -354,7 +353,7 @@ mod tests {
     fn circle(n: usize) -> Vec<DVec2> {
         let circle: Vec<DVec2> =
             (0..n).map(|k| DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect();
-        Loop::new(&circle).developed(1.0, 0.2)
+        Loop::new(&circle).developed::<Triangular>(1.0, 0.2)
     }
 
     #[test]
@@ -363,7 +362,7 @@ mod tests {
             let target = [DVec2::ZERO];
             let turns = plain(1);
             let wishes = Wishes { target: &target, turns: &turns, closeness: 1.0, reach };
-            let layers = Layers::new(&wishes);
+            let layers = Layers::<Triangular>::new(&wishes);
             for (i, &o) in layers.stencil.iter().enumerate() {
                 assert_eq!(layers.cell(o) as usize, i);
             }
@@ -376,15 +375,30 @@ mod tests {
         for n in (8..120).chain([6, 300]) {
             let (target, turns) = (circle(n), plain(n));
             let wishes = Wishes { target: &target, turns: &turns, closeness: 0.1, reach: 2 };
-            let path = route(&wishes, &|_, _| true, 1000, 60, Progress::NONE).unwrap();
+            let path = route::<Triangular>(&wishes, &|_, _| true, 1000, 60, Progress::NONE).unwrap();
             let Some(path) = path else { panic!("no path for {n}") };
             assert_eq!(path.len(), n);
-            assert_eq!(turning(&path), 6);
+            assert_eq!(turning::<Triangular>(&path), 6);
             for k in 0..n {
                 assert_eq!(path[k].distance(path[(k + 1) % n]), 1);
             }
             // All pairs count as taken: no edge joins two vertices of the path.
-            assert!(conflicts(&path, &|_, _| true).is_empty());
+            assert!(conflicts::<Triangular>(&path, &|_, _| true).is_empty());
+        }
+    }
+
+    #[test]
+    fn a_square_path_of_any_even_length_closes() {
+        for n in (6..80).step_by(2).chain([300]) {
+            let circle: Vec<DVec2> =
+                (0..n).map(|k| DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect();
+            let target = Loop::new(&circle).developed::<Square>(1.0, 0.2);
+            let turns = vec![[1 << 20, TURN, 0, TURN, 1 << 20]; n];
+            let wishes = Wishes { target: &target, turns: &turns, closeness: 0.1, reach: 2 };
+            let path = route::<Square>(&wishes, &|_, _| false, 1000, 60, Progress::NONE).unwrap();
+            let Some(path) = path else { panic!("no path for {n}") };
+            assert_eq!((path.len(), turning::<Square>(&path)), (n, 4));
+            assert!(conflicts::<Square>(&path, &|_, _| false).is_empty());
         }
     }
 }

@@ -22,6 +22,7 @@ use crate::fill::layout::lobes::without_lobes;
 use crate::fill::layout::thin::{put_back, thinned};
 use crate::lattice::assemble::assemble;
 use crate::lattice::axial::Axial;
+use crate::lattice::grid::Triangular;
 use crate::options::BoundaryMethod;
 use crate::progress::Progress;
 
@@ -38,6 +39,8 @@ pub(crate) enum Method {
     Grown,
     /// Points of nested lattices, constrained Delaunay.
     Graded,
+    /// Triangles for every second vertex, each cut into three quads.
+    Refined,
 }
 
 /// How to fill a loop in the plane.
@@ -86,6 +89,8 @@ pub(crate) struct FlatFill {
     pub interior: Vec<DVec2>,
     /// Counter-clockwise.
     pub triangles: Vec<[u32; 3]>,
+    /// How many pairs of them, from the first on, are quads.
+    pub quads: usize,
     /// How it was made.
     pub method: Method,
     /// What was counted and measured on it.
@@ -303,14 +308,14 @@ impl Contest<'_> {
             for a in 0..options.angles {
                 progress.report(0.5 * a as f64 / options.angles as f64)?;
                 let angle = std::f64::consts::FRAC_PI_3 * a as f64 / options.angles as f64;
-                let target = shape.developed(strength, angle);
+                let target = shape.developed::<Triangular>(strength, angle);
                 let wishes = Wishes {
                     target: &target,
                     turns: &turns,
                     closeness: options.closeness,
                     reach: options.reach,
                 };
-                found.push((Layers::new(&wishes).least(), target));
+                found.push((Layers::<Triangular>::new(&wishes).least(), target));
             }
             found.sort_by_key(|f| f.0);
             for (i, (_, target)) in found.iter().take(options.placed).enumerate() {
@@ -323,12 +328,13 @@ impl Contest<'_> {
                     Wishes { target, turns: &turns, closeness: options.closeness, reach: options.reach };
                 match options.boundary {
                     BoundaryMethod::Optimal => {
-                        if let Some(path) = route(&wishes, self.taken, STARTS, rounds, here)? {
+                        if let Some(path) = route::<Triangular>(&wishes, self.taken, STARTS, rounds, here)? {
                             self.place(&path, Method::Optimal, here)?;
                         }
                     }
                     BoundaryMethod::Grown => {
-                        let path = grown(target).filter(|path| conflicts(path, self.taken).is_empty());
+                        let path =
+                            grown(target).filter(|path| conflicts::<Triangular>(path, self.taken).is_empty());
                         if let Some(path) = path {
                             self.place(&path, Method::Grown, here)?;
                         }
@@ -372,7 +378,7 @@ impl Contest<'_> {
         self.candidates += 1;
         if badness < self.best.as_ref().map_or(f64::INFINITY, |b| b.0) {
             let folded = !quality.embedded;
-            let fill = FlatFill { interior, triangles, method, quality, folded, candidates: 0 };
+            let fill = FlatFill { interior, triangles, quads: 0, method, quality, folded, candidates: 0 };
             self.best = Some((badness, fill));
         }
         Ok(())

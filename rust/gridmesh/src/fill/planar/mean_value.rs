@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::lattice::axial::Axial;
-use crate::path::placement::Lattice;
+use crate::path::placement::Laid;
 
 /// Steps of the loop to one step of the coarse lattice.
 const COARSER: usize = 96;
@@ -21,7 +21,7 @@ pub(in crate::fill) fn step(n: usize) -> i32 {
 }
 
 /// Values at `inner` points from those at the vertices of the polygon `outline`.
-pub(in crate::fill) fn spread(outline: &[Axial], values: &[DVec2], inner: &[Axial]) -> Vec<DVec2> {
+pub(in crate::fill) fn spread<G: Laid>(outline: &[Axial], values: &[DVec2], inner: &[Axial]) -> Vec<DVec2> {
     let step = step(outline.len());
     let cell = |p: Axial| {
         (Axial::new(p.q.div_euclid(step), p.r.div_euclid(step)), p.q.rem_euclid(step), p.r.rem_euclid(step))
@@ -33,9 +33,8 @@ pub(in crate::fill) fn spread(outline: &[Axial], values: &[DVec2], inner: &[Axia
     let mut coarse: Vec<Axial> = cells.iter().flat_map(|&c| around.map(|d| c + d)).collect();
     coarse.sort_unstable();
     coarse.dedup();
-    let polygon: Vec<DVec2> = outline.iter().map(|&p| Lattice::units(p)).collect();
-    let at =
-        |c: &Axial| (*c, mean_value(&polygon, values, Lattice::units(Axial::new(c.q * step, c.r * step))));
+    let polygon: Vec<DVec2> = outline.iter().map(|&p| G::units(p)).collect();
+    let at = |c: &Axial| (*c, mean_value(&polygon, values, G::units(Axial::new(c.q * step, c.r * step))));
     let known: FxHashMap<Axial, DVec2> = coarse.into_par_iter().map(|c| at(&c)).collect();
     let corners: FxHashMap<Axial, [DVec2; 4]> =
         cells.into_iter().map(|c| (c, around.map(|d| known[&(c + d)]))).collect();
@@ -80,6 +79,8 @@ mod tests {
     use super::*;
     use crate::lattice::assemble::assemble;
     use crate::lattice::dir::Dir;
+    use crate::lattice::grid::Triangular;
+    use crate::path::placement::Lattice;
 
     /// An L of this size; its coarse points lie inside and outside.
     fn bent(size: usize) -> Vec<Axial> {
@@ -105,7 +106,7 @@ mod tests {
             DVec2::new(2.0 * x.x - x.y + 3.0, 0.5 * x.y)
         };
         let values: Vec<DVec2> = outline.iter().map(|&p| linear(p)).collect();
-        for (&p, value) in inner.iter().zip(spread(outline, &values, inner)) {
+        for (&p, value) in inner.iter().zip(spread::<Triangular>(outline, &values, inner)) {
             assert!(value.distance(linear(p)) < 1e-7, "{p:?}: {value} is not {}", linear(p));
         }
     }
@@ -123,7 +124,7 @@ mod tests {
         let values: Vec<DVec2> = outline.iter().map(|&p| harmonic(p)).collect();
         let (low, high) =
             values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v.x), b.max(v.x)));
-        for (&p, value) in inner.iter().zip(spread(outline, &values, inner)) {
+        for (&p, value) in inner.iter().zip(spread::<Triangular>(outline, &values, inner)) {
             assert!((value.x - harmonic(p).x).abs() < 0.1 * (high - low), "{p:?}: {value}");
         }
     }

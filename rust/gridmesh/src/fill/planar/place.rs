@@ -4,8 +4,10 @@ use glam::DVec2;
 
 use super::mean_value::{spread, step};
 use super::settle::{Rings, even_out, extend, untangle};
+use super::stars::Stars;
 use crate::error::Result;
 use crate::lattice::assemble::Region;
+use crate::lattice::grid::Triangular;
 use crate::path::placement::Lattice;
 use crate::progress::Progress;
 
@@ -25,7 +27,7 @@ pub(in crate::fill) fn off_lattice(
     progress.report(0.0)?;
     let Some(rings) = Rings::new(&patch.triangles, n, positions.len(), progress)? else { return Ok(None) };
     let mut moved: Vec<DVec2> = points.iter().zip(&positions).map(|(p, q)| *p - *q).collect();
-    moved.extend(spread(&patch.points[..n], &moved, &patch.points[n..]));
+    moved.extend(spread::<Triangular>(&patch.points[..n], &moved, &patch.points[n..]));
     progress.report(0.0)?;
     extend(&rings, &mut positions, moved, f64::from(step(n)), SWEEPS, progress)?;
     positions[..n].copy_from_slice(points);
@@ -48,7 +50,7 @@ pub(in crate::fill) fn settled(
     Ok(positions.split_off(n))
 }
 
-fn settle(rings: &Rings, positions: &mut [DVec2], progress: Progress<'_>) -> Result<()> {
+pub(super) fn settle(rings: &impl Stars, positions: &mut [DVec2], progress: Progress<'_>) -> Result<()> {
     if untangle(rings, positions, 40, progress)? {
         even_out(rings, positions, vec![true; rings.len()], 12, 0.02, progress)?;
     }
@@ -118,7 +120,7 @@ pub(in crate::fill) fn round_loop(points: &[DVec2]) -> Vec<DVec2> {
 }
 
 /// Rotation, scale and shift.
-struct Similarity {
+pub(super) struct Similarity {
     from: DVec2,
     to: DVec2,
     turn: DVec2,
@@ -126,7 +128,7 @@ struct Similarity {
 
 impl Similarity {
     /// The one that fits best, in least squares.
-    fn between(from: &[DVec2], to: &[DVec2]) -> Similarity {
+    pub fn between(from: &[DVec2], to: &[DVec2]) -> Similarity {
         let n = from.len() as f64;
         let (a, b) = (from.iter().sum::<DVec2>() / n, to.iter().sum::<DVec2>() / n);
         let (mut sum, mut size) = (DVec2::ZERO, 0.0);
@@ -138,7 +140,7 @@ impl Similarity {
         Similarity { from: a, to: b, turn: sum / size }
     }
 
-    fn apply(&self, p: DVec2) -> DVec2 {
+    pub fn apply(&self, p: DVec2) -> DVec2 {
         self.to + self.turn.rotate(p - self.from)
     }
 }

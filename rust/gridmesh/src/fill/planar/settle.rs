@@ -2,17 +2,36 @@
 //!
 //! First the harmonic extension of how the loop is displaced from the lattice; then, only where
 //! that has inverted triangles, an energy that is finite for them; then the squared conformal
-//! distortion, the sum over all triangles of ((a^2 + b^2 + c^2) / (4 sqrt(3) area))^2. That knows
-//! no lengths, so that triangles may be small beside short edges of the loop and large elsewhere.
+//! distortion, the sum over all triangles of ((a^2 + b^2 + c^2) / (4 sqrt(3) area))^2, and over the four corners
+//! of quads of the same against right angles. That knows no lengths, so that cells may be small beside short edges
+//! of the loop and large elsewhere.
 
 use glam::DVec2;
 
+use super::stars::{Ideal, Stars};
 use crate::error::Result;
-use crate::path::placement::ROW_HEIGHT;
 use crate::progress::Progress;
 
 /// Vertices between two questions whether to go on.
 const ASK_EVERY: usize = 1 << 14;
+
+impl Stars for Rings {
+    fn n_loop(&self) -> usize {
+        self.n_loop
+    }
+
+    fn len(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    fn near(&self, i: usize) -> &[u32] {
+        &self.ring(i)[1..]
+    }
+
+    fn triangles(&self, i: usize) -> impl Iterator<Item = (u32, u32, Ideal)> {
+        self.ring(i).windows(2).map(|pair| (pair[0], pair[1], Ideal::Equilateral))
+    }
+}
 
 /// The neighbours of each interior vertex, counter-clockwise, the first repeated at the end.
 pub(in crate::fill) struct Rings {
@@ -75,10 +94,6 @@ impl Rings {
         Ok(Some(rings))
     }
 
-    pub fn len(&self) -> usize {
-        self.start.len() - 1
-    }
-
     /// Around the i-th interior vertex.
     fn ring(&self, i: usize) -> &[u32] {
         &self.around[self.start[i] as usize..self.start[i + 1] as usize]
@@ -89,30 +104,30 @@ impl Rings {
 /// and a guess of the others', right but for waves of less than `wave` edges: over-relaxed sweeps in the order of the
 /// numbers, there and back.
 pub(in crate::fill) fn extend(
-    rings: &Rings,
+    stars: &impl Stars,
     positions: &mut [DVec2],
     mut moved: Vec<DVec2>,
     wave: f64,
     sweeps: usize,
     progress: Progress<'_>,
 ) -> Result<()> {
-    let n = rings.n_loop;
+    let n = stars.n_loop();
     // The best factor for a grid of this diameter.
     let factor = 2.0 / (1.0 + (std::f64::consts::PI / wave.max(2.0)).sin());
     for sweep in 0..sweeps {
         progress.report(0.0)?;
         let mut largest = 0.0f64;
         let mut visit = |i: usize| {
-            let ring = &rings.ring(i)[1..];
-            let sum = ring.iter().fold(DVec2::ZERO, |sum, &w| sum + moved[w as usize]);
-            let step = (sum / ring.len() as f64 - moved[n + i]) * factor;
+            let near = stars.near(i);
+            let sum = near.iter().fold(DVec2::ZERO, |sum, &w| sum + moved[w as usize]);
+            let step = (sum / near.len() as f64 - moved[n + i]) * factor;
             moved[n + i] += step;
             largest = largest.max(step.length_squared());
         };
         if sweep % 2 == 0 {
-            (0..rings.len()).for_each(&mut visit)
+            (0..stars.len()).for_each(&mut visit)
         } else {
-            (0..rings.len()).rev().for_each(&mut visit)
+            (0..stars.len()).rev().for_each(&mut visit)
         }
         if largest < 1e-6 {
             break;
@@ -126,21 +141,22 @@ pub(in crate::fill) fn extend(
 
 /// Sweeps around inverted triangles until there is none; false if some stay.
 pub(in crate::fill) fn untangle(
-    rings: &Rings,
+    stars: &impl Stars,
     positions: &mut [DVec2],
     sweeps: usize,
     progress: Progress<'_>,
 ) -> Result<bool> {
     let tangled = |positions: &[DVec2], i: usize| {
-        let x = positions[rings.n_loop + i];
-        rings.ring(i).windows(2).any(|p| {
-            let (a, b) = (positions[p[0] as usize] - x, positions[p[1] as usize] - x);
+        let x = positions[stars.n_loop() + i];
+        stars.triangles(i).any(|(u, w, ideal)| {
+            let (a, b) = (positions[u as usize] - x, positions[w as usize] - x);
+            let least = TANGLED * ideal.stretch(a, b);
             // A NaN is tangled too.
-            !matches!(det(a, b).partial_cmp(&(TANGLED * stretch(a, b))), Some(std::cmp::Ordering::Greater))
+            !matches!(ideal.det(a, b).partial_cmp(&least), Some(std::cmp::Ordering::Greater))
         })
     };
     // Triangles become tangled only where a vertex has moved: only those are looked at again.
-    let mut bad: Vec<usize> = (0..rings.len()).filter(|&i| tangled(positions, i)).collect();
+    let mut bad: Vec<usize> = (0..stars.len()).filter(|&i| tangled(positions, i)).collect();
     let mut active: Vec<usize> = Vec::new();
     for sweep in 0..sweeps {
         if bad.is_empty() {
@@ -152,12 +168,12 @@ pub(in crate::fill) fn untangle(
         }
         for &i in &bad {
             active.push(i);
-            active.extend(rings.ring(i).iter().filter_map(|&w| (w as usize).checked_sub(rings.n_loop)));
+            active.extend(stars.near(i).iter().filter_map(|&w| (w as usize).checked_sub(stars.n_loop())));
         }
         active.sort_unstable();
         active.dedup();
         for &i in &active {
-            positions[rings.n_loop + i] = untangled(positions[rings.n_loop + i], rings.ring(i), positions);
+            positions[stars.n_loop() + i] = untangled(positions[stars.n_loop() + i], stars, i, positions);
         }
         bad = active.iter().copied().filter(|&i| tangled(positions, i)).collect();
     }
@@ -171,31 +187,30 @@ const TANGLED: f64 = 2e-3;
 /// edges; never inverts one. Begins with the `active` interior vertices; others follow where those have moved.
 /// Returns the number of sweeps.
 pub(in crate::fill) fn even_out(
-    rings: &Rings,
+    stars: &impl Stars,
     positions: &mut [DVec2],
     mut active: Vec<bool>,
     sweeps: usize,
     tolerance: f64,
     progress: Progress<'_>,
 ) -> Result<usize> {
-    let n = rings.n_loop;
+    let n = stars.n_loop();
     for sweep in 0..sweeps {
         let mut moved = 0;
-        for i in 0..rings.len() {
+        for i in 0..stars.len() {
             if i % ASK_EVERY == 0 {
                 progress.report(sweep as f64 / sweeps as f64)?;
             }
             if !std::mem::take(&mut active[i]) {
                 continue;
             }
-            let ring = rings.ring(i);
             let before = positions[n + i];
-            let (after, size) = evened(before, ring, positions);
+            let (after, size) = evened(before, stars, i, positions);
             positions[n + i] = after;
             if after.distance_squared(before) > tolerance * tolerance * size {
                 moved += 1;
                 active[i] = true;
-                for &w in ring {
+                for &w in stars.near(i) {
                     if let Some(near) = (w as usize).checked_sub(n) {
                         active[near] = true;
                     }
@@ -209,48 +224,36 @@ pub(in crate::fill) fn even_out(
     Ok(sweeps)
 }
 
-fn det(a: DVec2, b: DVec2) -> f64 {
-    a.perp_dot(b) / ROW_HEIGHT
-}
-
-/// Half of |J|^2, J the map from the unit equilateral triangle: equals `det` if equilateral.
-fn stretch(a: DVec2, b: DVec2) -> f64 {
-    (a.length_squared() + b.length_squared() + (b - a).length_squared()) / 3.0
-}
-
-/// Sum of squared distortions around `x`; infinite if a triangle is not valid.
-fn distortion(x: DVec2, ring: &[u32], positions: &[DVec2]) -> f64 {
+/// Sum of squared distortions around the i-th vertex at `x`; infinite if a triangle is not valid.
+fn distortion(x: DVec2, stars: &impl Stars, i: usize, positions: &[DVec2]) -> f64 {
     let mut sum = 0.0;
-    let mut a = positions[ring[0] as usize] - x;
-    for &w in &ring[1..] {
-        let b = positions[w as usize] - x;
-        let d = det(a, b);
+    for (u, w, ideal) in stars.triangles(i) {
+        let (a, b) = (positions[u as usize] - x, positions[w as usize] - x);
+        let d = ideal.det(a, b);
         if d <= 0.0 {
             return f64::INFINITY;
         }
-        let m = stretch(a, b) / d;
+        let m = ideal.stretch(a, b) / d;
         sum += m * m;
-        a = b;
     }
     sum
 }
 
 /// One damped Newton step for `distortion`; also the mean squared length of the opposite edges.
-fn evened(x: DVec2, ring: &[u32], positions: &[DVec2]) -> (DVec2, f64) {
+fn evened(x: DVec2, stars: &impl Stars, i: usize, positions: &[DVec2]) -> (DVec2, f64) {
     let (mut value, mut gradient) = (0.0, DVec2::ZERO);
-    let (mut xx, mut xy, mut yy, mut size) = (0.0, 0.0, 0.0, 0.0);
-    let mut a = positions[ring[0] as usize] - x;
-    for &w in &ring[1..] {
-        let b = positions[w as usize] - x;
+    let (mut xx, mut xy, mut yy, mut size, mut count) = (0.0, 0.0, 0.0, 0.0, 0usize);
+    for (u, w, ideal) in stars.triangles(i) {
+        let (a, b) = (positions[u as usize] - x, positions[w as usize] - x);
         let edge = b - a;
-        let inverse = 1.0 / det(a, b);
-        let m = stretch(a, b) * inverse;
-        let n = edge.perp() / ROW_HEIGHT;
-        let up = (a + b) * (-2.0 / 3.0);
+        let inverse = 1.0 / ideal.det(a, b);
+        let m = ideal.stretch(a, b) * inverse;
+        let n = edge.perp() / ideal.height();
+        let (up, curved) = ideal.slope(a, b);
         // First and second derivatives of m, a square over a linear function.
         let g = (up - m * n) * inverse;
         let (un, nn) = (inverse * inverse, 2.0 * m * inverse * inverse);
-        let identity = 4.0 / 3.0 * inverse;
+        let identity = curved * inverse;
         let mxx = identity - 2.0 * un * up.x * n.x + nn * n.x * n.x;
         let mxy = -un * (up.x * n.y + up.y * n.x) + nn * n.x * n.y;
         let myy = identity - 2.0 * un * up.y * n.y + nn * n.y * n.y;
@@ -260,9 +263,9 @@ fn evened(x: DVec2, ring: &[u32], positions: &[DVec2]) -> (DVec2, f64) {
         xy += 2.0 * (g.x * g.y + m * mxy);
         yy += 2.0 * (g.y * g.y + m * myy);
         size += edge.length_squared();
-        a = b;
+        count += 1;
     }
-    size /= (ring.len() - 1) as f64;
+    size /= count as f64;
     let inverse = 1.0 / (xx * yy - xy * xy);
     let mut step = DVec2::new(xy * gradient.y - yy * gradient.x, xy * gradient.x - xx * gradient.y) * inverse;
     if !step.is_finite() {
@@ -273,7 +276,7 @@ fn evened(x: DVec2, ring: &[u32], positions: &[DVec2]) -> (DVec2, f64) {
         step *= (0.25 * size / length).sqrt();
     }
     for _ in 0..5 {
-        if distortion(x + step, ring, positions) < value {
+        if distortion(x + step, stars, i, positions) < value {
             return (x + step, size);
         }
         step *= 0.4;
@@ -282,39 +285,42 @@ fn evened(x: DVec2, ring: &[u32], positions: &[DVec2]) -> (DVec2, f64) {
 }
 
 /// A step down an energy that stays finite for inverted triangles.
-fn untangled(x: DVec2, ring: &[u32], positions: &[DVec2]) -> DVec2 {
-    let size =
-        ring.windows(2).map(|p| (positions[p[1] as usize] - positions[p[0] as usize]).length_squared());
-    let size = (size.sum::<f64>() / (ring.len() - 1) as f64).max(1e-300);
-    let least = ring
-        .windows(2)
-        .map(|p| det(positions[p[0] as usize] - x, positions[p[1] as usize] - x) / size)
+fn untangled(x: DVec2, stars: &impl Stars, i: usize, positions: &[DVec2]) -> DVec2 {
+    let at = |v: u32| positions[v as usize];
+    let (sum, count) = stars
+        .triangles(i)
+        .fold((0.0, 0usize), |(sum, count), (u, w, _)| (sum + (at(w) - at(u)).length_squared(), count + 1));
+    let size = (sum / count as f64).max(1e-300);
+    let least = stars
+        .triangles(i)
+        .map(|(u, w, ideal)| ideal.det(at(u) - x, at(w) - x) / size)
         .fold(f64::INFINITY, f64::min);
     let eps = size * (0.01 + least.min(0.0).powi(2)).sqrt();
     let energy = |x: DVec2| -> f64 {
         let mut sum = 0.0;
-        for p in ring.windows(2) {
-            let (a, b) = (positions[p[0] as usize] - x, positions[p[1] as usize] - x);
-            let d = det(a, b);
+        for (u, w, ideal) in stars.triangles(i) {
+            let (a, b) = (at(u) - x, at(w) - x);
+            let d = ideal.det(a, b);
             let chi = 0.5 * (d + (d * d + eps * eps).sqrt());
-            sum += (stretch(a, b) + 0.1 * size) / chi;
+            sum += (ideal.stretch(a, b) + 0.1 * size) / chi;
         }
         sum
     };
     let (mut value, mut gradient) = (0.0, DVec2::ZERO);
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-    for p in ring.windows(2) {
-        let (a, b) = (positions[p[0] as usize] - x, positions[p[1] as usize] - x);
-        let d = det(a, b);
+    for (u, w, ideal) in stars.triangles(i) {
+        let (a, b) = (at(u) - x, at(w) - x);
+        let d = ideal.det(a, b);
         let root = (d * d + eps * eps).sqrt();
         let chi = 0.5 * (d + root);
         let slope = chi / root;
-        let u = stretch(a, b) + 0.1 * size;
-        let n = (b - a).perp() / ROW_HEIGHT;
+        let u = ideal.stretch(a, b) + 0.1 * size;
+        let n = (b - a).perp() / ideal.height();
+        let (up, curved) = ideal.slope(a, b);
         value += u / chi;
-        gradient += ((a + b) * (-2.0 / 3.0) - u * slope / chi * n) / chi;
+        gradient += (up - u * slope / chi * n) / chi;
         // The positive part of the second derivative.
-        let identity = 4.0 / 3.0 / chi;
+        let identity = curved / chi;
         let along = u * slope * slope / (chi * chi * chi);
         xx += identity + along * n.x * n.x;
         xy += along * n.x * n.y;

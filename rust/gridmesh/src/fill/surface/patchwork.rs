@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::error::{Error, Result};
 use crate::fill::loops::mesh::{Rim, place};
+use crate::fill::planar::stars::CornerStars;
 
 /// Patch and surroundings as one mesh: first the loop's vertices in the direction of the patch, then
 /// the new ones, then those of the mesh around.
@@ -21,6 +22,10 @@ pub(crate) struct Patchwork {
     pub triangles: Vec<[u32; 3]>,
     /// Triangles of the patch.
     pub n_patch: usize,
+    /// How many pairs of them, from the first on, are quads; see [`Patchwork::of_quads`].
+    pub quads: usize,
+    /// The corners around the new vertices of a patch of quads.
+    pub corners: Option<CornerStars>,
     /// The neighbours of vertex `v` are `near[start[v]..start[v + 1]]`, ascending.
     pub start: Vec<u32>,
     pub near: Vec<u32>,
@@ -91,6 +96,8 @@ impl Patchwork {
             end,
             outer,
             n_patch,
+            quads: 0,
+            corners: None,
             start: vec![0],
             near: vec![],
             slots: vec![],

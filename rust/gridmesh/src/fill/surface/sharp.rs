@@ -12,9 +12,11 @@ use super::patchwork::Patchwork;
 use crate::error::{Error, Result};
 use crate::fill::filled::{Clock, Shape};
 use crate::fill::layout::unroll::{Unrolled, Unrolling, area_vector, is_simple};
-use crate::fill::loops::reserve::{edges, wanted};
+use crate::fill::loops::reserve::{room, wanted};
 use crate::fill::one::{Attempt, Task};
 use crate::fill::planar::flat::{FlatFill, FlatOptions, fill_flat};
+use crate::fill::planar::quads::fill_flat_quads;
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// How far points may be off a plane or a line, in sizes of the loop.
@@ -118,11 +120,19 @@ impl Task<'_> {
     fn carried_out(&self, plan: &Plan, around: &[DVec3], progress: Progress<'_>) -> Result<Option<Attempt>> {
         let loop_ = &self.checked.vertices;
         let n = loop_.len();
-        let wanted = wanted(loop_, self.rim, &self.job.options.polygons);
+        let polygons = &self.job.options.polygons;
+        let (wanted, room) = (wanted(loop_, self.rim, polygons), room(loop_, self.rim, polygons));
+        let cells = self.job.options.cells;
+        let odd = plan.parts.iter().filter(|part| part.boundary.len() % 2 == 1).count();
+        if cells == CellShape::Quad && odd != n % 2 {
+            return Ok(None);
+        }
         let mut positions = [around, &plan.along].concat();
         let mut flat = vec![DVec2::ZERO; positions.len()];
-        let mut triangles: Vec<[u32; 3]> = vec![];
+        // Of quads the pairs first, then the triangle of an odd part.
+        let (mut triangles, mut last): (Vec<[u32; 3]>, Vec<[u32; 3]>) = (vec![], vec![]);
         let mut used = FxHashSet::default();
+        let mut quads = 0;
         let mut largest: Option<FlatFill> = None;
         for (i, part) in plan.parts.iter().enumerate() {
             let here = progress.part(i as f64, i as f64 + 1.0);
@@ -131,14 +141,24 @@ impl Task<'_> {
             let origin = positions[part.boundary[0] as usize];
             let laid = |p: DVec3| DVec2::new((p - origin).dot(e), (p - origin).dot(f));
             let polygon = part.boundary.iter().map(|&v| laid(positions[v as usize])).collect::<Vec<_>>();
-            let shares = part.boundary.iter().map(|&v| plan.share(v as usize, &wanted)).collect::<Vec<_>>();
             let taken = |i: usize, j: usize| {
                 let (a, b) = (part.boundary[i], part.boundary[j]);
                 let old = (a.max(b) as usize) < n && self.taken.has(a as usize, b as usize);
                 old || used.contains(&[a.min(b), a.max(b)])
             };
-            let options = FlatOptions { single: !self.taken.face, ..FlatOptions::default() };
-            let patch = match fill_flat(&polygon, &shares, &taken, &options, here) {
+            let single = !self.taken.face;
+            let made = match cells {
+                CellShape::Triangle => {
+                    let shares = part.boundary.iter().map(|&v| plan.share(v as usize, &wanted));
+                    let options = FlatOptions { single, ..FlatOptions::default() };
+                    fill_flat(&polygon, &shares.collect::<Vec<_>>(), &taken, &options, here)
+                }
+                CellShape::Quad => {
+                    let shares = part.boundary.iter().map(|&v| plan.share_of_quads(v as usize, &room));
+                    fill_flat_quads(&polygon, &shares.collect::<Vec<_>>(), &taken, single, here)
+                }
+            };
+            let patch = match made {
                 Err(Error::NoPatch { .. } | Error::Solver { .. }) => return Ok(None),
                 patch => patch?,
             };
@@ -150,11 +170,17 @@ impl Task<'_> {
                 Some(&v) => v,
                 None => (first + v as usize - count) as u32,
             };
-            for t in &patch.triangles {
-                let t = t.map(name);
-                used.extend(edges(&t));
-                triangles.push(t);
-            }
+            let (pairs, rest) = patch.triangles.split_at(2 * patch.quads);
+            let pairs = pairs.iter().map(|t| t.map(name)).collect::<Vec<_>>();
+            let rest = rest.iter().map(|t| t.map(name)).collect::<Vec<_>>();
+            // The diagonal of a quad is no edge.
+            let inner = pairs.chunks_exact(2).map(|pair| [pair[0][0], pair[0][2]]).collect::<FxHashSet<_>>();
+            let sides = pairs.iter().chain(&rest).flat_map(|t| [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]]));
+            let sides = sides.filter(|&[a, b]| !inner.contains(&[a, b]) && !inner.contains(&[b, a]));
+            used.extend(sides.map(|[a, b]| [a.min(b), a.max(b)]));
+            quads += patch.quads;
+            triangles.extend(pairs);
+            last.extend(rest);
             positions.extend(patch.interior.iter().map(|p| origin + p.x * e + p.y * f));
             for (&v, &p) in part.boundary.iter().zip(&polygon) {
                 flat[v as usize] = p;
@@ -165,7 +191,8 @@ impl Task<'_> {
             }
         }
         let Some(patch) = largest else { return Ok(None) };
-        let work = Patchwork::new(loop_, positions.len() - n, &triangles, self.rim, 1)?;
+        triangles.extend(last);
+        let work = Patchwork::new(loop_, positions.len() - n, &triangles, self.rim, 1)?.of_quads(quads);
         positions.extend(work.outer.iter().map(|&v| self.job.vertices[v as usize]));
         let faults = Faults::of(&work, &positions, 1, Progress::NONE)?;
         if faults != Faults::default() {
@@ -199,6 +226,12 @@ impl Plan {
             None if self.apex == Some(v) => (f64::from(6 + among) / f64::from(among.max(1))).round() as i32,
             None => 4,
         }
+    }
+
+    /// The number of quads that a vertex should have in each of the parts that it belongs to.
+    fn share_of_quads(&self, v: usize, room: &[f64]) -> f64 {
+        let among = self.parts.iter().filter(|part| part.boundary.contains(&(v as u32))).count();
+        room.get(v).copied().unwrap_or(4.0) / among.max(1) as f64
     }
 }
 
@@ -302,8 +335,8 @@ impl<'a> Layout<'a> {
             return None;
         }
         let least = if self.task.taken.has(a, b) { 2 } else { 1 };
-        let (along, line) = self.line(from, to, least, 0);
         let [first, second] = &self.chains[..] else { return None };
+        let (along, line) = self.line(from, to, least, 0, self.parity(first.places.len() - 1));
         let path = [&[a as u32], line.as_slice(), &[b as u32]].concat();
         let part = |chain: &Chain, line: Vec<u32>| {
             let boundary = chain.places.iter().map(|&k| k as u32).chain(line).collect();
@@ -334,8 +367,12 @@ impl<'a> Layout<'a> {
         }
         let n = self.around.len();
         let (mut along, mut lines) = (vec![], vec![]);
-        for &k in &self.corners {
-            let (points, line) = self.line(self.around[k], apex, 1, along.len());
+        for (i, &k) in self.corners.iter().enumerate() {
+            // With the line before, the chain between them makes an even loop.
+            let parity = lines.last().and_then(|before: &Vec<u32>| {
+                self.parity(before.len() + 1 + self.chains[i - 1].places.len() - 1)
+            });
+            let (points, line) = self.line(self.around[k], apex, 1, along.len(), parity);
             along.extend(points);
             lines.push(line);
         }
@@ -359,12 +396,28 @@ impl<'a> Layout<'a> {
         self.creases[corner].is_some_and(|came| came.dot(ahead) > STRAIGHT)
     }
 
+    /// Whether a line beside so many edges has to be of an even or an odd number, if that matters.
+    fn parity(&self, beside: usize) -> Option<usize> {
+        (self.task.job.options.cells == CellShape::Quad).then_some(beside % 2)
+    }
+
     /// Points between two others, about as far apart as the loop's vertices are, and their numbers if `before`
     /// others come first.
-    fn line(&self, from: DVec3, to: DVec3, least: usize, before: usize) -> (Vec<DVec3>, Vec<u32>) {
+    fn line(
+        &self,
+        from: DVec3,
+        to: DVec3,
+        least: usize,
+        before: usize,
+        parity: Option<usize>,
+    ) -> (Vec<DVec3>, Vec<u32>) {
         let n = self.around.len();
         let length = (0..n).map(|k| self.around[k].distance(self.around[(k + 1) % n])).sum::<f64>();
-        let steps = ((from.distance(to) * n as f64 / length).round() as usize).clamp(least, 4 * n);
+        let exact = from.distance(to) * n as f64 / length;
+        let mut steps = (exact.round() as usize).clamp(least, 4 * n);
+        if parity.is_some_and(|parity| steps % 2 != parity) {
+            steps = if steps > least && (steps as f64) > exact { steps - 1 } else { steps + 1 };
+        }
         let points = (1..steps).map(|s| from.lerp(to, s as f64 / steps as f64)).collect::<Vec<_>>();
         let numbers = (0..points.len()).map(|i| (n + before + i) as u32).collect();
         (points, numbers)

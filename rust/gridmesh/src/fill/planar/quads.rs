@@ -1,0 +1,184 @@
+//! A patch of quads in the plane for a loop, vertex for vertex; one triangle if the loop is odd.
+//!
+//! Candidates compete as those of triangles do: regions of the square lattice bounded by the cheapest path of exactly
+//! as many steps as the loop has edges; the same behind a row of quads along the whole loop, so that what turns lies
+//! inside; and a patch of triangles for every second vertex, each cut into three quads, which exists for every loop.
+//! An odd loop gets one more vertex, outside one of its edges, which is the corner of one quad; without it that quad is the triangle.
+
+mod cells;
+mod measure;
+mod paths;
+mod refined;
+
+use glam::DVec2;
+
+use self::cells::{Cells, Plan};
+use self::measure::measure;
+use self::paths::Search;
+use super::flat::{FlatFill, Method};
+use super::place::{self, Similarity};
+use super::settle::extend;
+use super::stars::{CornerStars, Stars};
+use crate::error::{Error, Result};
+use crate::progress::Progress;
+
+/// Badness below which no further way is tried.
+const GOOD: f64 = 0.9;
+
+/// Sweeps for what a guess of the harmonic extension leaves.
+const SWEEPS: usize = 12;
+
+/// Fills a loop in the plane with quads.
+///
+/// * `polygon`: n >= 3 points, counter-clockwise, simple if possible.
+/// * `wanted`: for each vertex how many right angles the mesh leaves it, which is the number of quads that makes it
+///   regular; 2 if there is no mesh.
+/// * `taken(i, j)`: the mesh has an edge between these loop vertices already; asked with i < j.
+/// * `single`: the loop may be one face.
+///
+/// Of the triangles of the result each of the first pairs is a quad, counter-clockwise from the first of each; for
+/// an odd loop a single one follows. The patch is a disk whose boundary is the loop, without an edge that is taken.
+/// Unless it is `folded`, every quad is convex and counter-clockwise by the exact predicate.
+///
+/// # Errors
+/// [`Error::TooFewPoints`], [`Error::NotFinite`], [`Error::NoPatch`], [`Error::Cancelled`].
+pub(crate) fn fill_flat_quads(
+    polygon: &[DVec2],
+    wanted: &[f64],
+    taken: &(dyn Fn(usize, usize) -> bool + Sync),
+    single: bool,
+    progress: Progress<'_>,
+) -> Result<FlatFill> {
+    let n = polygon.len();
+    if n < 3 || wanted.len() != n {
+        return Err(Error::TooFewPoints { what: "loop".into(), distinct: n });
+    }
+    if let Some(point) = polygon.iter().position(|p| !p.is_finite()) {
+        return Err(Error::NotFinite { what: "flattened loop".into(), point });
+    }
+    let centre = polygon.iter().sum::<DVec2>() / n as f64;
+    let length: f64 = (0..n).map(|k| polygon[k].distance(polygon[(k + 1) % n])).sum();
+    let scale = if length > 0.0 { length / n as f64 } else { 1.0 };
+    let points: Vec<DVec2> = polygon.iter().map(|&p| (p - centre) / scale).collect();
+    let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0 };
+    contest.run(single, progress)?;
+    let candidates = contest.candidates;
+    let Some((_, mut fill)) = contest.best else {
+        return Err(Error::NoPatch {
+            reason: "no patch without an edge that the mesh has already".into(),
+            at: centre.to_array(),
+        });
+    };
+    fill.interior.iter_mut().for_each(|p| *p = *p * scale + centre);
+    fill.candidates = candidates;
+    Ok(fill)
+}
+
+struct Contest<'a> {
+    points: &'a [DVec2],
+    wanted: &'a [f64],
+    taken: &'a (dyn Fn(usize, usize) -> bool + Sync),
+    best: Option<(f64, FlatFill)>,
+    candidates: usize,
+}
+
+impl Contest<'_> {
+    fn run(&mut self, single: bool, progress: Progress<'_>) -> Result<()> {
+        let n = self.points.len();
+        if n <= 4 {
+            if single {
+                self.enter(vec![], &Cells::face(n), Method::NoInterior)?;
+            }
+            if n == 3 || !self.is_good() {
+                if self.best.is_none() {
+                    self.place(&Cells::of(&Plan::ring(n)), Method::Optimal, progress)?;
+                }
+                return Ok(());
+            }
+        }
+        let search = Search::new(self.points, self.wanted, self.taken);
+        self.lattice(&search, false, progress.part(0.0, 0.4))?;
+        if !self.is_good() {
+            self.lattice(&search, true, progress.part(0.4, 0.8))?;
+        }
+        if self.best.as_ref().is_none_or(|(badness, _)| *badness > refined::WORSE) {
+            self.refined(progress.part(0.8, 1.0))?;
+        }
+        Ok(())
+    }
+
+    fn is_good(&self) -> bool {
+        self.best.as_ref().is_some_and(|(badness, _)| *badness < GOOD)
+    }
+
+    /// Regions of the lattice, with rows of quads around them or none.
+    fn lattice(&mut self, search: &Search<'_>, belts: bool, progress: Progress<'_>) -> Result<()> {
+        for round in 0..Search::ROUNDS {
+            let share = |part: f64| (round as f64 + part) / Search::ROUNDS as f64;
+            let found = search.paths(belts, round, progress.part(share(0.0), share(0.8)))?;
+            for plan in found.into_iter().flatten() {
+                self.place(&Cells::of(&plan), Method::Optimal, progress.part(share(0.8), share(1.0)))?;
+            }
+            if self.is_good() || !search.is_uneven() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Patches of triangles for every second vertex, cut into quads.
+    fn refined(&mut self, progress: Progress<'_>) -> Result<()> {
+        for cells in refined::candidates(self.points, self.wanted, progress)? {
+            let stars = cells.stars();
+            let mut positions = cells.start.clone();
+            positions[..self.points.len()].copy_from_slice(self.points);
+            place::settle(&stars, &mut positions, progress)?;
+            self.enter(positions.split_off(self.points.len()), &cells, Method::Refined)?;
+        }
+        Ok(())
+    }
+
+    /// Brings the vertices of a region from the lattice to the loop.
+    fn place(&mut self, cells: &Option<Cells>, method: Method, progress: Progress<'_>) -> Result<()> {
+        let Some(cells) = cells else { return Ok(()) };
+        progress.report(0.0)?;
+        let n = self.points.len();
+        let mut positions = cells.start.clone();
+        let fit = Similarity::between(&positions[..n], self.points);
+        positions.iter_mut().for_each(|p| *p = fit.apply(*p));
+        let mut moved: Vec<DVec2> = self.points.iter().zip(&positions).map(|(p, q)| *p - *q).collect();
+        moved.extend(cells.spread(&moved));
+        let stars = cells.stars();
+        extend(&stars, &mut positions, moved, cells.wave(), SWEEPS, progress)?;
+        positions[..n].copy_from_slice(self.points);
+        place::settle(&stars, &mut positions, progress)?;
+        self.enter(positions.split_off(n), cells, method)
+    }
+
+    fn enter(&mut self, interior: Vec<DVec2>, cells: &Cells, method: Method) -> Result<()> {
+        let positions = [self.points, &interior].concat();
+        let measured = measure(&positions, cells, self.wanted, self.taken);
+        self.candidates += 1;
+        if measured.badness < self.best.as_ref().map_or(f64::INFINITY, |b| b.0) {
+            let folded = !measured.quality.embedded;
+            let triangles = cells.triangles(&positions);
+            let quads = cells.quads.len();
+            let quality = measured.quality;
+            let fill = FlatFill { interior, triangles, quads, method, quality, folded, candidates: 0 };
+            self.best = Some((measured.badness, fill));
+        }
+        Ok(())
+    }
+}
+
+impl Cells {
+    fn stars(&self) -> CornerStars {
+        let stars = CornerStars::new(&self.quads, self.odd, self.n_loop, self.start.len());
+        debug_assert_eq!(stars.len() + self.n_loop, self.start.len());
+        stars
+    }
+}
+
+#[cfg(test)]
+#[path = "quads/tests.rs"]
+mod tests;

@@ -1,0 +1,100 @@
+//! How good a patch of quads in the plane is.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec2;
+
+use super::cells::Cells;
+use crate::fill::planar::quality::Quality;
+use crate::relax::first_inverted;
+
+/// Corners beyond these, in degrees, weigh on a patch.
+const LEAST: f64 = 45.0;
+const MOST: f64 = 135.0;
+
+/// What a pole costs.
+const POLE: f64 = 0.2;
+
+pub(super) struct Measured {
+    pub quality: Quality,
+    /// Less is better; infinite for patches that must not be used.
+    pub badness: f64,
+}
+
+/// Measures a patch; see [`super::fill_flat_quads`] for `wanted` and `taken`.
+pub(super) fn measure(
+    positions: &[DVec2],
+    cells: &Cells,
+    wanted: &[f64],
+    taken: &dyn Fn(usize, usize) -> bool,
+) -> Measured {
+    let n = wanted.len();
+    let mut faces = vec![0usize; positions.len()];
+    let (mut chords, mut repeated) = (0, 0);
+    let mut side = |a: u32, b: u32| {
+        let (i, j) = (a as usize, b as usize);
+        // Each chord is seen twice, once from either end.
+        if i < j && j < n && j - i > 1 && j - i < n - 1 {
+            chords += 1;
+            repeated += usize::from(taken(i, j));
+        }
+    };
+    for quad in &cells.quads {
+        (0..4).for_each(|k| side(quad[k], quad[(k + 1) % 4]));
+        quad.iter().for_each(|&v| faces[v as usize] += 1);
+    }
+    if let Some(triangle) = &cells.odd {
+        (0..3).for_each(|k| side(triangle[k], triangle[(k + 1) % 3]));
+        triangle.iter().for_each(|&v| faces[v as usize] += 1);
+    }
+    let corners = |quad: &[u32; 4]| {
+        let quad = *quad;
+        (0..4).map(move |k| [quad[(k + 3) % 4], quad[k], quad[(k + 1) % 4]])
+    };
+    let all: Vec<[u32; 3]> = cells.quads.iter().flat_map(corners).chain(cells.odd).collect();
+    let centre = positions[..n].iter().sum::<DVec2>() / n as f64;
+    let embedded = first_inverted(positions, &all, centre).is_none();
+    let (mut least, mut most, mut off, mut ratio) = (PI, 0.0f64, 0.0, 0.0);
+    for [a, b, c] in cells.quads.iter().flat_map(corners).map(|c| c.map(|v| positions[v as usize])) {
+        let (back, ahead) = (a - b, c - b);
+        let angle = ahead.perp_dot(back).atan2(ahead.dot(back));
+        // Beyond a straight angle a corner is concave, or its quad inverted.
+        let angle = if angle.is_finite() { angle.rem_euclid(2.0 * PI) } else { 2.0 * PI };
+        least = least.min(angle);
+        most = most.max(angle);
+        off += (angle - FRAC_PI_2).abs();
+        ratio += angle.sin().max(0.0);
+    }
+    for [a, b, c] in cells.odd.iter().map(|t| t.map(|v| positions[v as usize])) {
+        for (u, v) in [(b - a, c - a), (c - b, a - b), (a - c, b - c)] {
+            let angle = u.perp_dot(v).atan2(u.dot(v));
+            least = least.min(if angle.is_finite() { angle } else { -1.0 });
+        }
+    }
+    let count = (4 * cells.quads.len()).max(1) as f64;
+    let poles = faces[n..].iter().filter(|&&f| f != 4).count();
+    let excess: f64 = wanted.iter().zip(&faces).map(|(w, &f)| (f as f64 - w).abs()).sum();
+    let beyond = |degrees: f64, width: f64| (degrees / width).clamp(0.0, 2.0).powi(2);
+    let badness = if repeated > 0 {
+        f64::INFINITY
+    } else {
+        let folded = if embedded { 0.0 } else { 100.0 };
+        folded
+            + excess / n as f64
+            + POLE * poles as f64
+            + (off / count).to_degrees() / 30.0
+            + beyond(LEAST - least.to_degrees(), 20.0)
+            + beyond(most.to_degrees() - MOST, 25.0)
+    };
+    let quality = Quality {
+        irregular: poles,
+        interior: positions.len() - n,
+        excess: excess.round() as usize,
+        min_angle: least,
+        mean_ratio: ratio / count,
+        embedded,
+        chords,
+        repeated,
+    };
+    Measured { quality, badness }
+}

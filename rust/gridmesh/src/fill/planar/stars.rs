@@ -1,0 +1,135 @@
+//! The triangles around each interior vertex of a patch that are to be positive, and near to an ideal each.
+
+use glam::DVec2;
+
+use crate::path::placement::ROW_HEIGHT;
+
+/// What a triangle should look like, of which one vertex moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::fill) enum Ideal {
+    /// Equilateral.
+    Equilateral,
+    /// With a right angle between equal edges at the vertex that moves: the corner of a quad.
+    Own,
+    /// The same at the vertex that follows it.
+    Next,
+    /// The same at the vertex before it.
+    Last,
+}
+
+impl Ideal {
+    /// Twice the area over that of the ideal with edges of one; `a` and `b` lead from the vertex that moves to
+    /// the others.
+    pub fn det(self, a: DVec2, b: DVec2) -> f64 {
+        a.perp_dot(b) / self.height()
+    }
+
+    pub fn height(self) -> f64 {
+        if self == Ideal::Equilateral { ROW_HEIGHT } else { 1.0 }
+    }
+
+    /// Half of |J|^2, J the map from the ideal: equals `det` if it is one.
+    pub fn stretch(self, a: DVec2, b: DVec2) -> f64 {
+        let across = || (b - a).length_squared();
+        match self {
+            Ideal::Equilateral => (a.length_squared() + b.length_squared() + across()) / 3.0,
+            Ideal::Own => 0.5 * (a.length_squared() + b.length_squared()),
+            Ideal::Next => 0.5 * (a.length_squared() + across()),
+            Ideal::Last => 0.5 * (b.length_squared() + across()),
+        }
+    }
+
+    /// Gradient of `stretch` as the vertex moves, and its second derivative, times the identity.
+    pub fn slope(self, a: DVec2, b: DVec2) -> (DVec2, f64) {
+        match self {
+            Ideal::Equilateral => ((a + b) * (-2.0 / 3.0), 4.0 / 3.0),
+            Ideal::Own => (-(a + b), 2.0),
+            Ideal::Next => (-a, 1.0),
+            Ideal::Last => (-b, 1.0),
+        }
+    }
+}
+
+/// What is around each interior vertex of a patch.
+pub(in crate::fill) trait Stars {
+    /// Vertices of the loop: interior ones are numbered from there.
+    fn n_loop(&self) -> usize;
+
+    /// Interior vertices.
+    fn len(&self) -> usize;
+
+    /// The neighbours of the i-th interior vertex.
+    fn near(&self, i: usize) -> &[u32];
+
+    /// The triangles at the i-th interior vertex that are to be positive and near to their ideals, by the two other
+    /// vertices, counter-clockwise.
+    fn triangles(&self, i: usize) -> impl Iterator<Item = (u32, u32, Ideal)>;
+}
+
+/// The corners around each interior vertex of a patch of quads with a triangle or none: its own in each quad, and
+/// those beside it.
+#[derive(Clone, Debug)]
+pub(crate) struct CornerStars {
+    n_loop: usize,
+    start: Vec<u32>,
+    corners: Vec<(u32, u32, Ideal)>,
+    near_start: Vec<u32>,
+    near: Vec<u32>,
+}
+
+impl CornerStars {
+    /// Of a patch with the vertices of its loop first.
+    pub fn new(quads: &[[u32; 4]], odd: Option<[u32; 3]>, n_loop: usize, n_vertices: usize) -> Self {
+        let mut fans: Vec<Vec<(u32, u32, Ideal)>> = vec![vec![]; n_vertices - n_loop];
+        let mut near: Vec<Vec<u32>> = vec![vec![]; n_vertices - n_loop];
+        for quad in quads {
+            for k in 0..4 {
+                let Some(i) = (quad[k] as usize).checked_sub(n_loop) else { continue };
+                let [next, far, last] = [1, 2, 3].map(|ahead| quad[(k + ahead) % 4]);
+                fans[i].extend([
+                    (next, last, Ideal::Own),
+                    (next, far, Ideal::Next),
+                    (far, last, Ideal::Last),
+                ]);
+                near[i].extend([next, last]);
+            }
+        }
+        if let Some(triangle) = odd {
+            for k in 0..3 {
+                let Some(i) = (triangle[k] as usize).checked_sub(n_loop) else { continue };
+                let [next, last] = [1, 2].map(|ahead| triangle[(k + ahead) % 3]);
+                fans[i].push((next, last, Ideal::Equilateral));
+                near[i].extend([next, last]);
+            }
+        }
+        let mut stars =
+            CornerStars { n_loop, start: vec![0], corners: vec![], near_start: vec![0], near: vec![] };
+        for (fan, mut near) in fans.into_iter().zip(near) {
+            near.sort_unstable();
+            near.dedup();
+            stars.corners.extend(fan);
+            stars.start.push(stars.corners.len() as u32);
+            stars.near.extend(near);
+            stars.near_start.push(stars.near.len() as u32);
+        }
+        stars
+    }
+}
+
+impl Stars for CornerStars {
+    fn n_loop(&self) -> usize {
+        self.n_loop
+    }
+
+    fn len(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    fn near(&self, i: usize) -> &[u32] {
+        &self.near[self.near_start[i] as usize..self.near_start[i + 1] as usize]
+    }
+
+    fn triangles(&self, i: usize) -> impl Iterator<Item = (u32, u32, Ideal)> {
+        self.corners[self.start[i] as usize..self.start[i + 1] as usize].iter().copied()
+    }
+}
