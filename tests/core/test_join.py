@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
 
 import joins
-from joins import Case, faults, fanned, least_angle, measure
+from joins import Case, fanned, faults, least_angle, measure
 
 TAU = 2 * np.pi
 
@@ -157,7 +157,9 @@ def test_polygons_are_taken_and_stay():
     a = next(i for i in range(4) if one[i] in other and one[(i + 1) % 4] in other)
     b = next(i for i in range(4) if other[i] == one[a])
     both = np.r_[[one[(a + k) % 4] for k in range(1, 5)], [other[(b + k) % 4] for k in range(1, 3)]]
-    rest = np.array([quad for quad in quads if not (np.array_equal(quad, one) or np.array_equal(quad, other))])
+    rest = np.array(
+        [quad for quad in quads if not (np.array_equal(quad, one) or np.array_equal(quad, other))]
+    )
     corners = np.r_[rest.ravel(), both]
     offsets = np.r_[np.arange(0, rest.size + 1, 4), rest.size + 6]
     made = gridmesh.join([(vertices, (corners, offsets)), ball((1.5, 0, 0), 0.4)])
@@ -180,8 +182,9 @@ def test_collars_lie_near_the_line_where_surfaces_meet():
 
 def test_a_given_edge_length_is_what_the_blend_counts_in():
     parts = ball(edge=0.08), ball((1.2, 0, 0), edge=0.08)
-    as_usual, twice = joined(*parts, blend=2.0), joined(*parts, blend=1.0, edge_length=0.16)
-    assert abs((as_usual.vertex_part < 0).sum() - (twice.vertex_part < 0).sum()) < 40
+    one, two = joined(*parts, blend=2.0, edge_length=0.1), joined(*parts, blend=1.0, edge_length=0.2)
+    assert np.array_equal(one.vertices, two.vertices)
+    assert len(one.vertices) != len(joined(*parts, blend=2.0, edge_length=0.2).vertices)
 
 
 # ---------------------------------------------------------------------------------------------------- creases
@@ -287,7 +290,7 @@ def test_a_campaign_of_random_bodies():
     assert len(refused) <= 1
     measures = [it for it, made in found.values() if made.report["collars"]]
     of = lambda name: np.array([getattr(it, name) for it in measures])  # noqa: E731
-    assert np.median(of("irregular")) <= 0.05
+    assert np.median(of("irregular")) <= 0.06
     assert np.median(of("angle")) >= 15
     assert np.median(of("volume")) <= 0.03
 
@@ -321,7 +324,9 @@ def test_pickle_and_copies():
     for name in ("vertices", "triangles", "quads", "corners", "offsets", "source_part", "source_vertex"):
         assert np.array_equal(getattr(again, name), getattr(made, name))
         assert not getattr(made, name).flags.writeable
-    assert [[len(r) for r in rims] for rims in again.collars] == [[len(r) for r in rims] for rims in made.collars]
+    assert [[len(r) for r in rims] for rims in again.collars] == [
+        [len(r) for r in rims] for rims in made.collars
+    ]
     assert again.report == made.report
 
 

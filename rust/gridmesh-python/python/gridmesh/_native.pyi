@@ -336,6 +336,7 @@ def cut_reach(
     eye: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> npt.NDArray[np.float64]: ...
+
 @final
 class Joined:
     @property
@@ -365,7 +366,9 @@ class Joined:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 def join(
-    parts: Iterable[Surface | Joined | tuple[npt.ArrayLike, npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]]],
+    parts: Iterable[
+        Surface | Joined | tuple[npt.ArrayLike, npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]]
+    ],
     *,
     blend: float = 2.0,
     edge_length: float | None = None,
