@@ -25,6 +25,7 @@ LAYERS = {
     "cover": 2,
     "fill": 2,
     "cut": 2,
+    "join": 2,
     "svg": 2,
 }
 OF_NO_LAYER = {"lib", "error", "progress", "options"}

@@ -8,7 +8,7 @@ use numpy::{
     PyReadonlyArray2, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyDict, PyList, PyTuple};
 
 use crate::error::{detached, error, from_core};
 use crate::input::Argument;
@@ -25,8 +25,10 @@ use crate::{arrays, reports};
 /// triangles : (m, 3) array of int
 ///     Its triangles; (0, 3) for a loop of edges without a mesh. Only those near the loop matter: coordinates
 ///     further away than two rings of triangles need not even be finite.
-/// loop : (k,) array of int, k >= 3
-///     The vertices of the hole's boundary in order, either way round, each once.
+/// loop : (k,) array of int, k >= 3, or a list of such arrays
+///     The vertices of the hole's boundary in order, either way round, each once. A list: the loops of one hole that has
+///     several; the patch has them all as its boundary. Two are joined by a tube, as `bridge` does; between three or more the triangles are even, but no
+///     grid. Several loops with triangles only, and without `sharp`.
 /// smooth : {"flat", "tangent", "curvature"}
 ///     "flat": a soap film in the loop. "tangent": continues the slope of the surface around. "curvature":
 ///     its slope and curvature.
@@ -99,13 +101,26 @@ pub fn fill_hole(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Fill> {
     let mesh = Mesh::read(vertices, triangles)?;
-    let indices = indices(&loop_argument("loop", r#loop))?;
+    let loops = loops_of(r#loop)?;
     let mut options = hard(options(smooth, strict, polygons)?, sharp, creases)?;
     options.cells = shape(cells)?;
     let (positions, faces) = (mesh.positions()?.into_owned(), mesh.faces()?.into_owned());
     let fill = Watch::new(progress)?
-        .run(py, |progress| gridmesh::fill::fill_hole(&positions, &faces, &indices, &options, progress))?;
+        .run(py, |progress| gridmesh::fill::fill_loops(&positions, &faces, &loops, &options, progress))?;
     Fill::new(py, fill)
+}
+
+/// Reads one loop, or a list or tuple of several of one hole.
+fn loops_of(value: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<u32>>> {
+    let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+    if !is_list || !value.get_item(0).is_ok_and(|first| first.len().is_ok()) {
+        return Ok(vec![indices(&loop_argument("loop", value))?]);
+    }
+    let mut loops = Vec::new();
+    for (k, item) in value.try_iter()?.enumerate() {
+        loops.push(indices(&loop_argument(&format!("loop {k}"), &item?))?);
+    }
+    Ok(loops)
 }
 
 /// Fill every hole of a mesh, or the given ones, in parallel.
@@ -218,7 +233,7 @@ pub fn fill_holes(
 /// report : dict
 ///     Plain numbers: "triangles", "quads", "vertices", "irregular" (new vertices whose valence is not 6, or 4 with
 ///     quads), "irregular_loop" (loop vertices whose valence is not 6 now; with quads those whose number of new faces
-///     is not what the mesh leaves room for), "grid" ("lattice", "grown", "graded", "refined",
+///     is not what the mesh leaves room for), "grid" ("lattice", "grown", "graded", "refined", "even",
 ///     "centre" or "no_interior": how the patch was made), "rows" (of triangles between two loops; 0 for one), "folded" (True if it could not be laid out in the
 ///     plane), "rim_angle" (mean angle between the surface and a film in the loop, radians: near zero where
 ///     the surface goes on, about pi / 2 at the end of a tube), "unrolling" ("projected", "developed",
@@ -356,7 +371,7 @@ impl Fill {
         let fields = (
             arrays::indices(py, parts.loop_.into_iter()),
             parts.reversed,
-            parts.bridged.map(|second| (second.first, second.reversed)),
+            parts.bridged.iter().map(|later| (later.first, later.reversed)).collect::<Vec<_>>(),
             smooth,
             parts.vertices,
             arrays::plane_points(py, &parts.flat)?,
@@ -378,7 +393,7 @@ pub fn _fill(
     py: Python<'_>,
     r#loop: PyReadonlyArray1<'_, i32>,
     backwards: bool,
-    second: Option<(usize, bool)>,
+    later: Vec<(usize, bool)>,
     smooth: &str,
     vertices: usize,
     flat: PyReadonlyArray2<'_, f64>,
@@ -404,7 +419,7 @@ pub fn _fill(
     let parts = FillParts {
         loop_: numbers(&r#loop),
         reversed: backwards,
-        bridged: second.map(|(first, reversed)| Bridged { first, reversed }),
+        bridged: later.into_iter().map(|(first, reversed)| Bridged { first, reversed }).collect(),
         smooth,
         vertices,
         flat: flat.as_array().rows().into_iter().map(|p| DVec2::new(p[0], p[1])).collect(),

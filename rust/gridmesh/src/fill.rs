@@ -3,6 +3,7 @@
 //! [`fill_hole`] fills one loop, [`fill_holes`] many; [`holes`] finds loops.
 
 pub mod bridge;
+pub(crate) mod even;
 mod filled;
 mod job;
 pub(crate) mod layout;
@@ -14,6 +15,7 @@ mod parts;
 pub(crate) mod planar;
 mod regrid;
 mod report;
+mod several;
 pub(crate) mod surface;
 
 use glam::DVec3;
@@ -23,13 +25,15 @@ use self::parallel::steady;
 pub use self::parts::FillParts;
 pub use self::regrid::{Regrid, regrid};
 pub use self::report::{FillReport, Grid};
-use crate::error::Result;
+use self::several::fill_several;
+use crate::error::{Error, Result};
 pub use crate::fill::bridge::{BridgeOptions, bridge};
 use crate::fill::filled::NO_ITEM;
 pub use crate::fill::filled::{Bridged, Fill};
 use crate::fill::job::Job;
 pub use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::holes;
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Fills one hole of a mesh, or a loop of edges without a mesh.
@@ -65,6 +69,46 @@ pub fn fill_hole(
     let job = Job { vertices, triangles, options };
     let mut fills = steady(progress, |progress| job.run(&[Ok(loop_.to_vec())], progress))?;
     fills.pop().unwrap_or(Err(NO_ITEM))
+}
+
+/// Fills one hole that has several loops: a patch whose boundary they all are.
+///
+/// One loop is filled as by [`fill_hole`], two are joined by a tube as by [`bridge`]. Between three or more the triangles are
+/// even, but no grid: the patch is a sphere with as many holes, every loop is exact and untouched, each of its edges gets one new triangle, no edge of the mesh is
+/// repeated, and the surface goes on from what is around all loops. Loops without faces are taken the way round that suits the
+/// nearest others. The loop of the [`Fill`] is the loops one after the other.
+///
+/// # Errors
+/// Those of [`fill_hole`] and [`bridge`]; [`Error::InvalidOption`](crate::error::Error::InvalidOption) without a loop, and for quads with two loops or more;
+/// [`Error::NoPatch`](crate::error::Error::NoPatch) if the loops have too few vertices to be joined; [`Error::FigureEight`](crate::error::Error::FigureEight) for a vertex of two loops.
+pub fn fill_loops(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    loops: &[Vec<u32>],
+    options: &FillOptions,
+    progress: Progress<'_>,
+) -> Result<Fill> {
+    if loops.len() > 1 && options.sharp.is_some() {
+        let value = format!("given, with {} loops", loops.len());
+        return Err(Error::InvalidOption { name: "sharp", value, allowed: "none, with several loops" });
+    }
+    match loops {
+        [] => {
+            let allowed = "one loop or more";
+            Err(Error::InvalidOption { name: "loops", value: "none".into(), allowed })
+        }
+        [single] => fill_hole(vertices, triangles, single, options, progress),
+        [one, other] if options.cells == CellShape::Triangle => {
+            let options = BridgeOptions {
+                smooth: options.smooth,
+                strict: options.strict,
+                polygons: options.polygons.clone(),
+                ..BridgeOptions::default()
+            };
+            bridge(vertices, triangles, one, other, &options, progress)
+        }
+        _ => steady(progress, |progress| fill_several(vertices, triangles, loops, options, progress)),
+    }
 }
 
 /// Fills the given loops, or all holes, as [`fill_hole`] does, in parallel.

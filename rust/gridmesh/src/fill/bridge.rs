@@ -4,7 +4,7 @@
 //! paths on it (`route`), chosen with the cone (`choose`), what lies between them is triangulated (`tube`), placed on a surface
 //! that goes on from both sides (`loft`) and moved within it to where triangles are good (`settle`).
 
-mod align;
+pub(in crate::fill) mod align;
 mod choose;
 mod loft;
 mod options;

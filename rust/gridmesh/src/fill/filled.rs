@@ -32,12 +32,12 @@ pub struct Fill {
     pub(crate) shape: Arc<Shape>,
 }
 
-/// Of a patch between two loops.
+/// A further loop of a patch between several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bridged {
-    /// Vertices of the first loop; those of the second follow.
+    /// Vertices of the loops before.
     pub first: usize,
-    /// The second loop was given the other way round.
+    /// It was given the other way round.
     pub reversed: bool,
 }
 
@@ -47,8 +47,8 @@ pub(crate) struct Shape {
     pub(crate) work: Patchwork,
     pub(crate) loop_: Vec<u32>,
     pub(crate) reversed: bool,
-    /// What is known of the second loop, of a patch between two.
-    pub(crate) bridged: Option<Bridged>,
+    /// The loops after the first.
+    pub(crate) bridged: Vec<Bridged>,
     pub(crate) flat: Vec<glam::DVec2>,
     pub(crate) smooth: Smooth,
     pub(crate) vertices: usize,
@@ -127,9 +127,10 @@ impl Fill {
         if !self.shape.creases.is_empty() {
             return self.shape.carried(vertices);
         }
-        let positions = match self.shape.bridged {
-            Some(bridged) => self.shape.lofted(vertices, bridged.first)?,
-            None => self.shape.solve(vertices, Progress::NONE)?.positions,
+        let positions = match self.shape.bridged.as_slice() {
+            [bridged] => self.shape.lofted(vertices, bridged.first)?,
+            [_, _, ..] => return self.shape.carried(vertices),
+            [] => self.shape.solve(vertices, Progress::NONE)?.positions,
         };
         Ok(positions[self.shape.work.inner()].to_vec())
     }

@@ -134,9 +134,10 @@ impl Job<'_> {
             let mut others = near[k].iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
             others.extend((0..k).filter(|&j| boxes[j].meets(&boxes[k])).flat_map(named));
             let (around, positions, own) = done[k].2.graph();
-            let apart = match done[k].2.bridged {
-                Some(bridged) => is_around(positions, bridged.first, around.len(), own),
-                None => is_graph(around, positions, own),
+            let apart = match done[k].2.bridged.as_slice() {
+                [bridged] => is_around(positions, bridged.first, around.len(), own),
+                [_, _, ..] => false,
+                [] => is_graph(around, positions, own),
             };
             count_meetings(position, &named(k), &others, apart, MOST, progress)
         };

@@ -104,7 +104,7 @@ impl Task<'_> {
             work,
             loop_: loop_.clone(),
             reversed: self.checked.reversed,
-            bridged: None,
+            bridged: vec![],
             flat: [unrolled.points.as_slice(), &patch.interior].concat(),
             smooth,
             vertices: self.job.vertices.len(),

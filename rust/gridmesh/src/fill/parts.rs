@@ -15,8 +15,8 @@ pub struct FillParts {
     pub loop_: Vec<u32>,
     /// It was given the other way round.
     pub reversed: bool,
-    /// Of a patch between two loops.
-    pub bridged: Option<Bridged>,
+    /// The loops after the first, of a patch between several.
+    pub bridged: Vec<Bridged>,
     /// How the patch continues the surface.
     pub smooth: Smooth,
     /// Vertices of the mesh.
@@ -45,7 +45,7 @@ impl Fill {
         FillParts {
             loop_: shape.loop_.clone(),
             reversed: shape.reversed,
-            bridged: shape.bridged,
+            bridged: shape.bridged.clone(),
             smooth: shape.smooth,
             vertices: shape.vertices,
             flat: shape.flat.clone(),
@@ -78,20 +78,21 @@ impl Fill {
             creases,
         } = parts;
         let (n, end) = (loop_.len(), flat.len());
+        let loops = [0].into_iter().chain(bridged.iter().map(|b| b.first)).chain([n]).collect::<Vec<_>>();
         let known = |v: &u32| (*v as usize) < vertices;
         let within = |t: &[u32; 3], most: usize| {
             t.iter().all(|&v| (v as usize) < most) && t[0] != t[1] && t[1] != t[2] && t[2] != t[0]
         };
         let sound = n >= 3
             && end >= n
-            && patch + n + if bridged.is_some() { 0 } else { 2 } == 2 * end
-            && bridged.is_none_or(|b| b.first >= 3 && b.first.checked_add(3).is_some_and(|least| least <= n))
-            && (bridged.is_none() || creases.is_empty())
+            && patch + n + 2 == 2 * (end + bridged.len())
+            && loops.windows(2).all(|pair| pair[0].checked_add(3).is_some_and(|least| least <= pair[1]))
+            && (bridged.is_empty() || creases.is_empty())
             && positions.len() == end + outer.len()
             && loop_.iter().chain(&outer).all(known)
             && patch <= triangles.len()
             && quads <= patch / 2
-            && (bridged.is_none() || quads == 0)
+            && (bridged.is_empty() || quads == 0)
             && triangles[..2 * quads].chunks_exact(2).all(|t| t[0][0] == t[1][0] && t[0][2] == t[1][1])
             && triangles.iter().all(|t| within(t, positions.len()))
             && triangles[..patch].iter().all(|t| within(t, end))
@@ -105,15 +106,12 @@ impl Fill {
             });
         }
         let mut given = loop_.clone();
-        let (one, two) = given.split_at_mut(bridged.map_or(n, |b| b.first));
-        if reversed {
-            one.reverse();
-        }
-        if bridged.is_some_and(|b| b.reversed) {
-            two.reverse();
+        let turned = [reversed].into_iter().chain(bridged.iter().map(|b| b.reversed));
+        for (pair, _) in loops.windows(2).zip(turned).filter(|(_, turned)| *turned) {
+            given[pair[0]..pair[1]].reverse();
         }
         let mut work = Patchwork::of(n, end, outer, triangles, patch)?;
-        work.first = bridged.map_or(n, |b| b.first);
+        work.later = bridged.iter().map(|b| b.first).collect();
         let work = work.of_quads(quads);
         let shape = Shape { work, loop_, reversed, bridged, flat, smooth, vertices, positions, creases };
         Ok(Fill::of(given, shape, report))

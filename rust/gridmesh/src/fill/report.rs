@@ -68,6 +68,8 @@ pub enum Grid {
     Graded,
     /// Triangles for every second vertex of the loop, each cut into three quads.
     Refined,
+    /// Triangles made even, between three loops or more.
+    Even,
 }
 
 impl Grid {
@@ -91,6 +93,7 @@ impl Grid {
             Grid::Grown => "grown",
             Grid::Graded => "graded",
             Grid::Refined => "refined",
+            Grid::Even => "even",
         }
     }
 }

@@ -9,7 +9,7 @@ const SAMPLES: usize = 96;
 
 /// A closed polygon with its vertices' share of its length before them.
 #[derive(Clone, Debug)]
-pub(super) struct Ring {
+pub(in crate::fill) struct Ring {
     pub points: Vec<DVec3>,
     /// Ascending from 0 to below 1.
     pub shares: Vec<f64>,

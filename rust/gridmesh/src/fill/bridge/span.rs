@@ -201,7 +201,7 @@ impl<'a> Span<'a> {
         let loop_ = self.loops.iter().flat_map(|l| l.vertices.iter().copied()).collect::<Vec<_>>();
         let rings = if self.options.smooth == Smooth::Curvature { 2 } else { 1 };
         let mut work = Patchwork::new(&loop_, tube.around.len(), &triangles, self.rim, rings)?;
-        work.first = first;
+        work.later = vec![first];
         let mut flat = vec![DVec2::ZERO; work.end];
         for (k, &around) in lower.around.iter().chain(&upper.around).enumerate() {
             flat[number(k as u32) as usize] = DVec2::new(around, if k < m { 0.0 } else { 1.0 });
@@ -222,7 +222,7 @@ impl<'a> Span<'a> {
             work,
             loop_,
             reversed: self.loops[0].reversed,
-            bridged: Some(Bridged { first, reversed: self.loops[1].reversed }),
+            bridged: vec![Bridged { first, reversed: self.loops[1].reversed }],
             flat,
             smooth: self.options.smooth,
             vertices: self.vertices.len(),

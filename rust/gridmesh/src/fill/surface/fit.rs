@@ -244,11 +244,12 @@ impl Shape {
 
     /// The place of a loop vertex in the loop as it was given.
     fn given(&self, v: usize) -> usize {
-        let first = self.work.first;
-        match self.bridged {
-            Some(bridged) if v >= first && bridged.reversed => self.work.n - 1 - (v - first),
-            _ if v < first && self.reversed => first - 1 - v,
-            _ => v,
+        let range = self.work.loop_of(v);
+        let later = self.bridged.iter().find(|bridged| bridged.first == range.start);
+        if later.map_or(self.reversed, |bridged| bridged.reversed) {
+            range.start + range.end - 1 - v
+        } else {
+            v
         }
     }
 

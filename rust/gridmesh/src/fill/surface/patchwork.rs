@@ -10,10 +10,10 @@ use crate::fill::planar::stars::CornerStars;
 /// the new ones, then those of the mesh around.
 #[derive(Clone, Debug)]
 pub(crate) struct Patchwork {
-    /// Vertices of the loop, or of two loops.
+    /// Vertices of the loop, or of all loops.
     pub n: usize,
-    /// Vertices of the first loop.
-    pub first: usize,
+    /// Where the loops after the first begin.
+    pub later: Vec<usize>,
     /// Loop and new vertices.
     pub end: usize,
     /// The mesh's numbers of the vertices from `end` on.
@@ -92,7 +92,7 @@ impl Patchwork {
         let count = end + outer.len();
         let mut it = Patchwork {
             n,
-            first: n,
+            later: vec![],
             end,
             outer,
             n_patch,
@@ -152,13 +152,17 @@ impl Patchwork {
         Ok(())
     }
 
+    /// The vertices of the loop that a vertex is on.
+    pub fn loop_of(&self, v: usize) -> std::ops::Range<usize> {
+        let k = self.later.partition_point(|&start| start <= v);
+        let start = if k == 0 { 0 } else { self.later[k - 1] };
+        start..self.later.get(k).copied().unwrap_or(self.n)
+    }
+
     /// The vertex that follows another on its loop.
     pub fn after(&self, v: usize) -> usize {
-        match v + 1 {
-            next if next == self.first => 0,
-            next if next == self.n => self.first,
-            next => next,
-        }
+        let next = v + 1;
+        if next == self.n || self.later.contains(&next) { self.loop_of(v).start } else { next }
     }
 
     /// The number of all vertices.

@@ -203,7 +203,7 @@ impl Task<'_> {
             work,
             loop_: loop_.clone(),
             reversed: self.checked.reversed,
-            bridged: None,
+            bridged: vec![],
             flat,
             smooth: self.job.options.smooth,
             vertices: self.job.vertices.len(),

@@ -1,0 +1,263 @@
+//! One patch for three loops or more.
+//!
+//! No lattice fits them all: the loops are joined to one polygon (`tour`), which is triangulated with the least bending and area
+//! (`polygon`), and the triangles are made even on that surface and smooth to what lies beyond (`even`).
+
+mod polygon;
+mod tour;
+
+use glam::{DVec2, DVec3};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use self::polygon::triangulated;
+use self::tour::{Loops, turned};
+use crate::error::{Error, Result};
+use crate::fill::even::fair::{Beyond, fair};
+use crate::fill::even::local::{Local, edge};
+use crate::fill::even::remesh::{Ground, flip_valences, refine, remesh};
+use crate::fill::filled::{Bridged, Clock, Fill, Shape};
+use crate::fill::job::{Job, SOUND_RINGS};
+use crate::fill::layout::unroll::Unrolling;
+use crate::fill::loops::check::{Checked, check_loop, check_near};
+use crate::fill::loops::mesh::Rim;
+use crate::fill::loops::reserve::wanted;
+use crate::fill::options::{FillOptions, Smooth};
+use crate::fill::report::{FillReport, Grid};
+use crate::fill::surface::fair::Membrane;
+use crate::fill::surface::fit::{Faults, LEAST_WEIGHT, folds, rim_angle};
+use crate::fill::surface::patchwork::Patchwork;
+use crate::geometry::metrics::min_angle;
+use crate::options::CellShape;
+use crate::progress::Progress;
+
+/// Rounds of fairing and flips.
+const ROUNDS: usize = 3;
+
+/// How much of the fairing is tried, where all of it makes the patch meet something.
+const SHARES: [f64; 3] = [1.0, 0.5, 0.0];
+
+/// See [`fill_loops`](super::fill_loops), for three or more.
+pub(super) fn fill_several(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    loops: &[Vec<u32>],
+    options: &FillOptions,
+    progress: Progress<'_>,
+) -> Result<Fill> {
+    progress.report(0.0)?;
+    options.check(triangles)?;
+    if options.cells == CellShape::Quad {
+        let (name, value) = ("cells", format!("quads, with {} loops", loops.len()));
+        return Err(Error::InvalidOption { name, value, allowed: "triangles, with several loops" });
+    }
+    let seeds = loops.concat();
+    let rings = if options.smooth == Smooth::Curvature { 2 } else { 1 };
+    let rim = Rim::new(vertices.len(), triangles, &seeds, rings)?;
+    let mut checked = loops.iter().map(|l| check_loop(l, vertices, &rim)).collect::<Result<Vec<_>>>()?;
+    if vertices.iter().any(|p| !p.is_finite()) {
+        let wide = Rim::new(vertices.len(), triangles, &seeds, SOUND_RINGS)?;
+        loops.iter().try_for_each(|l| check_near(l, vertices, &wide))?;
+    }
+    let mut known = FxHashSet::default();
+    if let Some(&vertex) = seeds.iter().find(|&&v| !known.insert(v)) {
+        return Err(Error::FigureEight { vertex });
+    }
+    progress.report(0.1)?;
+    let spanning = tour::spanning(&checked, vertices);
+    turned(&mut checked, &spanning, vertices);
+    let span = Several { vertices, rim: &rim, options, checked: &checked };
+    let fill = span.fill(&spanning, rings, progress.part(0.1, 0.8))?;
+    let mut fills = [Ok(fill)];
+    Job { vertices, triangles, options }.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
+    let [fill] = fills;
+    progress.report(1.0)?;
+    fill
+}
+
+/// The loops, as the patch's boundary runs.
+struct Several<'a> {
+    vertices: &'a [DVec3],
+    rim: &'a Rim,
+    options: &'a FillOptions,
+    checked: &'a [Checked],
+}
+
+impl Several<'_> {
+    fn fill(&self, spanning: &[[usize; 2]], rings: usize, progress: Progress<'_>) -> Result<Fill> {
+        let mut clock = Clock::new();
+        let loop_ = self.checked.iter().flat_map(|c| c.vertices.iter().copied()).collect::<Vec<_>>();
+        let at = loop_.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
+        let taken = self.taken(&loop_);
+        let loops = Loops::new(self.checked.iter().map(|c| c.vertices.len()));
+        let (positions, triangles) = triangulated(&loops, spanning, &at, &taken, progress.part(0.0, 0.3))?;
+        clock.stage("surface");
+        let mut local = Local::new(positions, triangles, vec![], loop_.len());
+        local.sides = vec![0; local.triangles.len()];
+        local.taken = taken;
+        self.size(&loops, &mut local);
+        let beyond = self.beyond(&loops, &loop_);
+        let is_flat = self.options.smooth == Smooth::Flat;
+        if !is_flat {
+            // The way that the surface takes first, so that sheets which belong apart are.
+            refine(&mut local);
+            local.positions = fair(&local, &beyond, progress.part(0.3, 0.4))?;
+        }
+        let ground = Ground::of(&local);
+        remesh(&mut local, &ground, progress.part(0.4, 0.6))?;
+        clock.stage("grid");
+        let flat = local.positions.clone();
+        if !is_flat {
+            for round in 0..=ROUNDS {
+                let part = |k: usize| 0.6 + 0.3 * k as f64 / (ROUNDS + 1) as f64;
+                if round > 0 {
+                    flip_valences(&mut local);
+                }
+                local.positions = fair(&local, &beyond, progress.part(part(round), part(round + 1)))?;
+            }
+        }
+        let mut work =
+            Patchwork::new(&loop_, local.positions.len() - loop_.len(), &local.triangles, self.rim, rings)?;
+        work.later = loops.starts[1..].to_vec();
+        let mut shape = Shape {
+            flat: vec![DVec2::ZERO; work.end],
+            work,
+            loop_,
+            reversed: self.checked[0].reversed,
+            bridged: (loops.starts[1..].iter().zip(&self.checked[1..]))
+                .map(|(&first, checked)| Bridged { first, reversed: checked.reversed })
+                .collect(),
+            smooth: self.options.smooth,
+            vertices: self.vertices.len(),
+            positions: vec![],
+            creases: vec![],
+        };
+        self.place(&mut shape, &flat, &local.positions, progress.part(0.9, 1.0))?;
+        clock.stage("fair");
+        Ok(self.finish(shape, clock))
+    }
+
+    /// Edges that the mesh has between vertices of the loops, by their places.
+    fn taken(&self, loop_: &[u32]) -> FxHashSet<[u32; 2]> {
+        let places: FxHashMap<u32, u32> = loop_.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
+        let mut taken = FxHashSet::default();
+        for (&v, k) in loop_.iter().zip(0..) {
+            let near = self.rim.local(v).map(|v| self.rim.neighbours(v)).unwrap_or_default();
+            let near = near.into_iter().map(|u| self.rim.ids[u as usize]);
+            let loose = self.rim.loose.iter().filter(|edge| edge.contains(&v));
+            for u in near.chain(loose.flatten().copied()).filter(|&u| u != v) {
+                taken.extend(places.get(&u).map(|&place| edge(k, place)));
+            }
+        }
+        taken
+    }
+
+    /// Wanted edge lengths and numbers of triangles.
+    fn size(&self, loops: &Loops, local: &mut Local) {
+        for v in 0..local.border {
+            let length = |a: usize, b: usize| local.positions[a].distance(local.positions[b]);
+            local.sizes[v] = 0.5 * (length(v, loops.next(v)) + length(v, loops.before(v)));
+        }
+        let inner = local.border..local.positions.len();
+        for v in inner {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for k in 0..local.border {
+                let squared = local.positions[k].distance_squared(local.positions[v]);
+                let weight = 1.0 / squared.max(f64::MIN_POSITIVE);
+                sum += weight * local.sizes[k];
+                weights += weight;
+            }
+            local.sizes[v] = sum / weights;
+        }
+        let of = |checked: &Checked| wanted(&checked.vertices, self.rim, &self.options.polygons);
+        let edges = self.checked.iter().flat_map(of);
+        local.wanted = edges.map(|edges| (edges - 1).clamp(1, 5) as usize).collect();
+    }
+
+    /// What lies beyond each vertex of the loops.
+    fn beyond(&self, loops: &Loops, loop_: &[u32]) -> Beyond {
+        let of = |k: usize| {
+            let beside = [loop_[loops.before(k)], loop_[loops.next(k)]];
+            let near = self.rim.local(loop_[k]).map(|v| self.rim.neighbours(v)).unwrap_or_default();
+            let near = near.into_iter().map(|u| self.rim.ids[u as usize]).filter(|u| !beside.contains(u));
+            near.fold((DVec3::ZERO, 0), |(sum, n), u| (sum + self.vertices[u as usize], n + 1))
+        };
+        (0..loop_.len()).map(of).collect()
+    }
+
+    /// Chooses the positions: as smooth as they may be without meeting anything.
+    fn place(
+        &self,
+        shape: &mut Shape,
+        even: &[DVec3],
+        faired: &[DVec3],
+        progress: Progress<'_>,
+    ) -> Result<()> {
+        let work = &shape.work;
+        let mut positions = vec![DVec3::ZERO; work.len()];
+        positions[..work.end].copy_from_slice(even);
+        for (k, &v) in work.outer.iter().enumerate() {
+            positions[work.end + k] = self.vertices[v as usize];
+        }
+        if self.options.smooth == Smooth::Flat {
+            let weights =
+                work.cotangents(&positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
+            let film = Membrane::new(work)?.harmonic(&weights, |v| positions[v].to_array())?;
+            for (v, p) in work.inner().zip(film) {
+                positions[v] = p.into();
+            }
+        }
+        let base = positions[..work.end].to_vec();
+        let mut best: Option<(usize, Vec<DVec3>)> = None;
+        let shares = if self.options.smooth == Smooth::Flat { &SHARES[2..] } else { &SHARES[..] };
+        for share in shares {
+            for v in work.inner() {
+                positions[v] = base[v].lerp(faired[v], *share);
+            }
+            if positions.iter().any(|p| !p.is_finite()) {
+                continue;
+            }
+            let most = best.as_ref().map_or(usize::MAX, |best| best.0);
+            let faults = Faults::of(work, &positions, most, progress)?;
+            if faults.meetings < most {
+                best = Some((faults.meetings, positions.clone()));
+            }
+            if faults.meetings == 0 {
+                break;
+            }
+        }
+        let Some((_, positions)) = best else {
+            return Err(Error::Solver { stage: "fill", reason: "a vertex is not finite".into() });
+        };
+        shape.positions = positions;
+        Ok(())
+    }
+
+    fn finish(&self, shape: Shape, clock: Clock) -> Fill {
+        let work = &shape.work;
+        let own = &work.triangles[..work.n_patch];
+        let irregular = |v: &usize| work.range(*v).len() != 6;
+        let report = FillReport {
+            triangles: own.len(),
+            vertices: work.inner().len(),
+            irregular: work.inner().filter(irregular).count(),
+            irregular_loop: (0..work.n).filter(irregular).count(),
+            grid: Grid::Even,
+            rim_angle: rim_angle(work, &shape.positions),
+            unrolling: Unrolling::default(),
+            winding_conflicts: self.checked.iter().map(|c| c.conflicts).sum(),
+            wire_edges: self.checked.iter().map(|c| c.wire).sum(),
+            min_angle: min_angle(&shape.positions, own),
+            folds: folds(work, &shape.positions),
+            seconds: clock.seconds,
+            ..FillReport::default()
+        };
+        let given = |c: &Checked| {
+            let mut vertices = c.vertices.clone();
+            if c.reversed {
+                vertices.reverse();
+            }
+            vertices
+        };
+        Fill::of(self.checked.iter().flat_map(given).collect(), shape, report)
+    }
+}
