@@ -94,8 +94,8 @@ class Job:
         return f"{own}: {problem.reason}" if several and own not in problem.reason else problem.reason
 
 
-def add_all(jobs: list[Job]) -> None:
-    """Put all patches into their meshes; if one fails, no mesh keeps any."""
+def add_all(jobs: list[Job], *, join: bool = False) -> None:
+    """Put all patches into their meshes; if one fails, no mesh keeps any. join : triangles become quads where that is good."""
     try:
         for job in jobs:
             job.edited.add(job.patches, job.added)
@@ -104,7 +104,7 @@ def add_all(jobs: list[Job]) -> None:
             job.edited.take_back(job.added)
         raise
     for job in jobs:
-        job.edited.finish(job.added)
+        job.edited.finish(job.added, join=join)
 
 
 def faces_made(quads: int, triangles: int) -> str:
