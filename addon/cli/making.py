@@ -132,7 +132,9 @@ def _filled(ob: bpy.types.Object, options: dict[str, Any]) -> filling.Job:
         job = filling.Job(EditMesh(ob))
         job.find_all(options.get("max_edges", defaults.MAX_HOLE_EDGES))
         job.fill(
-            options.get("smooth", "tangent"), lambda _: True, cells=options.get("cells", defaults.CELLS.lower())
+            options.get("smooth", "tangent"),
+            lambda _: True,
+            cells=options.get("cells", defaults.CELLS.lower()),
         )
         if job.patches:
             filling.add_all([job])

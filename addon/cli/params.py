@@ -37,7 +37,10 @@ class Param:
         elif self.kind == "choice":
             good, allowed = value in self.choices, " or ".join(self.choices)
         elif self.kind == "text":
-            good, allowed = isinstance(value, str) and bool(value) and "\0" not in value, "a text that is not empty"
+            good, allowed = (
+                isinstance(value, str) and bool(value) and "\0" not in value,
+                "a text that is not empty",
+            )
         elif self.kind == "stroke":
             good = (isinstance(value, str) and bool(value) and "\0" not in value) or _is_line(value)
             allowed = "a file, the name of an object, or a list of points"
@@ -86,7 +89,9 @@ _WELD = Param(
 )
 
 _PATCH_CELLS = Param(
-    "choice", "what patches are made of; of quads, one triangle if a rim is odd (triangles)", ("triangles", "quads")
+    "choice",
+    "what patches are made of; of quads, one triangle if a rim is odd (triangles)",
+    ("triangles", "quads"),
 )
 
 OPS: Mapping[str, Mapping[str, Param]] = {

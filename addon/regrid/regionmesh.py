@@ -13,7 +13,6 @@ from ..api import Regridded
 from ..fill.editmesh import Added, EditMesh, Snapshot
 from .carried import Carried, Places
 
-
 _MEMBER = 0.5
 """Weight from which on a vertex belongs to a group."""
 

@@ -181,7 +181,10 @@ def test_regrid_of_whole_areas(tmp_path):
     assert open_edges(found["Ball"]) == 0
     assert {len(polygon.vertices) for polygon in found["Ball"].data.polygons} == {3}
     materials = [polygon.material_index for polygon in found["Ball"].data.polygons]
-    assert all((polygon.center.x > 0.3) == m for polygon, m in zip(found["Ball"].data.polygons, materials, strict=True))
+    assert all(
+        (polygon.center.x > 0.3) == m
+        for polygon, m in zip(found["Ball"].data.polygons, materials, strict=True)
+    )
 
 
 def test_regrid_of_what_is_not_there(tmp_path):

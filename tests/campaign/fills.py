@@ -332,9 +332,7 @@ def faults(vertices, faces, loop, fill, others=()):
     unique, counts = np.unique(keys(edges), return_counts=True)
     expect(counts.max() <= 2, "an edge of three faces")
     rim = np.c_[loop, np.roll(loop, -1)]
-    expect(
-        np.array_equal(unique[counts == 1], np.sort(keys(rim))), "not one face at each edge of the loop"
-    )
+    expect(np.array_equal(unique[counts == 1], np.sort(keys(rim))), "not one face at each edge of the loop")
     expect(len(used) - len(unique) + sum(map(len, faces_of)) == 1, "not a disk (Euler)")
     expect(pieces(cut, used) == 1, "not a disk (pieces)")
     expect(fans_close(cut, set(loop.tolist())), "not a disk (fans)")

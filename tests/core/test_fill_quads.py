@@ -166,7 +166,7 @@ def test_hard_edges_go_on_in_quads(name: str) -> None:
 
 
 def test_a_fill_of_quads_survives_pickling_and_follows_the_mesh() -> None:
-    vertices, faces, loop, polygons = sheet_of_quads(np.zeros(144, bool))
+    vertices, faces, loop, _ = sheet_of_quads(np.zeros(144, bool))
     vertices[:, 2] = np.sin(vertices[:, 0])
     for way in (loop, loop[::-1], np.delete(loop, 3)):
         fill = gridmesh.fill_hole(vertices, faces if len(way) == len(loop) else NO_FACES, way, cells="quads")
