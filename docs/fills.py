@@ -12,8 +12,8 @@
 
     uv run docs/fills.py [PICTURE.png]
 
-Above, each mesh with its holes; below, the same after *Fill All Holes*, patches in colour: Suzanne without her
-eyeballs, a cylinder, and a sphere with a shape key, at rest and with the key.
+Above, each mesh with its holes; below, the same after *Fill All Holes*, patches in colour, of triangles and of quads: Suzanne
+without her eyeballs, a cylinder, and a sphere with a shape key, at rest and with the key.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ import addon  # noqa: E402
 gallery.bpy = bpy
 
 STEP, RISE = 2.9, 2.7
-"""From one mesh to the next, and from the lower row to the upper one."""
+"""From one mesh to the next, and from a row to the one above."""
 
 
 def suzanne():
@@ -117,11 +117,11 @@ def bent_sphere():
     return ob
 
 
-def fill(ob) -> int:
+def fill(ob, cells: str) -> int:
     """Fill all holes; the patch gets the second material. Returns how many faces are new."""
     bpy.context.view_layer.objects.active = ob
     bpy.ops.object.mode_set(mode="EDIT")
-    done = bpy.ops.mesh.gridmesh_fill(holes="ALL", max_edges=0)
+    done = bpy.ops.mesh.gridmesh_fill(holes="ALL", max_edges=0, cells=cells)
     bpy.ops.object.mode_set(mode="OBJECT")
     if done != {"FINISHED"}:
         raise SystemExit(f"{ob.name} was not filled")
@@ -129,6 +129,17 @@ def fill(ob) -> int:
     ob.data.polygons.foreach_get("select", chosen)
     ob.data.polygons.foreach_set("material_index", chosen.astype(np.int32))
     return int(chosen.sum())
+
+
+def wires(ob, material) -> None:
+    """The edges as thin bars: the renderer's own lines show quads cut into triangles."""
+    copy = ob.copy()
+    copy.data = ob.data.copy()
+    copy.data.materials.clear()
+    copy.data.materials.append(material)
+    bars = copy.modifiers.new("Wires", "WIREFRAME")
+    bars.thickness, bars.use_relative_offset, bars.use_even_offset = 0.012, False, False
+    bpy.context.scene.collection.objects.link(copy)
 
 
 def stage(width: float, height: float, pixels: int, samples: int) -> None:
@@ -169,20 +180,23 @@ def main() -> None:
     addon.register()
     pixels = 1000
     plain = gallery.body_material("Mesh", "#9AA3AE", 0.4)
+    line = gallery.body_material("Edges", "#3A3F47", 0.4)
     patch = gallery.body_material("Patch", "#E8963A", 0.4)
     makers = (suzanne, cylinder, sphere, bent_sphere)
     tilts = ((0, 0, 0.25), (0.75, 0.2, 0), (0, 0, 0), (0, 0, 0))
     for k, (make, tilt) in enumerate(zip(makers, tilts, strict=True)):
-        for row in (0, 1):
+        for row in range(3):
             ob = make()
             ob.data.materials.clear()
             ob.data.materials.append(plain)
             ob.data.materials.append(patch)
-            if row == 0:
-                print(f"{make.__name__}: {fill(ob)} new faces")
+            if row < 2:
+                cells = ("QUADS", "TRIANGLES")[row]
+                print(f"{make.__name__}: {fill(ob, cells)} new {cells.lower()}")
             ob.rotation_euler = tilt
-            ob.location = ((k - 1.5) * STEP, 0, (row - 0.5) * RISE)
-    stage(4 * STEP, 2 * RISE + 0.1, pixels, 24)
+            ob.location = ((k - 1.5) * STEP, 0, (row - 1) * RISE)
+            wires(ob, line)
+    stage(4 * STEP, 3 * RISE + 0.1, pixels, 24)
     bpy.context.scene.render.filepath = str(picture)
     with gallery.quiet():
         bpy.ops.render.render(write_still=True)

@@ -17,8 +17,9 @@ GERMAN = {
     # Operators and the sidebar
     "Annotations to Mesh": "Anmerkungen zu Mesh",
     "Fill All Holes": "Alle Löcher füllen",
-    "Fill the selected hole with a regular triangle patch that fits its edges": (
-        "Das ausgewählte Loch mit einem regelmäßigen Flicken aus Dreiecken füllen, der an seine Kanten passt"
+    "Fill the selected hole with a regular patch of triangles or quads that fits its edges": (
+        "Das ausgewählte Loch mit einem regelmäßigen Flicken aus Dreiecken oder Vierecken füllen, der an seine Kanten "
+        "passt"
     ),
     "Keep Shape": "Form behalten",
     "Lay the grid on the old surface; without, the area becomes a smooth patch between its edges": (
@@ -575,6 +576,12 @@ GERMAN = {
         "Je zwei Dreiecke zu einem Viereck verbinden, wo das gute gibt"
     ),
     "Keep Hard Edges": "Harte Kanten erhalten",
+    "Quads, four around almost every vertex, that go on from those around; one triangle where the number of edges "
+    "is odd": (
+        "Vierecke, vier um fast jeden Punkt, die die umgebenden fortsetzen; ein Dreieck, wo die Zahl der Kanten "
+        "ungerade ist"
+    ),
+    "What patches are made of": "Woraus Flicken bestehen",
     "Max Edges": "Höchstens Kanten",
     "Selected loops of open edges, and the whole holes that single selected edges or vertices lie on": (
         "Ausgewählte Schleifen offener Kanten, und ganze Löcher, an denen einzelne ausgewählte Kanten oder Punkte liegen"

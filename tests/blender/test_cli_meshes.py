@@ -120,6 +120,80 @@ def test_the_buffer_of_a_gltf_is_part_of_the_input(tmp_path):
     assert files.key_of([], [str(path)], 1e9, outside=False)[0] != before
 
 
+def test_fill_in_quads(tmp_path):
+    ball()
+    path = save(tmp_path / "ball.ply")
+    ran = run("fill", path, "-o", tmp_path / "whole.ply", "--cells", "quads")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert (result["holes"], result["triangles"]) == (1, 0)
+    (ob,) = load(tmp_path / "whole.ply").values()
+    assert open_edges(ob) == 0
+    assert sum(len(polygon.vertices) == 4 for polygon in ob.data.polygons) >= result["quads"] > 0
+
+
+def half(ob):
+    """A material, a vertex group and a face attribute for what is right of x = 0.3."""
+    mesh = ob.data
+    chosen = [polygon.index for polygon in mesh.polygons if polygon.center.x > 0.3]
+    for name in ("Left", "Right"):
+        mesh.materials.append(bpy.data.materials.new(name))
+    for index in chosen:
+        mesh.polygons[index].material_index = 1
+    group = ob.vertex_groups.new(name="Bone")
+    group.add([v for index in chosen for v in mesh.polygons[index].vertices], 1.0, "REPLACE")
+    mesh.attributes.new("area", "BOOLEAN", "FACE").data.foreach_set(
+        "value", [polygon.index in set(chosen) for polygon in mesh.polygons]
+    )
+    return len(chosen)
+
+
+@pytest.mark.parametrize("name", ["Right", "Bone", "area"])
+def test_regrid_of_named_areas(tmp_path, name):
+    ob = ball(opened=False)
+    other = ball("Other", z=3, opened=False)
+    chosen, rest = half(ob), len(ob.data.polygons)
+    path = save(tmp_path / "ball.blend")
+    others = len(other.data.polygons)
+    ran = run("regrid", path, "-o", tmp_path / "out.blend", "--select", name, "--cells", "quads")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert (result["areas"], result["triangles"]) == (1, 0)
+    found = load(tmp_path / "out.blend")
+    assert len(found["Other"].data.polygons) == others, "it has nothing of that name"
+    assert open_edges(found["Ball"]) == 0
+    assert len(found["Ball"].data.polygons) == rest - chosen + result["quads"]
+    points = np.array([vertex.co for vertex in found["Ball"].data.vertices])
+    assert np.linalg.norm(points, axis=1).min() > 0.97
+
+
+def test_regrid_of_whole_areas(tmp_path):
+    """Without a name each connected area of one material; one that is no disk stays, and is named."""
+    half(ball(opened=False))
+    ball("Closed", z=3, opened=False)
+    path = save(tmp_path / "ball.blend")
+    ran = run("regrid", path, "-o", tmp_path / "out.blend")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert (result["status"], result["areas"]) == ("warning", 2)
+    assert "Closed" in result["message"]
+    found = load(tmp_path / "out.blend")
+    assert open_edges(found["Ball"]) == 0
+    assert {len(polygon.vertices) for polygon in found["Ball"].data.polygons} == {3}
+    for polygon in found["Ball"].data.polygons:  # those at the border reach over it
+        assert (polygon.center.x > 0.3) == polygon.material_index or abs(polygon.center.x - 0.3) < 0.15
+
+
+def test_regrid_of_what_is_not_there(tmp_path):
+    ball()
+    path = save(tmp_path / "ball.ply")
+    ran = run("regrid", path, "-o", tmp_path / "out.ply", "--select", "Nothing")
+    assert ran.returncode == 1
+    (result,) = results(tmp_path).values()
+    assert (result["status"], result["kind"]) == ("error", "areas")
+    assert "no face belongs to 'Nothing'" in result["message"]
+
+
 def test_a_blend_file_keeps_everything_else(tmp_path):
     ball("Leaf 1")
     ball("Leaf 2", z=3)

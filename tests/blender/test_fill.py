@@ -300,18 +300,33 @@ def test_again_after_undo_with_other_options():
     assert not len(rim_of(bpy.data.objects["Cylinder"]))
 
 
-def test_quads(capfd):
+def test_quads_go_on_through_the_rim(capfd):
     ob = grid(8)
     without_faces(ob, lambda c: max(abs(c.x), abs(c.y)) > 2)
     before = Before(ob)
     bm = edit(ob)
     select(ob, [edge for edge in rim(bm) if all(abs(v.co.x) < 3.9 and abs(v.co.y) < 3.9 for v in edge.verts)])
-    fill(use_quads=True)
+    fill(cells="QUADS")
     leave()
     patch = before.check(ob, closed=False, triangles=False)
-    quads = sum(len(face) == 4 for face in patch)
-    assert quads > 0.3 * len(patch)
-    assert f"Filled 1 hole: {quads} quads" in capfd.readouterr().out
+    assert [len(face) for face in patch] == [4] * 16
+    assert "Filled 1 hole: 16 quads, 0 irregular vertices" in capfd.readouterr().out
+    points = vertices(ob.data)
+    assert np.abs(points - np.round(points)).max() < 1e-2, "the grid that was there"
+
+
+@pytest.mark.parametrize("n", [5, 12, 17])
+def test_an_odd_hole_gets_one_triangle(n, capfd):
+    ob = cylinder(n)
+    edit(ob)
+    fill(holes="ALL", max_edges=0, cells="QUADS")
+    leave()
+    patches = [len(polygon.vertices) for polygon in ob.data.polygons if polygon.select]
+    assert patches.count(3) == 2 * (n % 2)
+    assert patches.count(4) == len(patches) - 2 * (n % 2)
+    assert not len(rim_of(ob))
+    out = capfd.readouterr().out
+    assert ("and 2 triangles" in out) == (n % 2 == 1)
 
 
 def test_big_mesh_with_a_small_hole():

@@ -44,8 +44,10 @@ def volume(ob):
 @pytest.mark.parametrize("quads", [False, True])
 def test_a_corner_becomes_a_corner(quads):
     ob = cube(corner)
-    fill(keep_hard=True, use_quads=quads)
+    fill(keep_hard=True, cells="QUADS" if quads else "TRIANGLES")
     leave()
+    sizes = [len(polygon.vertices) for polygon in ob.data.polygons if polygon.select]
+    assert not quads or sizes.count(3) == sum(sizes) % 2
     assert np.isclose(volume(ob), 8, rtol=1e-6)
     hard = sharp(ob)
     assert len(hard) >= 6

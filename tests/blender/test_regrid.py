@@ -197,12 +197,24 @@ def test_without_keeping_the_shape_the_area_is_smoothed_over():
     assert np.abs(vertices(ob.data)[:, 2]).max() < 0.05
 
 
-def test_triangles_are_joined_to_quads_where_asked_for():
+def test_areas_become_quads():
+    """An area of a sphere, with what it carries."""
     ob = sphere()
+    points = vertices(ob.data)
+    group = ob.vertex_groups.new(name="Bone")
+    for vertex in ob.data.vertices:
+        group.add([vertex.index], float(0.5 + 0.4 * points[vertex.index, 0]), "REPLACE")
     select_faces(ob, lambda at: at.x > 0.3)
-    regrid(use_quads=True)
-    sizes = [len(face) for face in check(ob)]
-    assert sizes.count(4) > len(sizes) / 2
+    regrid(cells="QUADS")
+    patch = check(ob)
+    assert {len(face) for face in patch} == {4}
+    new = np.unique(patch)
+    radius = np.linalg.norm(vertices(ob.data)[new], axis=1)
+    assert radius.min() > 0.97
+    assert radius.max() < 1 + 1e-6
+    weights = [ob.data.vertices[v].groups[0].weight for v in new]
+    assert np.abs(np.array(weights) - (0.5 + 0.4 * vertices(ob.data)[new, 0])).max() < 0.02
+    assert np.isfinite(uv_of(ob)).all()
 
 
 def test_one_undo_step(capfd):

@@ -167,7 +167,7 @@ def test_panel_of_a_live_body():
 def test_redo_panel_of_fill():
     drawn = options(MESH_OT_gridmesh_fill, result="Filled 1 hole: 4 triangles, 0 irregular vertices, 1 ms")
     assert drawn[:2] == ["Filled 1 hole: 4 triangles", "0 irregular vertices, 1 ms"]
-    assert {"holes", "smooth", "use_quads", "close_chains"} <= set(drawn)
+    assert {"holes", "smooth", "cells", "close_chains"} <= set(drawn)
     assert "max_edges" in options(MESH_OT_gridmesh_fill, holes="ALL")
 
 

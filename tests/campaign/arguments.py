@@ -112,6 +112,7 @@ def calls():
             "polygons": np.arange(len(faces)),
             "sharp": 0.5,
             "creases": [[30, 21]],
+            "cells": "quads",
             "progress": None,
         },
         "fill_holes": {
@@ -124,6 +125,7 @@ def calls():
             "polygons": None,
             "sharp": None,
             "creases": None,
+            "cells": None,
             "progress": None,
         },
         "regrid": {
@@ -134,6 +136,7 @@ def calls():
             "smooth": "flat",
             "strict": False,
             "polygons": None,
+            "cells": "triangles",
             "progress": None,
         },
         "cut": {

@@ -291,8 +291,10 @@ LOOPS = {
 # ---------------------------------------------------------------- checks
 
 
-def half_edges(triangles):
-    return np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+def half_edges(faces):
+    """Directed edges of triangles, or of quads."""
+    n = faces.shape[1]
+    return np.concatenate([faces[:, [k, (k + 1) % n]] for k in range(n)])
 
 
 def keys(pairs):
@@ -304,7 +306,8 @@ def keys(pairs):
 def faults(vertices, faces, loop, fill, others=()):
     """What a fill has got wrong. `others`: fills of the same call that came before."""
     n, loop = len(vertices), np.asarray(loop, np.int64)
-    triangles, new = fill.triangles.astype(np.int64), fill.vertices
+    faces_of = faces_by_size(fill)
+    cut, new = cut_up(fill), fill.vertices
     found = []
 
     def expect(right, what):
@@ -313,35 +316,34 @@ def faults(vertices, faces, loop, fill, others=()):
 
     expect(np.array_equal(fill.loop, loop), "the loop is another one")
     expect(np.isfinite(new).all(), "a new vertex is not finite")
-    expect(
-        len(triangles) and triangles.min() >= 0 and triangles.max() < n + len(new), "vertices out of range"
-    )
+    expect(len(cut) and cut.min() >= 0 and cut.max() < n + len(new), "vertices out of range")
     if found:
         return found
-    expect(
-        ((np.sort(triangles, axis=1)[:, 1:] - np.sort(triangles, axis=1)[:, :-1]) > 0).all(), "a corner twice"
-    )
-    used = np.unique(triangles)
+    for same in faces_of:
+        expect(((np.sort(same, axis=1)[:, 1:] - np.sort(same, axis=1)[:, :-1]) > 0).all(), "a corner twice")
+    if len(fill.quads):
+        expect(len(fill.triangles) == len(loop) % 2, "not one triangle for an odd loop, none for an even one")
+    used = np.unique(cut)
     expect(np.array_equal(used[used < n], np.sort(loop)), "other vertices than the loop's at the boundary")
     expect(np.array_equal(used[used >= n], np.arange(n, n + len(new))), "unused new vertices")
-    edges = half_edges(triangles)
+    edges = np.concatenate([half_edges(same) for same in faces_of])
     directed = edges[:, 0] << 32 | edges[:, 1]
     expect(len(np.unique(directed)) == len(directed), "an edge twice in one direction")
     unique, counts = np.unique(keys(edges), return_counts=True)
-    expect(counts.max() <= 2, "an edge of three triangles")
+    expect(counts.max() <= 2, "an edge of three faces")
     rim = np.c_[loop, np.roll(loop, -1)]
-    expect(
-        np.array_equal(unique[counts == 1], np.sort(keys(rim))), "not one triangle at each edge of the loop"
-    )
-    expect(len(used) - len(unique) + len(triangles) == 1, "not a disk (Euler)")
-    expect(pieces(triangles, used) == 1, "not a disk (pieces)")
-    expect(fans_close(triangles, set(loop.tolist())), "not a disk (fans)")
+    expect(np.array_equal(unique[counts == 1], np.sort(keys(rim))), "not one face at each edge of the loop")
+    expect(len(used) - len(unique) + sum(map(len, faces_of)) == 1, "not a disk (Euler)")
+    expect(pieces(cut, used) == 1, "not a disk (pieces)")
+    expect(fans_close(cut, set(loop.tolist())), "not a disk (fans)")
     if len(faces):
         real = faces[(faces >= 0).all(axis=1) & (faces < n).all(axis=1)]
         old = keys(half_edges(real))
         expect(not np.isin(unique[counts == 2], old).any(), "a new edge repeats one of the mesh")
         rows = {tuple(row) for row in np.sort(real, axis=1).tolist()}
-        expect(not any(tuple(row) in rows for row in np.sort(triangles, axis=1).tolist()), "a face repeats")
+        expect(
+            not any(tuple(row) in rows for row in np.sort(fill.triangles, axis=1).tolist()), "a face repeats"
+        )
         sound = real[(real[:, 0] != real[:, 1]) & (real[:, 1] != real[:, 2]) & (real[:, 2] != real[:, 0])]
         there = half_edges(sound)
         along = np.isin(there[:, 0] << 32 | there[:, 1], directed).sum()
@@ -351,11 +353,24 @@ def faults(vertices, faces, loop, fill, others=()):
         expect(2 * along <= beside, "wound like most neighbours")
         expect(fill.report["wire_edges"] == len(rim) - beside, "wire edges")
     for other in others:
-        mine, theirs = unique[counts == 2], keys(half_edges(other.triangles.astype(np.int64)))
+        mine = unique[counts == 2]
+        theirs = np.concatenate([keys(half_edges(same)) for same in faces_by_size(other)])
         high, low = (mine & 0xFFFFFFFF) < n, (mine >> 32) < n
         expect(not np.isin(mine[high & low], theirs).any(), "a new edge repeats one of another fill")
-    expect(fill.report["triangles"] == len(triangles), "number of triangles")
+    expect(fill.report["triangles"] == len(fill.triangles), "number of triangles")
+    expect(fill.report["quads"] == len(fill.quads), "number of quads")
     return found
+
+
+def faces_by_size(fill):
+    """The triangles and the quads of a fill."""
+    return [fill.triangles.astype(np.int64), fill.quads.astype(np.int64)]
+
+
+def cut_up(fill):
+    """Triangles, and quads each cut in two."""
+    triangles, quads = faces_by_size(fill)
+    return np.concatenate([triangles, quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
 def pieces(triangles, used):
@@ -486,7 +501,7 @@ def borders(faces):
     return loops
 
 
-def run(number, seed):
+def run(number, seed, cells="triangles"):
     """Make and check case `number` of a seed."""
     rng = np.random.default_rng([seed, number])
     case = Case(number)
@@ -503,7 +518,7 @@ def run(number, seed):
     way = rng.choice(["fill_hole", "fill_holes", "all", "regrid"], p=[0.4, 0.3, 0.2, 0.1])
     if not len(faces) and way in ("all", "regrid"):
         way = "fill_hole"
-    options = {"smooth": str(rng.choice(["flat", "tangent", "curvature"]))}
+    options = {"smooth": str(rng.choice(["flat", "tangent", "curvature"])), "cells": cells}
     if rng.random() < 0.15:
         options["strict"] = True
     if rng.random() < 0.15 and len(faces):
@@ -539,7 +554,7 @@ def run(number, seed):
             refused(case, item)
             continue
         case.outcomes.append("filled")
-        case.triangles = max(case.triangles, len(item.triangles))
+        case.triangles = max(case.triangles, len(item.triangles) + 2 * len(item.quads))
         case.wrong += faults(vertices, mesh, item.loop if loop is None else loop, item, fills)
         fills.append(item)
     return case
@@ -604,11 +619,11 @@ def call(rng, way, vertices, triangles, faces, loops, options):
     return [(None, np.delete(faces, chosen, axis=0), done.fill)]
 
 
-def campaign(cases, seed, *, tell=lambda _case: None):
+def campaign(cases, seed, *, cells="triangles", tell=lambda _case: None):
     """Run all cases of a seed."""
     done = []
     for number in range(cases):
-        case = run(number, seed)
+        case = run(number, seed, cells)
         tell(case)
         done.append(case)
     return done
@@ -620,6 +635,7 @@ def main():
     parser.add_argument("--cases", type=int, default=3000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", type=int)
+    parser.add_argument("--cells", choices=("triangles", "quads"), default="triangles")
     options = parser.parse_args()
 
     def tell(case):
@@ -629,9 +645,9 @@ def main():
             print(f"{case.number}: {case.name}: {case.seconds:.2f} s; {'; '.join(case.wrong)}", flush=True)
 
     if options.only is not None:
-        print(run(options.only, options.seed))
+        print(run(options.only, options.seed, options.cells))
         return
-    done = campaign(options.cases, options.seed, tell=tell)
+    done = campaign(options.cases, options.seed, cells=options.cells, tell=tell)
     print(Counter(outcome for case in done for outcome in case.outcomes).most_common())
     print(f"{sum(bool(case.wrong) for case in done)} of {len(done)} cases wrong")
     for title, key in (("slowest", "seconds"), ("longest without a report", "longest_wait")):

@@ -309,8 +309,9 @@ def test_the_angle_is_checked():
 # ---------------------------------------------------------------- campaigns, a short run of each
 
 
-def test_random_holes():
-    cases = fills.campaign(150, seed=11)
+@pytest.mark.parametrize("cells", ["triangles", "quads"])
+def test_random_holes(cells):
+    cases = fills.campaign(150, seed=11, cells=cells)
     assert not [(case.number, case.name, case.wrong) for case in cases if case.wrong]
     assert sum("filled" in case.outcomes for case in cases) > 40
 

@@ -240,7 +240,7 @@ pub fn fill_holes(
 ///     "evened" or "circle": how the loop was laid out in the plane), "distortion" (largest relative change
 ///     of a loop edge thereby), "winding_conflicts" (loop edges whose neighbour is wound against most
 ///     others), "wire_edges" (loop edges without a neighbour), "min_angle" and "max_angle" (of all corners of new faces, radians; above pi where a quad is concave), "folds" (edges with
-///     more than 120 degrees between new triangles), "self_intersections" (pairs of triangles that meet, at
+///     more than 120 degrees between new triangles, and concave corners of quads), "self_intersections" (pairs of triangles that meet, at
 ///     least one of them new), "creases" (hard edges that run into the loop, counted with `sharp`) and
 ///     "creases_kept" (those that go on: all or none), "repaired" (fallbacks taken), and "seconds", a dict of times per stage.
 #[pyclass(frozen, module = "gridmesh")]

@@ -38,7 +38,7 @@ pub struct FillReport {
     pub min_angle: f64,
     /// Largest corner, in radians; more than pi where a quad is concave.
     pub max_angle: f64,
-    /// Inner edges of the patch with more than 120 degrees between the triangles.
+    /// Inner edges of the patch with more than 120 degrees between the triangles, and concave corners of quads.
     pub folds: usize,
     /// Pairs of triangles, at least one of them new, that meet where they should not; counted up to 100,000.
     pub self_intersections: usize,

@@ -114,6 +114,17 @@ impl CornerStars {
         }
         stars
     }
+
+    /// With a vertex more for each quad, in its middle.
+    pub fn with_centres(mut self, quads: &[[u32; 4]]) -> Self {
+        for quad in quads {
+            self.corners.extend((0..4).map(|k| (quad[k], quad[(k + 1) % 4], Ideal::Own)));
+            self.start.push(self.corners.len() as u32);
+            self.near.extend(quad);
+            self.near_start.push(self.near.len() as u32);
+        }
+        self
+    }
 }
 
 impl Stars for CornerStars {

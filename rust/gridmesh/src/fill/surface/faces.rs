@@ -1,9 +1,90 @@
 //! The faces of a patch: triangles, or quads that the solvers know as pairs of triangles.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
+use super::fair::{Bending, Membrane};
+use super::fit::{Faults, SEAM, SEAM_OF_CURVATURE, Solved, TANGLED, curvature_target, sound};
 use super::patchwork::Patchwork;
+use crate::error::Result;
+use crate::fill::filled::Shape;
+use crate::fill::options::Smooth;
 use crate::fill::planar::stars::CornerStars;
+use crate::progress::Progress;
+
+/// Share of the last step that is taken: with all of it patches of few quads bulge, since diagonals stand for curved
+/// quads; with none of it their seams are rougher than those of triangles by a quarter.
+const POLISH: f64 = 0.6;
+
+impl Shape {
+    /// The same with a vertex in the middle of each quad, and four triangles around it: bent, it is the same in all
+    /// directions, where a diagonal would make a difference.
+    fn centred(&self) -> Result<Shape> {
+        let work = &self.work;
+        let (end, more) = (work.end, work.quads);
+        let quads = work.quads().collect::<Vec<_>>();
+        let centre = |k: usize| (end + k) as u32;
+        let four = |(k, q): (usize, &[u32; 4])| [0, 1, 2, 3].map(|i| [q[i], q[(i + 1) % 4], centre(k)]);
+        let mut triangles = quads.iter().enumerate().flat_map(four).collect::<Vec<_>>();
+        triangles.extend(work.single());
+        let n_patch = triangles.len();
+        let shifted = |v: u32| if (v as usize) < end { v } else { v + more as u32 };
+        triangles.extend(work.triangles[work.n_patch..].iter().map(|t| t.map(shifted)));
+        let mut fine = Patchwork::of(work.n, end + more, work.outer.clone(), triangles, n_patch)?;
+        fine.corners =
+            Some(CornerStars::new(&quads, work.single().first().copied(), work.n, end).with_centres(&quads));
+        let mut flat = self.flat.clone();
+        flat.extend(quads.iter().map(|q| q.iter().map(|&v| self.flat[v as usize]).sum::<DVec2>() / 4.0));
+        Ok(Shape { work: fine, flat, ..self.clone() })
+    }
+
+    /// Positions for a mesh with vertices at `mesh`.
+    ///
+    /// # Errors
+    /// As [`Shape::solved`].
+    pub(in crate::fill) fn solve(&self, mesh: &[DVec3], progress: Progress<'_>) -> Result<Solved> {
+        let work = &self.work;
+        if work.quads == 0 {
+            return self.solved(mesh, progress);
+        }
+        let mut solved = self.centred()?.solved(mesh, progress.part(0.0, 0.6))?;
+        solved.positions.drain(work.end..work.end + work.quads);
+        let mut polished = solved.positions.clone();
+        if self.smooth != Smooth::Flat && !work.inner().is_empty() && self.polish(&mut polished).is_ok() {
+            for (p, to) in solved.positions.iter_mut().zip(polished) {
+                *p = p.lerp(to, POLISH);
+            }
+        }
+        let film = solved.faults.film;
+        solved.faults = Faults { film, ..self.faults(&solved.positions, progress.part(0.6, 0.7))? };
+        if solved.faults == Faults::default() {
+            return Ok(solved);
+        }
+        // Where much is bent on few quads, the other way may be better.
+        let mut plain = self.solved(mesh, progress.part(0.7, 0.9))?;
+        let film = plain.faults.film;
+        plain.faults = Faults { film, ..self.faults(&plain.positions, progress.part(0.9, 1.0))? };
+        Ok(if plain.faults < solved.faults { plain } else { solved })
+    }
+
+    /// A step along the normals with the diagonals that the quads are cut along: they are what meets the
+    /// surroundings in the end.
+    fn polish(&self, positions: &mut [DVec3]) -> Result<()> {
+        let work = &self.work;
+        let bending = Bending::new(work)?;
+        let curvature = self.smooth == Smooth::Curvature;
+        let target =
+            if curvature { Some(curvature_target(work, &Membrane::new(work)?, positions)?) } else { None };
+        let seam = if curvature { SEAM_OF_CURVATURE } else { SEAM };
+        bending.normal_step(positions, seam, target.as_deref())?;
+        sound(positions)
+    }
+
+    fn faults(&self, positions: &[DVec3], progress: Progress<'_>) -> Result<Faults> {
+        let mut faults = Faults::of(&self.work, positions, TANGLED, progress)?;
+        faults.folds += self.work.concave(positions);
+        Ok(faults)
+    }
+}
 
 impl Patchwork {
     /// Takes the first `quads` pairs of the patch's triangles for quads: `[a, b, c]` and `[a, c, d]` are `[a, b, c, d]`.
@@ -35,6 +116,18 @@ impl Patchwork {
         self.quads().flatten().for_each(|v| faces[v as usize] += 1);
         self.single().iter().flatten().for_each(|&v| faces[v as usize] += 1);
         faces
+    }
+
+    /// How many corners of quads are beyond a straight angle, seen along the normal.
+    fn concave(&self, positions: &[DVec3]) -> usize {
+        let one = |quad: [u32; 4]| {
+            let p = quad.map(|v| positions[v as usize]);
+            let normal = (p[2] - p[0]).cross(p[3] - p[1]);
+            let is_concave =
+                |k: usize| (p[(k + 1) % 4] - p[k]).cross(p[(k + 3) % 4] - p[k]).dot(normal) <= 0.0;
+            (0..4).filter(|&k| is_concave(k)).count()
+        };
+        self.quads().map(one).sum()
     }
 
     /// The least and the greatest corner of the patch's faces, in radians; beyond a straight angle where a quad is

@@ -15,7 +15,7 @@ use crate::progress::Progress;
 /// Weight of the angles across the loop's edges against the curvatures at the vertices. Chosen on disks cut
 /// from meshes: with 0.7 the seam is rougher than its surroundings by a fifth, with more than 3 the
 /// triangles at it get worse.
-const SEAM: f64 = 3.0;
+pub(super) const SEAM: f64 = 3.0;
 
 /// The same where the curvature is to continue: then a curved surface has angles across the loop, too.
 pub(in crate::fill) const SEAM_OF_CURVATURE: f64 = 0.7;
@@ -34,7 +34,7 @@ const SETTLED: f64 = 1e-3;
 pub(in crate::fill) const LEAST_WEIGHT: f64 = 1e-3;
 
 /// Patches with this many meetings count as equally tangled: to count on takes time and helps nobody.
-const TANGLED: usize = 2000;
+pub(super) const TANGLED: usize = 2000;
 
 /// A loop counts as planar if it leaves its plane by less than this share of its size.
 const PLANAR: f64 = 1e-12;
@@ -84,7 +84,7 @@ impl Shape {
     /// thin plate on the film's metric. Then rounds that separate shape and sampling: sweeps within
     /// the surface make the triangles good, a step along the normals makes the bending small. Neither undoes
     /// the other, as each solve in three coordinates would.
-    pub(in crate::fill) fn solve(&self, mesh: &[DVec3], progress: Progress<'_>) -> Result<Solved> {
+    pub(in crate::fill) fn solved(&self, mesh: &[DVec3], progress: Progress<'_>) -> Result<Solved> {
         let work = &self.work;
         let mut positions = vec![DVec3::ZERO; work.len()];
         for (k, &v) in self.loop_.iter().enumerate() {
@@ -297,7 +297,7 @@ impl Shape {
 }
 
 /// Refuses positions that are not finite, as surroundings of very different sizes can bring about.
-fn sound(positions: &[DVec3]) -> Result<()> {
+pub(super) fn sound(positions: &[DVec3]) -> Result<()> {
     if positions.iter().all(|p| p.is_finite()) {
         return Ok(());
     }

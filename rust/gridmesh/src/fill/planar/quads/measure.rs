@@ -13,7 +13,10 @@ const LEAST: f64 = 45.0;
 const MOST: f64 = 135.0;
 
 /// What a pole costs.
-const POLE: f64 = 0.2;
+const POLE: f64 = 0.22;
+
+/// What a quad too much or too few at each loop vertex costs.
+const EXCESS: f64 = 0.6;
 
 pub(super) struct Measured {
     pub quality: Quality,
@@ -80,7 +83,7 @@ pub(super) fn measure(
     } else {
         let folded = if embedded { 0.0 } else { 100.0 };
         folded
-            + excess / n as f64
+            + EXCESS * excess / n as f64
             + POLE * poles as f64
             + (off / count).to_degrees() / 30.0
             + beyond(LEAST - least.to_degrees(), 20.0)
