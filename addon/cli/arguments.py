@@ -17,6 +17,7 @@ _HELP = {
     "strokes": "make smooth bodies of closed strokes",
     "fill": "fill the holes of meshes",
     "cut": "cut meshes along a stroke",
+    "join": "join all meshes of a file to one closed body",
     "sprites": "make meshes of pictures, with the picture on them",
 }
 
@@ -47,7 +48,7 @@ def main(argv: list[str]) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         "gridmesh",
-        description="Bodies from drawings, filled holes, cut meshes and sprites, for any number of files.",
+        description="Bodies from drawings, filled holes, cut and joined meshes, and sprites, for any number of files.",
     )
     verbs = parser.add_subparsers(required=True, metavar="COMMAND", dest="op")
     for op, known in params.OPS.items():

@@ -22,11 +22,12 @@ INPUTS = {
     "strokes": (*CURVES, ".blend"),
     "fill": (*MESHES, ".blend"),
     "cut": (*MESHES, ".blend"),
+    "join": (*MESHES, ".blend"),
     "sprites": (".png", ".jpg", ".jpeg", ".webp"),
 }
 _OUTPUTS = (".ply", ".obj", ".stl", ".glb", ".blend")
 OUTPUTS = {
-    **dict.fromkeys(("strokes", "fill", "cut"), _OUTPUTS),
+    **dict.fromkeys(("strokes", "fill", "cut", "join"), _OUTPUTS),
     "sprites": (".glb", ".gltf", ".blend", ".json", ".tscn"),
 }
 BESIDE = (".json", ".tscn")

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects joined to one closed body: what the operator, the command line and the drawing of strokes do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import bpy
+
+from .. import api
+from ..data import defaults
+from ..data.placing import Transaction
+from ..text.messages import counted
+from . import uniting
+from .joinobject import Target
+
+
+@dataclass(frozen=True)
+class Options:
+    """How parts are joined."""
+
+    blend: float = defaults.BLEND
+    edge_length: float | None = None
+    strict: bool = False
+    keep_parts: bool = False
+
+
+@dataclass
+class Done:
+    """What came of it."""
+
+    ob: bpy.types.Object
+    report: dict[str, Any]
+    result: str
+    """The numbers, as they are told."""
+    notes: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+
+def join(
+    context: bpy.types.Context,
+    objects: Sequence[bpy.types.Object],
+    options: Options,
+    progress: api.Progress | None = None,
+) -> Done:
+    """Join mesh objects to one closed body in the first of them, which becomes the only one selected.
+
+    Raises
+    ------
+    uniting.JoinError, api.NativeError, api.CancelledError
+        The scene is as before.
+    """
+    api.native("join")
+    with Transaction() as transaction:
+        target = Target(objects, transaction)
+        notes = _notes(target, options)
+        made = uniting.unite(
+            target.parts,
+            blend=options.blend,
+            edge_length=options.edge_length,
+            strict=options.strict,
+            progress=progress,
+        )
+        crease = options.blend == 0
+        ob = target.apply(context, made, transaction, crease=crease, keep=options.keep_parts)
+    return Done(
+        ob, made.report, _result(ob, len(objects), made.report), notes, uniting.warnings_of(made.report)
+    )
+
+
+def _notes(target: Target, options: Options) -> list[str]:
+    notes = []
+    turned = [source.ob.name for source in target.sources if source.was_inside_out]
+    if turned:
+        notes.append(f"inside out, and turned round: {', '.join(turned)}")
+    modified = [ob.name for ob in target.objects[1:] if len(ob.modifiers)]
+    if modified:
+        notes.append(f"joined without their modifiers: {', '.join(modified)}")
+    if target.live and not options.keep_parts:
+        notes.append(f"frozen, since a joined body cannot follow its drawings: {', '.join(target.live)}")
+    return notes
+
+
+def _result(ob: bpy.types.Object, parts: int, report: dict[str, Any]) -> str:
+    sides = [len(polygon.vertices) for polygon in ob.data.polygons]
+    made = []
+    for what, number in (
+        ("triangle", sides.count(3)),
+        ("quad", sides.count(4)),
+        ("polygon", sum(n > 4 for n in sides)),
+    ):
+        if number:
+            made.append(counted(number, what))
+    return f"Joined {counted(parts, 'part')}: {', '.join([*made, counted(report['irregular'], 'irregular vertex')])}"
