@@ -32,11 +32,17 @@ class Done:
     """What came of it."""
 
     ob: bpy.types.Object
+    parts: int
     report: dict[str, Any]
-    result: str
-    """The numbers, as they are told."""
     notes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+
+    def result(self, seconds: float) -> str:
+        """The numbers, as they are told."""
+        irregular = counted(self.report["irregular"], "irregular vertex")
+        return (
+            f"Joined {counted(self.parts, 'part')}: {_faces(self.ob)}, {irregular}, {1000 * seconds:.0f} ms"
+        )
 
 
 def join(
@@ -65,9 +71,7 @@ def join(
         )
         crease = options.blend == 0
         ob = target.apply(context, made, transaction, crease=crease, keep=options.keep_parts)
-    return Done(
-        ob, made.report, _result(ob, len(objects), made.report), notes, uniting.warnings_of(made.report)
-    )
+    return Done(ob, len(objects), made.report, notes, uniting.warnings_of(made.report))
 
 
 def _notes(target: Target, options: Options) -> list[str]:
@@ -83,14 +87,13 @@ def _notes(target: Target, options: Options) -> list[str]:
     return notes
 
 
-def _result(ob: bpy.types.Object, parts: int, report: dict[str, Any]) -> str:
+def _faces(ob: bpy.types.Object) -> str:
     sides = [len(polygon.vertices) for polygon in ob.data.polygons]
-    made = []
-    for what, number in (
-        ("triangle", sides.count(3)),
-        ("quad", sides.count(4)),
-        ("polygon", sum(n > 4 for n in sides)),
-    ):
-        if number:
-            made.append(counted(number, what))
-    return f"Joined {counted(parts, 'part')}: {', '.join([*made, counted(report['irregular'], 'irregular vertex')])}"
+    triangles, quads = sides.count(3), sides.count(4)
+    others = len(sides) - triangles - quads
+    made = [
+        counted(quads, "quad") if quads else "",
+        counted(triangles, "triangle") if triangles else "",
+        counted(others, "polygon") if others else "",
+    ]
+    return " and ".join(filter(None, made))

@@ -89,7 +89,7 @@ class Target:
                 _give(ob, mesh)
                 for other in self.objects[1:]:
                     _take_away(other, ob)
-            for other in list(context.view_layer.objects.selected):
+            for other in filter(None, list(context.view_layer.objects.selected)):
                 other.select_set(False)
             ob.select_set(True)
             context.view_layer.objects.active = ob

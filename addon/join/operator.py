@@ -76,7 +76,7 @@ class OBJECT_OT_gridmesh_join(ResultShown, bpy.types.Operator):  # noqa: N801
         except api.CancelledError:
             self.report({"WARNING"}, told("Cancelled; nothing was joined"))
             return {"CANCELLED"}
-        self.result = f"{done.result}, {1000 * (perf_counter() - started):.0f} ms"
+        self.result = done.result(perf_counter() - started)
         self.report({"INFO"}, told(self.result))
         if done.notes:
             self.report({"INFO"}, told(listed(done.notes)))

@@ -158,7 +158,7 @@ def _named(message: str, parts: Sequence[Part]) -> str:
         number = int(found.group(1))
         return f"'{parts[number].name}'" if number < len(parts) else found.group(0)
 
-    return re.sub(r"^part (\d+)\b", name, message)
+    return re.sub(r"^part\s(\d+)\b", name, message)
 
 
 def warnings_of(report: dict[str, Any]) -> list[str]:

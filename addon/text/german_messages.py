@@ -486,6 +486,47 @@ _BRIDGES = {
     "two paths of a tube meet": "zwei Wege einer Röhre treffen sich",
 }
 
+_JOINS = {
+    "'{}' has no faces to join": "„{0}“ hat keine Flächen zum Verbinden",
+    "'{}' is not closed: it has {}; fill its holes or merge doubled vertices": (
+        "„{0}“ ist nicht geschlossen: {1}; die Löcher füllen oder doppelte Punkte verschmelzen"
+    ),
+    "'{}' is not manifold: more than two faces meet at {}; delete the faces inside": (
+        "„{0}“ ist nicht mannigfaltig: mehr als zwei Flächen treffen sich an {1}; die Flächen im Inneren löschen"
+    ),
+    "Joined {}: {}, {}, {} ms": "{0} verbunden: {1}, {2}, {3} ms",
+    "Select two closed meshes or more in Object Mode, one of them active": (
+        "Zwei oder mehr geschlossene Meshes im Objektmodus auswählen, eines davon aktiv"
+    ),
+    "The joints meet the parts or themselves; blend less, move a part, or switch Strict on to refuse that": (
+        "Die Übergänge treffen die Teile oder sich selbst; schmaler verbinden, einen Teil verschieben oder „Streng“ "
+        "einschalten, um das abzulehnen"
+    ),
+    "frozen, since a joined body cannot follow its drawings: {}": (
+        "eingefroren, denn ein verbundener Körper kann seinen Zeichnungen nicht folgen: {0}"
+    ),
+    "inside out, and turned round: {}": "von innen nach außen gekehrt und umgedreht: {0}",
+    "joined without their modifiers: {}": "ohne ihre Modifikatoren verbunden: {0}",
+    "the mesh of '{}' is being edited; leave Edit Mode first": (
+        "das Mesh von „{0}“ wird bearbeitet; erst den Bearbeitungsmodus verlassen"
+    ),
+    "'{}' reaches farther than {}; scale it down or move it nearer": (
+        "„{0}“ reicht weiter als {1}; kleiner skalieren oder näher heranrücken"
+    ),
+    "{} inside others left out": "{0} innerhalb anderer weggelassen",
+    "{} without contact to others; moved into another one it would be joined": (
+        "{0} ohne Berührung mit anderen; in einen anderen geschoben würde er verbunden"
+    ),
+    "{} edge": "{0} Kante",
+    "{} edges": "{0} Kanten",
+    "{} open edge": "{0} offene Kante",
+    "{} open edges": "{0} offene Kanten",
+    "{} part": "{0} Teil",
+    "{} parts": "{0} Teile",
+    "{} polygon": "{0} Vieleck",
+    "{} polygons": "{0} Vielecke",
+}
+
 _FILLS = {
     "Cancelled; nothing was filled": "Abgebrochen; nichts wurde gefüllt",
     "Edit a mesh and select the edges of a hole": "Ein Mesh bearbeiten und die Kanten eines Lochs auswählen",
@@ -1040,6 +1081,7 @@ MESSAGES = (
     | _CUTS
     | _FILLS
     | _BRIDGES
+    | _JOINS
     | _QUALITY
     | _MODULE
     | _LIBRARY

@@ -553,6 +553,27 @@ GERMAN = {
         "Drehung der einen Schleife gegen die andere, von dort, wo sie am besten passen"
     ),
     "Twist": "Verdrehung",
+    # Joining bodies
+    "Blend Width": "Übergangsbreite",
+    "Edge lengths to each side of the line where two parts meet that become a smooth transition; 0 keeps the crease": (
+        "Kantenlängen zu beiden Seiten der Linie, an der sich zwei Teile treffen, die ein weicher Übergang werden; 0 behält "
+        "die Falte"
+    ),
+    "Grid Join": "Mit Gitter zusammenführen",
+    "Join the selected meshes to one closed body in the active object, blended where they meet": (
+        "Die ausgewählten Meshes zu einem geschlossenen Körper im aktiven Objekt zusammenführen, mit weichen Übergängen"
+    ),
+    "Keep Parts": "Teile behalten",
+    "Keep the selected objects, hidden, and make the body a new object; without, they become it": (
+        "Die ausgewählten Objekte verborgen behalten und den Körper zu einem neuen Objekt machen; ohne dies werden sie er"
+    ),
+    "Refuse joints that meet themselves or the parts, instead of warning of them": (
+        "Übergänge ablehnen, die sich selbst oder die Teile treffen, statt davor zu warnen"
+    ),
+    "Strict": "Streng",
+    "The edge length that Blend Width counts in; 0 for that of each part": (
+        "Die Kantenlänge, in der die Übergangsbreite zählt; 0 für die jedes Teils"
+    ),
     # Filling holes
     "All holes that are not hidden, up to a number of edges": (
         "Alle Löcher, die nicht ausgeblendet sind, bis zu einer Anzahl von Kanten"
