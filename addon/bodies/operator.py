@@ -11,6 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from .. import api
 from ..data import defaults, frames, meshes
+from ..join import joining, layering, uniting
 from ..live import engine
 from ..text import entries
 from ..text.messages import counted, listed
@@ -88,6 +89,22 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
         default=False,
     )
 
+    use_join: BoolProperty(
+        name="Join Overlapping Strokes",
+        description="Make one object of all bodies, joined with smooth transitions where they overlap; upper layers lie before lower ones",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+    layer_depth: FloatProperty(
+        name="Layer Depth",
+        description="Where the bodies of a layer lie on those below: 0 in the plane of their strokes, 1 with their middle on the surface",
+        subtype="FACTOR",
+        default=defaults.LAYER_DEPTH,
+        min=0.0,
+        soft_max=1.0,
+        max=2.0,
+    )
+
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: Any) -> str:
         """Say what the entry does that is pointed at."""
@@ -141,7 +158,8 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
             sketches, refused = _only(reading.wanted, sketches, chosen, refused)
         failures += refused
         known: set[tuple[str, str, int]] = set()
-        if self.update_existing:
+        update = self.update_existing and not self.joins
+        if update:
             notes += meshes.made_from_holes(context, sketches)
             sketches, refused = meshes.separate_blocked(context, sketches)
             failures += refused
@@ -164,19 +182,48 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
         notes += meshes.place(
             context,
             bodies,
-            update=self.update_existing,
+            update=update,
             collection=self.collection,
             crease_angle=self.corner_angle,
             made=made,
         )
-        self._link(context, bodies, made)
-        self.result = self._summary(bodies, perf_counter() - started)
+        warnings = _warnings(bodies, failures)
+        whole = self._joined(context, bodies, made, warnings)
+        if whole is None:
+            self._link(context, bodies, made)
+            self.result = self._summary(bodies, perf_counter() - started)
+        else:
+            self.result = whole.result(perf_counter() - started)
         self.report({"INFO"}, told(self.result))
         if notes:
             self.report({"INFO"}, told(listed(notes)))
-        for warning in _warnings(bodies, failures):
+        for warning in warnings:
             self.report({"WARNING"}, told(warning))
         return {"FINISHED"}
+
+    @property
+    def joins(self) -> bool:
+        """Whether all bodies are to become one; sheets cannot."""
+        return self.use_join and self.shape == "BODY"
+
+    def _joined(
+        self,
+        context: bpy.types.Context,
+        bodies: list[api.Body],
+        made: list[bpy.types.Object],
+        warnings: list[str],
+    ) -> joining.Done | None:
+        """Join the bodies if that is asked for and can be done; add to `warnings` what the user should know."""
+        if not self.joins or len(made) < 2:
+            return None
+        try:
+            with Pointer(context) as pointer:
+                done = layering.join(context, bodies, made, self.layer_depth, pointer)
+        except (uniting.JoinError, api.CancelledError) as error:
+            warnings.insert(0, f"The bodies stay apart: {error}")
+            return None
+        warnings += done.warnings
+        return done
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
@@ -190,6 +237,10 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
             body.prop(self, "close_gaps")
             body.prop(self, "use_holes")
             body.prop(self, "use_union")
+            body.prop(self, "use_join")
+            column = body.column()
+            column.active = self.use_join
+            column.prop(self, "layer_depth")
         header, body = layout.panel(f"{self.bl_idname}_objects", default_closed=True)
         header.label(text="Objects")
         if body is not None:

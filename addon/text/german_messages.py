@@ -502,6 +502,7 @@ _JOINS = {
         "Die Übergänge treffen die Teile oder sich selbst; schmaler verbinden, einen Teil verschieben oder „Streng“ "
         "einschalten, um das abzulehnen"
     ),
+    "The bodies stay apart: {}": "Die Körper bleiben getrennt: {0}",
     "frozen, since a joined body cannot follow its drawings: {}": (
         "eingefroren, denn ein verbundener Körper kann seinen Zeichnungen nicht folgen: {0}"
     ),

@@ -563,6 +563,14 @@ GERMAN = {
     "Join the selected meshes to one closed body in the active object, blended where they meet": (
         "Die ausgewählten Meshes zu einem geschlossenen Körper im aktiven Objekt zusammenführen, mit weichen Übergängen"
     ),
+    "Join Overlapping Strokes": "Überlappende Striche zusammenführen",
+    "Layer Depth": "Tiefe der Ebenen",
+    "Make one object of all bodies, joined with smooth transitions where they overlap; upper layers lie before lower ones": (
+        "Aus allen Körpern ein Objekt machen, mit weichen Übergängen, wo sie sich überlappen; obere Ebenen liegen vor unteren"
+    ),
+    "Where the bodies of a layer lie on those below: 0 in the plane of their strokes, 1 with their middle on the surface": (
+        "Wo die Körper einer Ebene auf denen darunter liegen: 0 in der Ebene ihrer Striche, 1 mit der Mitte auf der Oberfläche"
+    ),
     "Keep Parts": "Teile behalten",
     "Keep the selected objects, hidden, and make the body a new object; without, they become it": (
         "Die ausgewählten Objekte verborgen behalten und den Körper zu einem neuen Objekt machen; ohne dies werden sie er"
