@@ -219,7 +219,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
         try:
             with Pointer(context) as pointer:
                 done = layering.join(context, bodies, made, self.layer_depth, pointer)
-        except (uniting.JoinError, api.CancelledError) as error:
+        except (uniting.JoinError, api.NativeError, api.CancelledError) as error:
             warnings.insert(0, f"The bodies stay apart: {error}")
             return None
         warnings += done.warnings

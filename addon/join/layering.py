@@ -38,7 +38,7 @@ def join(
     ordered = [objects[largest], *(ob for at, ob in enumerate(objects) if at != largest)]
     try:
         return joining.join(context, ordered, joining.Options(), progress)
-    except (JoinError, api.CancelledError):
+    except (JoinError, api.NativeError, api.CancelledError):
         for ob, matrix in zip(objects, before, strict=True):
             ob.matrix_world = matrix
         raise
