@@ -317,14 +317,14 @@ def characters() -> list[Character]:
         ),
         Layer(ink, both(oval(0.15, 1.18, 0.07, 0.08))),
     ]
-    fine = {"resolution": "EDGE_LENGTH", "edge_length": 0.05, "layer_depth": 0.7}
+    fine = {"resolution": "EDGE_LENGTH", "edge_length": 0.045, "blend": 1.5}
     return [
-        Character("bear", bear, {**fine, "layer_depth": 0.85}),
-        Character("bird", bird, {**fine, "layer_depth": 0.75}),
-        Character("robot", robot, {**fine, "profile": "FLAT", "depth": 0.8, "layer_depth": 0.6}),
-        Character("hand", hand, {**fine, "layer_depth": 0.9}),
-        Character("cat", cat, {**fine, "layer_depth": 0.85}),
-        Character("turtle", turtle, {**fine, "layer_depth": 0.8}),
+        Character("bear", bear, fine),
+        Character("bird", bird, fine),
+        Character("robot", robot, {**fine, "profile": "FLAT", "depth": 0.8}),
+        Character("hand", hand, fine),
+        Character("cat", cat, fine),
+        Character("turtle", turtle, fine),
     ]
 
 
@@ -405,15 +405,25 @@ def build(chosen: list[Character], pixels: int, samples: int, wires: bool) -> li
             "strokes": sum(len(layer.strokes) for layer in character.layers),
         }
         table.append({**row, **numbers(made[0]), "ms": 1000 * seconds})
+        centre(made, at)
         for body in made:
-            body.rotation_euler.rotate_axis("X", math.radians(8))
-            body.location.z += 1.2
+            body.location.z += 0.9
             for slot, material in enumerate(body.data.materials):
                 colour = material.diffuse_color[:]
                 body.data.materials[slot] = clay(f"{material.name} clay", colour, 0.4 if wires else 0.0)
-    gallery.set_stage(CELL * columns, ROW * rows, pixels, samples)
+    gallery.set_stage(CELL * columns, ROW * rows + 0.3, pixels, samples)
     bpy.context.scene.cycles.max_bounces = 2
     return table
+
+
+def centre(made: list, at: tuple[float, float]) -> None:
+    """Move what was made so that its middle is there, as the leaning camera shows it."""
+    bpy.context.view_layer.update()
+    corners = np.array([body.matrix_world @ Vector(corner) for body in made for corner in body.bound_box])
+    x, y, _ = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    for body in made:
+        body.location.x += at[0] - x
+        body.location.y += at[1] - y - 0.9 * math.tan(gallery.TILT)
 
 
 def clay(name: str, colour: tuple[float, ...], wire: float):
@@ -461,6 +471,7 @@ if __name__ == "__main__":
     os.environ.setdefault("BLENDER_USER_RESOURCES", tempfile.mkdtemp(prefix="gridmesh-blender-"))
     sys.path.insert(0, str(ROOT))
     import bpy
+    from mathutils import Vector
 
     import addon
 

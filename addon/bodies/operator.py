@@ -11,7 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from .. import api
 from ..data import defaults, frames, meshes
-from ..join import joining, layering, uniting
+from ..join.layering import JoinsBodies
 from ..live import engine
 from ..text import entries
 from ..text.messages import counted, listed
@@ -27,7 +27,9 @@ LONG = 50_000
 """Flat triangles; with more, which take a second or so, the work can be watched and stopped."""
 
 
-class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, ResultShown, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_from_strokes(  # noqa: N801
+    Waiting, JoinsBodies, SketchOptions, CurveOption, ResultShown, bpy.types.Operator
+):
     """Make a smooth body with a clean mesh of triangles or quads from each closed stroke"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_from_strokes"
@@ -87,22 +89,6 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
         name="Follow the Stroke",
         description="Let the body follow when its stroke is edited; the switch is in the sidebar",
         default=False,
-    )
-
-    use_join: BoolProperty(
-        name="Join Overlapping Strokes",
-        description="Make one object of all bodies, joined with smooth transitions where they overlap; upper layers lie before lower ones",
-        default=False,
-        options={"SKIP_SAVE"},
-    )
-    layer_depth: FloatProperty(
-        name="Layer Depth",
-        description="Where the bodies of a layer lie on those below: 0 in the plane of their strokes, 1 with their middle on the surface",
-        subtype="FACTOR",
-        default=defaults.LAYER_DEPTH,
-        min=0.0,
-        soft_max=1.0,
-        max=2.0,
     )
 
     @classmethod
@@ -188,9 +174,10 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
             made=made,
         )
         warnings = _warnings(bodies, failures)
-        whole = self._joined(context, bodies, made, warnings)
+        self.stack(context, bodies, made)
+        self._link(context, bodies, made)
+        whole = self.join(context, bodies, made, warnings)
         if whole is None:
-            self._link(context, bodies, made)
             self.result = self._summary(bodies, perf_counter() - started)
         else:
             self.result = whole.result(perf_counter() - started)
@@ -200,30 +187,6 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
         for warning in warnings:
             self.report({"WARNING"}, told(warning))
         return {"FINISHED"}
-
-    @property
-    def joins(self) -> bool:
-        """Whether all bodies are to become one; sheets cannot."""
-        return self.use_join and self.shape == "BODY"
-
-    def _joined(
-        self,
-        context: bpy.types.Context,
-        bodies: list[api.Body],
-        made: list[bpy.types.Object],
-        warnings: list[str],
-    ) -> joining.Done | None:
-        """Join the bodies if that is asked for and can be done; add to `warnings` what the user should know."""
-        if not self.joins or len(made) < 2:
-            return None
-        try:
-            with Pointer(context) as pointer:
-                done = layering.join(context, bodies, made, self.layer_depth, pointer)
-        except (uniting.JoinError, api.NativeError, api.CancelledError) as error:
-            warnings.insert(0, f"The bodies stay apart: {error}")
-            return None
-        warnings += done.warnings
-        return done
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
@@ -237,10 +200,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
             body.prop(self, "close_gaps")
             body.prop(self, "use_holes")
             body.prop(self, "use_union")
-            body.prop(self, "use_join")
-            column = body.column()
-            column.active = self.use_join
-            column.prop(self, "layer_depth")
+            self.draw_join(body)
         header, body = layout.panel(f"{self.bl_idname}_objects", default_closed=True)
         header.label(text="Objects")
         if body is not None:

@@ -23,5 +23,5 @@ MAX_OPEN_EDGES = 200_000
 """The command line refuses meshes with more open edges: they are not surfaces with holes."""
 BLEND = 2.0
 """Edge lengths to each side of a joint that become a smooth transition."""
-LAYER_DEPTH = 0.6
-"""Where bodies of a layer lie on those of the layers below: 0 in the plane of their strokes, 1 on the surface."""
+LAYER_DEPTH = 0.7
+"""How far bodies of a layer stand out of those of the layers below, relative to half their thickness."""

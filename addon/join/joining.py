@@ -62,16 +62,35 @@ def join(
     with Transaction() as transaction:
         target = Target(objects, transaction)
         notes = _notes(target, options)
-        made = uniting.unite(
-            target.parts,
-            blend=options.blend,
-            edge_length=options.edge_length,
-            strict=options.strict,
-            progress=progress,
-        )
+        made = _united(target, options, progress)
         crease = options.blend == 0
         ob = target.apply(context, made, transaction, crease=crease, keep=options.keep_parts)
     return Done(ob, len(objects), made.report, notes, uniting.warnings_of(made.report))
+
+
+def again(
+    context: bpy.types.Context,
+    ob: bpy.types.Object,
+    parts: Sequence[bpy.types.Object],
+    placed: Sequence[Any],
+    options: Options,
+) -> None:
+    """Give an object the mesh that is joined of other objects, taken to be at `placed` in the world; these stay. Raises as `join`."""
+    api.native("join")
+    with Transaction() as transaction:
+        target = Target(parts, transaction, ob.matrix_world, placed)
+        made = _united(target, options, None)
+        target.replace(context, made, ob, crease=options.blend == 0)
+
+
+def _united(target: Target, options: Options, progress: api.Progress | None) -> uniting.United:
+    return uniting.unite(
+        target.parts,
+        blend=options.blend,
+        edge_length=options.edge_length,
+        strict=options.strict,
+        progress=progress,
+    )
 
 
 def _notes(target: Target, options: Options) -> list[str]:

@@ -13,6 +13,7 @@ from typing import Any
 import bmesh
 import bpy
 import numpy as np
+from mathutils.bvhtree import BVHTree
 
 from ..data import attributes
 from ..native import native
@@ -42,9 +43,11 @@ def perform(bm: Any, made: United, places: np.ndarray, *, mirrored: bool, crease
     vertices, faces = _by_source(bm.verts, "point"), _by_source(bm.faces, "face")
     kept = {faces[source] for source in _pairs(made.face_part, made.source_face)}
     old = [vertices[source] for source in _pairs(made.vertex_part, made.source_vertex) if source[0] >= 0]
-    look = Counter((face.material_index, face.smooth) for face in bm.faces).most_common(1)[0][0]
-    bmesh.ops.delete(bm, geom=[face for face in bm.faces if face not in kept], context="FACES")
-    made_faces = _Collars(bm, made, old, places).make(look, mirrored=mirrored)
+    gone = [face for face in bm.faces if face not in kept]
+    materials = _Materials(gone, {face.material_index for face in bm.faces})
+    smooth = 2 * sum(face.smooth for face in bm.faces) > len(bm.faces)
+    bmesh.ops.delete(bm, geom=gone, context="FACES")
+    made_faces = _Collars(bm, made, old, places).make(materials, smooth=smooth, mirrored=mirrored)
     if crease:
         for edge in dict.fromkeys(edge for face in made_faces for edge in face.edges):
             if edge.is_manifold and edge.calc_face_angle() > _SHARP:
@@ -77,24 +80,25 @@ class _Collars:
         self.used, triangles = np.unique(made.collars, return_inverse=True)
         self.triangles = triangles.reshape(-1, 3).astype(np.int32)
 
-    def make(self, look: tuple[int, bool], *, mirrored: bool) -> list[Any]:
-        """Make them. look : material and smoothness where nothing is around."""
+    def make(self, materials: _Materials, *, smooth: bool, mirrored: bool) -> list[Any]:
+        """Make them. smooth : how they are shaded where nothing is around."""
         bm = self.bm
         around = attributes.Surroundings(bm, *self.loops) if self.loops else None
-        examples = self._examples()
+        example = attributes.model_face(around.faces) if around is not None else None
+        slots = materials.of(self.made.collars, self.old, self.places)
         new = [bm.verts.new(place) for place in self.places[self.free].tolist()]
         self._write_poses(new)
         face_set = attributes.new_face_set(bm)
         ring = self.old + new
         faces = []
-        for triangle, example in zip(self.made.collars.tolist(), examples, strict=True):
+        for triangle, slot in zip(self.made.collars.tolist(), slots, strict=True):
             corners = [ring[index] for index in (reversed(triangle) if mirrored else triangle)]
             face = bm.faces.new(corners, example) if example is not None else bm.faces.new(corners)
+            face.material_index, face.hide = slot, False
             if example is None:
-                face.material_index, face.smooth = look
+                face.smooth = smooth
             if face_set is not None:
                 face[face_set[0]] = face_set[1]
-            face.hide = False
             face.normal_update()
             faces.append(face)
         if around is not None:
@@ -126,21 +130,31 @@ class _Collars:
             for layer, move in zip(layers, own, strict=True):
                 vertex[layer] = [a + b for a, b in zip(vertex.co, move, strict=True)]
 
-    def _examples(self) -> list[Any]:
-        """For each new face one with the material of what is nearest around it; None where nothing is."""
-        beside = [list(vertex.link_faces) for loop in self.loops for vertex in loop]
-        by_material: dict[int, dict[Any, None]] = {}
-        for faces in beside:
-            for face in faces:
-                by_material.setdefault(face.material_index, {})[face] = None
-        models = [attributes.model_face(list(faces)) for faces in by_material.values()]
-        if len(models) < 2 or not len(self.free):
-            return [models[0] if models else None] * len(self.made.collars)
-        column = {material: at for at, material in enumerate(by_material)}
-        shares = np.zeros((len(beside), len(models)))
-        for row, faces in zip(shares, beside, strict=True):
-            for face in faces:
-                row[column[face.material_index]] += 1 / len(faces)
-        everywhere = np.zeros((len(self.made.vertices), len(models)))
-        everywhere[self.rim], everywhere[self.free] = shares, self._extend(shares)
-        return [models[at] for at in everywhere[self.made.collars].mean(axis=1).argmax(axis=1).tolist()]
+
+class _Materials:
+    """Material slots of the faces that go, and so of what comes in their place."""
+
+    def __init__(self, gone: Sequence[Any], slots: set[int]) -> None:
+        self.only = next(iter(slots)) if len(slots) == 1 else None
+        if self.only is None and gone:
+            verts: dict[Any, int] = {}
+            rings = [[verts.setdefault(vertex, len(verts)) for vertex in face.verts] for face in gone]
+            self._tree = BVHTree.FromPolygons([vertex.co.copy() for vertex in verts], rings)
+            self._slots = [face.material_index for face in gone]
+
+    def of(self, triangles: np.ndarray, old: Sequence[Any], places: np.ndarray) -> list[int]:
+        """Slots of new triangles: those of what is nearest to their corners; old vertices have that of most faces there.
+
+        Where they differ the last one counts: so the border runs along edges, without teeth.
+        """
+        if self.only is not None:
+            return [self.only] * len(triangles)
+        slot = np.zeros(len(places), np.int64)
+        for index in np.unique(triangles).tolist():
+            if index < len(old):
+                slot[index] = Counter(face.material_index for face in old[index].link_faces).most_common(1)[
+                    0
+                ][0]
+            else:
+                slot[index] = self._slots[self._tree.find_nearest(places[index].tolist())[2]]
+        return slot[triangles].max(axis=1).tolist()

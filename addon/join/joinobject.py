@@ -33,8 +33,16 @@ class Source:
 class Target:
     """Objects that become one. The first gives its place, its modifiers and its name."""
 
-    def __init__(self, objects: Sequence[bpy.types.Object], transaction: Transaction) -> None:
+    def __init__(
+        self,
+        objects: Sequence[bpy.types.Object],
+        transaction: Transaction,
+        place: Matrix | None = None,
+        placed: Sequence[Matrix] | None = None,
+    ) -> None:
         """Read them. Meshes are taken as they are without modifiers and shape keys, as Blender's own Join does.
+
+        place : where the whole is in the world, unless where the first object is. placed : where each is taken to be.
 
         Raises
         ------
@@ -44,10 +52,15 @@ class Target:
         for ob in objects:
             _require_usable(ob)
         self.objects = list(objects)
-        self.world = np.array(objects[0].matrix_world, float)
+        place = objects[0].matrix_world if place is None else place
+        placed = [ob.matrix_world for ob in objects] if placed is None else placed
+        self.world = np.array(place, float)
         self._mirrored = np.linalg.det(self.world[:3, :3]) < 0
-        to_first = objects[0].matrix_world.inverted()
-        self.sources = [self._source(ob, to_first @ ob.matrix_world, transaction) for ob in objects]
+        to_whole = place.inverted()
+        self.sources = [
+            self._source(ob, to_whole @ matrix, transaction)
+            for ob, matrix in zip(objects, placed, strict=True)
+        ]
         self.parts = [self._part(source) for source in self.sources]
 
     @property
@@ -82,6 +95,7 @@ class Target:
         """
         with engine.resting():
             mesh = self._united(context, made, crease=crease)
+            self._use_up()
             if keep:
                 ob = self._beside(context, mesh, transaction)
             else:
@@ -93,9 +107,21 @@ class Target:
                 other.select_set(False)
             ob.select_set(True)
             context.view_layer.objects.active = ob
-            for source in self.sources[1:]:
-                bpy.data.meshes.remove(source.mesh)
         return ob
+
+    def replace(
+        self, context: bpy.types.Context, made: United, ob: bpy.types.Object, *, crease: bool
+    ) -> None:
+        """Make the joined mesh that of an object which is none of them."""
+        with engine.resting():
+            mesh = self._united(context, made, crease=crease)
+            self._use_up()
+            _give(ob, mesh)
+
+    def _use_up(self) -> None:
+        """Remove the copies that are in the joined mesh, which is the first of them."""
+        for source in self.sources[1:]:
+            bpy.data.meshes.remove(source.mesh)
 
     def _united(self, context: bpy.types.Context, made: United, *, crease: bool) -> bpy.types.Mesh:
         """Mesh of the result, in the space of the first object."""
@@ -117,6 +143,7 @@ class Target:
         """Make an object like the first one of the mesh; the parts stay, hidden."""
         first = self.objects[0]
         ob = transaction.remember(bpy.data.objects, first.copy())
+        ob.property_unset("gridmesh_joined")
         _give(ob, mesh)
         for collection in first.users_collection:
             collection.objects.link(ob)

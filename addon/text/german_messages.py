@@ -502,6 +502,12 @@ _JOINS = {
         "Die Übergänge treffen die Teile oder sich selbst; schmaler verbinden, einen Teil verschieben oder „Streng“ "
         "einschalten, um das abzulehnen"
     ),
+    "Make a joined body, or one of its parts, the active object": (
+        "Einen zusammengeführten Körper oder einen seiner Teile zum aktiven Objekt machen"
+    ),
+    "its mesh was changed by hand; undo that, or apply the join": (
+        "sein Mesh wurde von Hand geändert; das rückgängig machen oder das Zusammenführen anwenden"
+    ),
     "The bodies stay apart: {}": "Die Körper bleiben getrennt: {0}",
     "frozen, since a joined body cannot follow its drawings: {}": (
         "eingefroren, denn ein verbundener Körper kann seinen Zeichnungen nicht folgen: {0}"

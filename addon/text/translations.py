@@ -568,8 +568,24 @@ GERMAN = {
     "Make one object of all bodies, joined with smooth transitions where they overlap; upper layers lie before lower ones": (
         "Aus allen Körpern ein Objekt machen, mit weichen Übergängen, wo sie sich überlappen; obere Ebenen liegen vor unteren"
     ),
-    "Where the bodies of a layer lie on those below: 0 in the plane of their strokes, 1 with their middle on the surface": (
-        "Wo die Körper einer Ebene auf denen darunter liegen: 0 in der Ebene ihrer Striche, 1 mit der Mitte auf der Oberfläche"
+    "How far bodies of a layer stand out of those of the layers below, relative to half their thickness": (
+        "Wie weit Körper einer Ebene aus denen der Ebenen darunter herausragen, im Verhältnis zu ihrer halben Dicke"
+    ),
+    "Apply Join": "Zusammenführen anwenden",
+    "Follow the Parts": "Den Teilen folgen",
+    "Hide Parts": "Teile verbergen",
+    "Joined Body": "Zusammengeführter Körper",
+    "Let the body follow where live bodies are joined, or parts are kept: it is joined anew when one of them changes": (
+        "Den Körper folgen lassen, wo lebende Körper zusammengeführt oder Teile behalten werden: er wird neu zusammengeführt, "
+        "wenn sich eines ändert"
+    ),
+    "Make a plain mesh of the active joined body; its hidden parts are removed": (
+        "Aus dem aktiven zusammengeführten Körper ein einfaches Mesh machen; seine verborgenen Teile werden entfernt"
+    ),
+    "Show Parts": "Teile zeigen",
+    "Show the parts again instead of removing them": "Die Teile wieder zeigen, statt sie zu entfernen",
+    "Show the parts of the active joined body to be edited and hide the body, or the other way round": (
+        "Die Teile des aktiven zusammengeführten Körpers zum Bearbeiten zeigen und den Körper verbergen, oder umgekehrt"
     ),
     "Keep Parts": "Teile behalten",
     "Keep the selected objects, hidden, and make the body a new object; without, they become it": (
