@@ -156,7 +156,7 @@ def _named(message: str, parts: Sequence[Part]) -> str:
 
     def name(found: re.Match[str]) -> str:
         number = int(found.group(1))
-        return f"'{parts[number].name}'" if number < len(parts) else found.group(0)
+        return f"part '{parts[number].name}'" if number < len(parts) else found.group(0)
 
     return re.sub(r"^part\s(\d+)\b", name, message)
 

@@ -24,6 +24,7 @@ LAYERS = {
     "body": 2,
     "fill": 2,
     "cut": 2,
+    "join": 2,
     "svg": 2,
 }
 OF_NO_LAYER = {"lib", "error", "progress", "options"}

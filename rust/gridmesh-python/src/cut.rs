@@ -237,7 +237,7 @@ fn sweep(
 }
 
 /// Corners and offsets of faces.
-fn polygons(faces: &Bound<'_, PyAny>) -> PyResult<(Vec<u32>, Vec<u32>)> {
+pub fn polygons(faces: &Bound<'_, PyAny>) -> PyResult<(Vec<u32>, Vec<u32>)> {
     let allowed = "an (m, 3) or (m, 4) array of whole numbers, or the pair (corners, offsets)";
     let it = Argument { name: "faces", value: faces, allowed };
     let pair = faces.cast::<PyTuple>().is_ok_and(|t| t.len() == 2);

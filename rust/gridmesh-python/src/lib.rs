@@ -1,7 +1,7 @@
 //! The Python module `gridmesh._native`: conversions only, no algorithm.
 //!
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `process` finds threads after a fork, `arrays`
-//! and `reports` hand results back, `patch`, `surface`, `fill` and `cut` are the classes, `bridge`, `sketch`, `body` and `map` make them
+//! and `reports` hand results back, `patch`, `surface`, `fill`, `cut` and `join` are the classes, `bridge`, `sketch`, `body` and `map` make them
 //! of drawings, `batch` is the parallel map, `combine` unites drawings, `thickness` measures them, `picture`
 //! traces them, `decode` reads their files, `harmonic` carries values on, `bones` weighs bones.
 #![forbid(unsafe_code)]
@@ -18,6 +18,7 @@ mod error;
 mod fill;
 mod harmonic;
 mod input;
+mod join;
 mod map;
 mod mesh;
 mod options;
@@ -68,6 +69,9 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<cut::Piece>()?;
     module.add_function(wrap_pyfunction!(cut::cut, module)?)?;
     module.add_function(wrap_pyfunction!(cut::cut_reach, module)?)?;
+    module.add_class::<join::Joined>()?;
+    module.add_function(wrap_pyfunction!(join::join, module)?)?;
+    module.add_function(wrap_pyfunction!(join::_joined, module)?)?;
     module.add_function(wrap_pyfunction!(patch::_patch, module)?)?;
     module.add_function(wrap_pyfunction!(surface::_surface, module)?)?;
     module.add_function(wrap_pyfunction!(fill::_fill, module)?)?;

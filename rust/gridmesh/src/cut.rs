@@ -10,7 +10,7 @@ mod bounds;
 pub(crate) mod caps;
 mod cutting;
 pub(crate) mod divide;
-mod input;
+pub(crate) mod input;
 mod options;
 mod pieces;
 mod report;

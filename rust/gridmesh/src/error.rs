@@ -347,6 +347,46 @@ pub enum Error {
         /// Where.
         at: [f64; 3],
     },
+    /// A part that is to be joined is no closed surface.
+    #[error(
+        "part {part} is not closed and manifold: {reason} near vertex {vertex} at ({:.6}, {:.6}, {:.6}); \
+         fill its holes and merge doubled vertices, or delete the surplus faces",
+        .at[0], .at[1], .at[2]
+    )]
+    NotClosed {
+        /// The part.
+        part: usize,
+        /// What is wrong.
+        reason: &'static str,
+        /// A vertex there.
+        vertex: u32,
+        /// Where.
+        at: [f64; 3],
+    },
+    /// Parts meet in a way that has no closed surface around it.
+    #[error(
+        "the parts cannot be joined here: {reason}, near ({:.6}, {:.6}, {:.6}); move one of them a little, \
+         blend less, or give them shorter edges there",
+        .at[0], .at[1], .at[2]
+    )]
+    JoinFailed {
+        /// What stands in the way.
+        reason: &'static str,
+        /// Where.
+        at: [f64; 3],
+    },
+    /// A joint meets itself or the mesh, which was not to be.
+    #[error(
+        "the joints meet themselves or the parts in {pairs} pairs of triangles, first near ({:.6}, {:.6}, \
+         {:.6}); blend less, move a part, or allow it",
+        .at[0], .at[1], .at[2]
+    )]
+    JoinIntersects {
+        /// Pairs of triangles that meet.
+        pairs: usize,
+        /// A point of one of them.
+        at: [f64; 3],
+    },
     /// A picture has no pixels, or too many.
     #[error("the picture is {width} by {height} pixels; allowed: 1 to {limit} pixels in all, scale it")]
     PictureSize {
@@ -425,6 +465,9 @@ impl Error {
             Error::BehindEye { .. } => "behind_eye",
             Error::CutFailed { .. } => "cut_failed",
             Error::StillJoined { .. } => "still_joined",
+            Error::NotClosed { .. } => "not_closed",
+            Error::JoinFailed { .. } => "join_failed",
+            Error::JoinIntersects { .. } => "join_intersects",
             Error::PictureSize { .. } => "picture_size",
             Error::PictureFormat { .. } => "picture_format",
             Error::PixelNotFinite { .. } => "not_finite",

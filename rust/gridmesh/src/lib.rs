@@ -29,6 +29,7 @@
 //!   the surface around it.
 //! * [`bridge()`]: a tube between two loops, with every vertex of both.
 //! * [`cut()`]: a mesh divided along a swept stroke, the pieces closed by such patches.
+//! * [`join()`]: closed meshes united, blended by such patches where they meet.
 //!
 //! # What holds everywhere
 //!
@@ -47,6 +48,7 @@ pub mod drawing;
 pub mod error;
 pub mod fill;
 pub mod geometry;
+pub mod join;
 pub mod lattice;
 pub mod options;
 pub mod patch;
@@ -64,6 +66,7 @@ pub use body::surface::Surface;
 pub use cut::{Cut, CutOptions, cut};
 pub use error::Error;
 pub use fill::{BridgeOptions, Fill, FillOptions, Smooth, bridge, fill_hole, fill_holes, regrid};
+pub use join::{JoinOptions, Joined, join};
 pub use options::SketchOptions;
 pub use patch::Patch;
 pub use progress::Progress;

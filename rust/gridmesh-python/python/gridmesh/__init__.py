@@ -6,7 +6,8 @@ cuts one from another, ``thickness`` measures their limbs; ``trace_image`` finds
 the outlines in a picture, ``decode_image`` reads its file. ``fill_hole`` and ``fill_holes`` close holes of a
 mesh with patches that fit their boundaries vertex for vertex, ``bridge`` joins two of them
 by a tube, ``regrid`` replaces a region by one. ``cut``
-divides a mesh along a stroke and caps it; ``cut_reach`` tells how far a stroke's ends go. ``harmonic``
+divides a mesh along a stroke and caps it; ``cut_reach`` tells how far a stroke's ends go. ``join`` makes one
+closed mesh of several that overlap. ``harmonic``
 carries values on over a mesh, ``bone_weights`` makes a flat one follow bones.
 Positions are float64, indices int32, angles radians, options keyword-only. The same input gives the same
 bytes. The one exception for what cannot be done is ``GridMeshError``.
@@ -16,6 +17,7 @@ from gridmesh._native import (
     Cut,
     Fill,
     GridMeshError,
+    Joined,
     Patch,
     Piece,
     Regrid,
@@ -32,6 +34,7 @@ from gridmesh._native import (
     flat,
     harmonic,
     inflate,
+    join,
     map_sketches,
     mesh_sketch,
     regrid,
@@ -45,6 +48,7 @@ __all__ = [
     "Cut",
     "Fill",
     "GridMeshError",
+    "Joined",
     "Patch",
     "Piece",
     "Regrid",
@@ -62,6 +66,7 @@ __all__ = [
     "flat",
     "harmonic",
     "inflate",
+    "join",
     "map_sketches",
     "mesh_sketch",
     "regrid",

@@ -11,6 +11,7 @@ __all__ = [
     "Cut",
     "Fill",
     "GridMeshError",
+    "Joined",
     "Patch",
     "Piece",
     "Regrid",
@@ -18,6 +19,7 @@ __all__ = [
     "__version__",
     "_cut",
     "_fill",
+    "_joined",
     "_patch",
     "_piece",
     "_regrid",
@@ -33,6 +35,7 @@ __all__ = [
     "flat",
     "harmonic",
     "inflate",
+    "join",
     "map_sketches",
     "mesh_sketch",
     "regrid",
@@ -333,6 +336,45 @@ def cut_reach(
     eye: npt.ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> npt.NDArray[np.float64]: ...
+
+@final
+class Joined:
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def triangles(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def quads(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def corners(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def offsets(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def source_part(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def source_face(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def vertex_part(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def source_vertex(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def collars(self) -> list[list[npt.NDArray[np.int32]]]: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+    def __copy__(self) -> Joined: ...
+    def __deepcopy__(self, _memo: object, /) -> Joined: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+def join(
+    parts: Iterable[
+        Surface | Joined | tuple[npt.ArrayLike, npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]]
+    ],
+    *,
+    blend: float = 2.0,
+    edge_length: float | None = None,
+    strict: bool = False,
+    progress: _Progress | None = None,
+) -> Joined: ...
 def map_sketches(
     outlines: Iterable[_Points | tuple[_Points, Sequence[_Points]]],
     *,
@@ -364,4 +406,5 @@ def _fill(
 ) -> Fill: ...
 def _cut(pieces: Any, report: Any) -> Cut: ...
 def _piece(left: Any, positions: Any, faces: Any, cap_loops: Any) -> Piece: ...
+def _joined(vertices: Any, faces: Any, sources: Any, collars: Any, report: Any) -> Joined: ...
 def _regrid(fill: Any, source_faces: Any, source_weights: Any, unused: Any, off: Any) -> Regrid: ...

@@ -33,16 +33,25 @@ impl<'a> Polygons<'a> {
 
 /// Refuses what is no mesh or no stroke.
 pub(super) fn check(vertices: &[DVec3], faces: Polygons<'_>, stroke: &[DVec3]) -> Result<()> {
-    for (what, points) in [("stroke", stroke), ("mesh", vertices)] {
-        if let Some(point) = points.par_iter().position_first(|p| !p.is_finite()) {
-            return Err(Error::NotFinite { what: what.into(), point });
-        }
+    check_finite("stroke", stroke)?;
+    check_mesh("mesh", vertices, faces)
+}
+
+fn check_finite(what: &str, points: &[DVec3]) -> Result<()> {
+    match points.par_iter().position_first(|p| !p.is_finite()) {
+        Some(point) => Err(Error::NotFinite { what: what.into(), point }),
+        None => Ok(()),
     }
+}
+
+/// Refuses what is no mesh; `what` it is called.
+pub(crate) fn check_mesh(what: &str, vertices: &[DVec3], faces: Polygons<'_>) -> Result<()> {
+    check_finite(what, vertices)?;
     let least = vertices.iter().fold(DVec3::INFINITY, |a, &b| a.min(b));
     let most = vertices.iter().fold(DVec3::NEG_INFINITY, |a, &b| a.max(b));
     let size = (most - least).max_element();
     if size > 1e60 || (size > 0.0 && size < 1e-60) {
-        return Err(Error::ExtremeSize { what: "mesh".into(), size });
+        return Err(Error::ExtremeSize { what: what.into(), size });
     }
     let bad = |face: usize, reason: &str| Err(Error::InvalidFace { face, reason: reason.into() });
     if faces.offsets.first().is_some_and(|&o| o != 0)
@@ -77,7 +86,7 @@ const LAST: f64 = 1e-6;
 
 /// Calls `emit` with the triangles of a face: ears cut off in the plane of its mean normal, the roundest first.
 /// Depends on the face alone, so that it is divided alike wherever it is looked at.
-pub(super) fn triangles(vertices: &[DVec3], corners: &[u32], mut emit: impl FnMut([u32; 3])) {
+pub(crate) fn triangles(vertices: &[DVec3], corners: &[u32], mut emit: impl FnMut([u32; 3])) {
     let n = corners.len();
     if n == 3 {
         return emit([corners[0], corners[1], corners[2]]);

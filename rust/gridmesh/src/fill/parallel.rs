@@ -15,7 +15,7 @@ use crate::progress::Progress;
 const REPORT_EVERY: Duration = Duration::from_millis(20);
 
 /// Runs `work` with a progress that never falls, whatever `work` reports.
-pub(super) fn steady<T>(progress: Progress<'_>, work: impl FnOnce(Progress<'_>) -> Result<T>) -> Result<T> {
+pub(crate) fn steady<T>(progress: Progress<'_>, work: impl FnOnce(Progress<'_>) -> Result<T>) -> Result<T> {
     // The bits of numbers that are not negative are ordered as the numbers are.
     let most = AtomicU64::new(0);
     let callback = |fraction: f64| {

@@ -1,0 +1,392 @@
+//! A small mesh with a fixed border, whose edges are split, collapsed and flipped one at a time.
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
+use rustc_hash::FxHashSet;
+
+use crate::geometry::topology::NONE;
+
+/// What a triangle that is gone consists of.
+const GONE: [u32; 3] = [NONE; 3];
+
+/// Triangles rounder than this have a normal worth keeping.
+const ROUND: f64 = 0.05;
+
+/// Quality that a collapse or a flip may not go below, unless it was worse before.
+const THIN: f64 = 0.1;
+
+/// Cosine of the angle by which a triangle may turn.
+const TURN: f64 = 0.3;
+
+/// A mesh whose connections change.
+#[derive(Clone, Debug)]
+pub(super) struct Local {
+    /// The border's vertices first; they stay.
+    pub positions: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
+    /// The part that each triangle lies on.
+    pub sides: Vec<u32>,
+    /// Wanted edge length at each vertex.
+    pub sizes: Vec<f64>,
+    /// Wanted number of triangles at each vertex of the border.
+    pub wanted: Vec<usize>,
+    /// Vertices of the border.
+    pub border: usize,
+    /// Edges beyond the border between vertices of it, lower one first: none may be repeated.
+    pub taken: FxHashSet<[u32; 2]>,
+    /// Edges that stay, but for being split and collapsed along their line; lower vertex first.
+    pub hard: BTreeSet<[u32; 2]>,
+    /// Vertices inside that stay where they are.
+    pub knots: BTreeSet<u32>,
+    at: Vec<Vec<u32>>,
+}
+
+/// Lower one first.
+pub(super) fn edge(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// The shape of a triangle: 1 if it is equilateral, near 0 if it is thin.
+pub(super) fn quality([a, b, c]: [DVec3; 3]) -> f64 {
+    let area = (b - a).cross(c - a).length();
+    let squares = (b - a).length_squared() + (c - b).length_squared() + (a - c).length_squared();
+    if squares > 0.0 { 2.0 * 3f64.sqrt() * area / squares } else { 0.0 }
+}
+
+impl Local {
+    /// `border`: so many vertices come first that stay.
+    pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>, sides: Vec<u32>, border: usize) -> Local {
+        let mut at = vec![vec![]; positions.len()];
+        for (t, corners) in triangles.iter().enumerate() {
+            corners.iter().for_each(|&v| at[v as usize].push(t as u32));
+        }
+        Local {
+            sizes: vec![0.0; positions.len()],
+            wanted: vec![6; border],
+            taken: FxHashSet::default(),
+            hard: BTreeSet::new(),
+            knots: BTreeSet::new(),
+            positions,
+            triangles,
+            sides,
+            border,
+            at,
+        }
+    }
+
+    /// The triangles at a vertex.
+    pub fn fan(&self, v: u32) -> &[u32] {
+        &self.at[v as usize]
+    }
+
+    /// The neighbours of a vertex, ascending.
+    pub fn neighbours(&self, v: u32) -> Vec<u32> {
+        let corners = self.fan(v).iter().flat_map(|&t| self.triangles[t as usize]);
+        let mut near = corners.filter(|&u| u != v).collect::<Vec<_>>();
+        near.sort_unstable();
+        near.dedup();
+        near
+    }
+
+    /// The triangles at an edge.
+    pub fn beside(&self, [a, b]: [u32; 2]) -> Vec<u32> {
+        self.fan(a).iter().copied().filter(|&t| self.triangles[t as usize].contains(&b)).collect()
+    }
+
+    /// All edges, ascending.
+    pub fn edges(&self) -> Vec<[u32; 2]> {
+        let live = self.triangles.iter().filter(|t| **t != GONE);
+        let mut edges = live.flat_map(|t| [0, 1, 2].map(|k| edge(t[k], t[(k + 1) % 3]))).collect::<Vec<_>>();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// The length of an edge, in those wanted at its ends.
+    pub fn length(&self, [a, b]: [u32; 2]) -> f64 {
+        let wanted = 0.5 * (self.sizes[a as usize] + self.sizes[b as usize]);
+        self.positions[a as usize].distance(self.positions[b as usize]) / wanted
+    }
+
+    /// The positions of a triangle's corners.
+    pub fn corners(&self, t: u32) -> [DVec3; 3] {
+        self.triangles[t as usize].map(|v| self.positions[v as usize])
+    }
+
+    /// Whether both ends of an edge are on the border and the edge is one of it.
+    pub fn is_border(&self, e: [u32; 2]) -> bool {
+        (e[1] as usize) < self.border && self.beside(e).len() < 2
+    }
+
+    /// How many triangles a vertex should have.
+    pub fn wanted_at(&self, v: u32) -> i64 {
+        self.wanted.get(v as usize).map_or(6, |&w| w as i64)
+    }
+
+    fn detach(&mut self, t: u32) {
+        for v in self.triangles[t as usize] {
+            self.at[v as usize].retain(|&u| u != t);
+        }
+    }
+
+    fn attach(&mut self, t: u32, corners: [u32; 3]) {
+        self.triangles[t as usize] = corners;
+        corners.iter().for_each(|&v| self.at[v as usize].push(t));
+    }
+
+    /// Puts a vertex in the middle of an edge inside.
+    pub fn split(&mut self, e: [u32; 2]) {
+        let [a, b] = e;
+        let m = self.positions.len() as u32;
+        self.positions.push(0.5 * (self.positions[a as usize] + self.positions[b as usize]));
+        self.sizes.push(0.5 * (self.sizes[a as usize] + self.sizes[b as usize]));
+        self.at.push(vec![]);
+        for t in self.beside(e) {
+            let own = self.triangles[t as usize];
+            let with = |from: u32| own.map(|v| if v == from { m } else { v });
+            self.detach(t);
+            self.attach(t, with(b));
+            self.triangles.push(GONE);
+            self.sides.push(self.sides[t as usize]);
+            self.attach(self.triangles.len() as u32 - 1, with(a));
+        }
+        if self.hard.remove(&e) {
+            self.hard.extend([edge(a, m), edge(m, b)]);
+        }
+    }
+
+    /// Whether a vertex may be moved into another one: it is inside, and on a hard line only along that.
+    fn may_move(&self, a: u32, b: u32) -> bool {
+        if (a as usize) < self.border || self.knots.contains(&a) {
+            return false;
+        }
+        self.is_soft(a) || self.hard.contains(&edge(a, b))
+    }
+
+    /// Whether no hard edge ends at a vertex.
+    pub fn is_soft(&self, v: u32) -> bool {
+        self.hard.is_empty() || self.neighbours(v).into_iter().all(|u| !self.hard.contains(&edge(u, v)))
+    }
+
+    /// Moves vertex `a` into its neighbour `b`, if the mesh stays one and no triangle gets bad.
+    pub fn collapse(&mut self, a: u32, b: u32, longest: f64) -> bool {
+        if !self.may_move(a, b) {
+            return false;
+        }
+        let beside = self.beside([a, b]);
+        if beside.len() != 2 {
+            return false;
+        }
+        let (near, other) = (self.neighbours(a), self.neighbours(b));
+        let common = near.iter().filter(|v| other.contains(v)).count();
+        if common != 2 || near.len() < 4 && self.fan(a).len() != 3 {
+            return false;
+        }
+        // A vertex of the border keeps a triangle; two vertices of it get no edge that is there beyond.
+        for &v in near.iter().filter(|&&v| v != b) {
+            if (v as usize) < self.border
+                && (b as usize) < self.border
+                && self.taken.contains(&edge(v, b))
+                && !other.contains(&v)
+            {
+                return false;
+            }
+            if !other.contains(&v) && self.length(edge(b, v)) > longest {
+                return false;
+            }
+            if self.hard.contains(&edge(a, v)) && other.contains(&v) {
+                return false;
+            }
+        }
+        let apexes = beside.iter().map(|&t| self.apex(t, [a, b])).collect::<Vec<_>>();
+        if apexes.iter().any(|&v| self.fan(v).len() <= if (v as usize) < self.border { 1 } else { 3 }) {
+            return false;
+        }
+        let at = self.positions[b as usize];
+        let good = |&t: &u32| {
+            let own = self.triangles[t as usize];
+            let moved = own.map(|v| if v == a { at } else { self.positions[v as usize] });
+            self.is_better(self.corners(t), moved)
+        };
+        if !self.fan(a).iter().filter(|t| !beside.contains(t)).all(good) {
+            return false;
+        }
+        for &t in &beside {
+            self.detach(t);
+            self.triangles[t as usize] = GONE;
+        }
+        for t in self.fan(a).to_vec() {
+            let own = self.triangles[t as usize].map(|v| if v == a { b } else { v });
+            self.detach(t);
+            self.attach(t, own);
+        }
+        for v in near {
+            if self.hard.remove(&edge(a, v)) && v != b {
+                self.hard.insert(edge(b, v));
+            }
+        }
+        true
+    }
+
+    fn is_better(&self, before: [DVec3; 3], after: [DVec3; 3]) -> bool {
+        let (old, new) = (quality(before), quality(after));
+        if new < THIN.min(old) {
+            return false;
+        }
+        let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).normalize_or_zero();
+        old < ROUND || normal(before).dot(normal(after)) > TURN
+    }
+
+    /// The third corner of a triangle.
+    pub fn apex(&self, t: u32, e: [u32; 2]) -> u32 {
+        let own = self.triangles[t as usize];
+        own.into_iter().find(|v| !e.contains(v)).unwrap_or(own[0])
+    }
+
+    /// The triangles that flipping an edge would make, if it may be: in place of its two.
+    pub fn flipped(&self, e: [u32; 2]) -> Option<([u32; 2], [[u32; 3]; 2])> {
+        if self.hard.contains(&e) {
+            return None;
+        }
+        let &[s, t] = self.beside(e).as_slice() else { return None };
+        // Of the first triangle in its order: a, b, c; of the second b, a, d.
+        let own = self.triangles[s as usize];
+        let k = own.iter().position(|v| !e.contains(v))?;
+        let (c, a, b) = (own[k], own[(k + 1) % 3], own[(k + 2) % 3]);
+        let d = self.apex(t, e);
+        let both = (c as usize) < self.border && (d as usize) < self.border;
+        if c == d || both && self.taken.contains(&edge(c, d)) || self.neighbours(c).contains(&d) {
+            return None;
+        }
+        for v in e {
+            let least = if (v as usize) < self.border { 2 } else { 4 };
+            if self.fan(v).len() < least {
+                return None;
+            }
+        }
+        Some(([s, t], [[c, a, d], [d, b, c]]))
+    }
+
+    /// Flips an edge if what `worth` says of the new triangles is better than of the old ones.
+    pub fn flip(&mut self, [s, t]: [u32; 2], new: [[u32; 3]; 2]) {
+        self.detach(s);
+        self.detach(t);
+        self.attach(s, new[0]);
+        self.attach(t, new[1]);
+    }
+
+    /// Drops what is gone: vertices and triangles, in their order.
+    pub fn compact(&mut self) {
+        let live = (0..self.triangles.len()).filter(|&t| self.triangles[t] != GONE).collect::<Vec<_>>();
+        let mut name = vec![NONE; self.positions.len()];
+        let mut count = 0;
+        for v in 0..self.positions.len() {
+            if v < self.border || !self.at[v].is_empty() {
+                name[v] = count;
+                self.positions[count as usize] = self.positions[v];
+                self.sizes[count as usize] = self.sizes[v];
+                count += 1;
+            }
+        }
+        self.positions.truncate(count as usize);
+        self.sizes.truncate(count as usize);
+        let sides = live.iter().map(|&t| self.sides[t]).collect();
+        let triangles = live.iter().map(|&t| self.triangles[t].map(|v| name[v as usize])).collect::<Vec<_>>();
+        let named = |e: &[u32; 2]| e.map(|v| name[v as usize]);
+        let hard = self.hard.iter().map(named).collect();
+        let knots = self.knots.iter().map(|&v| name[v as usize]).collect();
+        let (positions, sizes) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.sizes));
+        let (wanted, taken) = (std::mem::take(&mut self.wanted), std::mem::take(&mut self.taken));
+        let border = self.border;
+        *self =
+            Local { sizes, wanted, taken, hard, knots, ..Local::new(positions, triangles, sides, border) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::metrics::check_mesh;
+
+    /// A grid of triangles whose border is fixed.
+    fn sheet(n: u32) -> Local {
+        let inside = |i: u32, j: u32| i > 0 && j > 0 && i < n && j < n;
+        let all = || (0..=n).flat_map(move |i| (0..=n).map(move |j| (i, j)));
+        let order = all().filter(|&(i, j)| !inside(i, j)).chain(all().filter(|&(i, j)| inside(i, j)));
+        let order = order.collect::<Vec<_>>();
+        let number = |p: (u32, u32)| order.iter().position(|&q| q == p).unwrap() as u32;
+        let mut triangles = vec![];
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let [a, b, c, d] = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(number);
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+        let positions = order.iter().map(|&(i, j)| DVec3::new(f64::from(i), f64::from(j), 0.0)).collect();
+        let sides = vec![0; triangles.len()];
+        let mut local = Local::new(positions, triangles, sides, 4 * n as usize);
+        local.sizes.fill(1.0);
+        local
+    }
+
+    fn is_disk(local: &Local) -> bool {
+        let mut copy = local.clone();
+        copy.compact();
+        let check = check_mesh(copy.positions.len(), &copy.triangles);
+        let upright = copy.triangles.iter().all(|t| {
+            let [a, b, c] = t.map(|v| copy.positions[v as usize]);
+            (b - a).cross(c - a).z > 0.0
+        });
+        upright && (check.bad_edges, check.bad_vertices, check.euler, check.boundaries) == (0, 0, 1, 1)
+    }
+
+    #[test]
+    fn edits_keep_a_disk_with_its_border() {
+        let mut local = sheet(5);
+        let mut state = 7u64;
+        let (mut split, mut collapsed, mut flipped) = (0, 0, 0);
+        for _ in 0..600 {
+            let edges = local.edges();
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let [a, b] = edges[(state >> 33) as usize % edges.len()];
+            match (state >> 20) % 3 {
+                0 if !local.is_border([a, b]) && edges.len() < 200 => {
+                    local.split([a, b]);
+                    split += 1;
+                }
+                1 => collapsed += usize::from(local.collapse(b, a, 9.0)),
+                _ => {
+                    let upright = |t: &[u32; 3]| {
+                        let [a, b, c] = t.map(|v| local.positions[v as usize]);
+                        (b - a).cross(c - a).z > 1e-9
+                    };
+                    if let Some((old, new)) = local.flipped([a, b]).filter(|f| f.1.iter().all(upright)) {
+                        local.flip(old, new);
+                        flipped += 1;
+                    }
+                }
+            }
+        }
+        assert!(split > 20 && collapsed > 20 && flipped > 20, "{split} {collapsed} {flipped}");
+        assert!(is_disk(&local));
+    }
+
+    #[test]
+    fn hard_lines_are_split_and_collapsed_along_themselves() {
+        let mut local = sheet(4);
+        let at = |local: &Local, x: f64, y: f64| {
+            local.positions.iter().position(|p| *p == DVec3::new(x, y, 0.0)).unwrap() as u32
+        };
+        let line = [0.0, 1.0, 2.0, 3.0, 4.0].map(|x| at(&local, x, 2.0));
+        local.hard.extend(line.windows(2).map(|w| edge(w[0], w[1])));
+        let above = at(&local, 2.0, 3.0);
+        assert!(local.flipped(edge(line[1], line[2])).is_none());
+        assert!(!local.collapse(line[2], above, 9.0));
+        local.split(edge(line[1], line[2]));
+        assert_eq!(local.hard.len(), 5);
+        assert!(local.collapse(line[2], line[3], 9.0));
+        assert_eq!(local.hard.len(), 4);
+        local.compact();
+        assert!(local.hard.iter().flatten().all(|&v| local.positions[v as usize].y == 2.0));
+        assert!(is_disk(&local));
+    }
+}

@@ -1,0 +1,80 @@
+//! What can be chosen about a joint, and what is told of it.
+
+use crate::error::{Error, Result};
+
+/// Options of [`join`](super::join()).
+#[derive(Clone, Debug, PartialEq)]
+pub struct JoinOptions {
+    /// Edge lengths to each side of the line where two surfaces meet that are taken away and blended; 0 keeps the line as a
+    /// crease.
+    pub blend: f64,
+    /// The edge length that `blend` counts in; `None`: of each part its own near the line.
+    pub edge_length: Option<f64>,
+    /// Refuse joints that meet themselves or the parts, instead of counting that.
+    pub strict: bool,
+}
+
+impl Default for JoinOptions {
+    fn default() -> Self {
+        JoinOptions { blend: 2.0, edge_length: None, strict: false }
+    }
+}
+
+/// The widest blend allowed.
+const WIDEST: f64 = 1000.0;
+
+impl JoinOptions {
+    /// Refuses values that are not allowed.
+    pub(super) fn check(&self) -> Result<()> {
+        if !(0.0..=WIDEST).contains(&self.blend) {
+            let allowed = "a number from 0 to 1000, of edge lengths";
+            return Err(Error::InvalidOption { name: "blend", value: self.blend.to_string(), allowed });
+        }
+        if let Some(length) = self.edge_length.filter(|l| !(l.is_finite() && *l > 0.0)) {
+            let allowed = "a number above 0, or nothing";
+            return Err(Error::InvalidOption { name: "edge_length", value: length.to_string(), allowed });
+        }
+        Ok(())
+    }
+}
+
+/// Numbers about a joined mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JoinReport {
+    /// Connected pieces of the result.
+    pub components: usize,
+    /// Sum of the pieces' genera.
+    pub genus: i32,
+    /// Parts that meet no other one: pieces of their own.
+    pub alone: usize,
+    /// Parts of which nothing is left, since they lie within others.
+    pub swallowed: usize,
+    /// Parts given inside out, which were turned.
+    pub turned: usize,
+    /// Closed lines in which surfaces meet, and lines that branch, each with all its branches.
+    pub curves: usize,
+    /// Patches between the parts.
+    pub collars: usize,
+    /// Of those, tubes between two rims.
+    pub tubes: usize,
+    /// Of those, patches in one rim.
+    pub fills: usize,
+    /// New triangles.
+    pub collar_triangles: usize,
+    /// New vertices.
+    pub collar_vertices: usize,
+    /// New vertices with a valence other than six.
+    pub collar_irregular: usize,
+    /// Vertices of the result that are irregular: with other than six triangles, a corner of a quad counted one and a half.
+    pub irregular: usize,
+    /// Smallest angle of a new triangle, in radians; of none 0.
+    pub min_angle: f64,
+    /// Pairs of triangles, at least one of them new, that meet where they should not.
+    pub self_intersections: usize,
+    /// Volume enclosed.
+    pub volume: f64,
+    /// Volume of the exact union.
+    pub exact_volume: f64,
+    /// Seconds spent in each stage.
+    pub seconds: Vec<(&'static str, f64)>,
+}

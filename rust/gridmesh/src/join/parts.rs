@@ -1,0 +1,297 @@
+//! The parts, one after the other in one numbering, and triangulated.
+
+use glam::DVec3;
+
+use crate::cut::Polygons;
+use crate::cut::input::{check_mesh, triangles};
+use crate::error::{Error, Result};
+
+/// Triangles of all parts at most.
+const LIMIT: usize = 20_000_000;
+
+/// A closed mesh that is to be joined.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'a> {
+    /// Positions of its vertices.
+    pub vertices: &'a [DVec3],
+    /// Its faces.
+    pub faces: Polygons<'a>,
+}
+
+/// All parts: vertices, faces and triangles numbered through.
+pub(super) struct Parts {
+    pub vertices: Vec<DVec3>,
+    /// Faces, all wound counter-clockwise as seen from outside.
+    pub corners: Vec<u32>,
+    pub offsets: Vec<u32>,
+    pub triangles: Vec<[u32; 3]>,
+    /// The face of each triangle.
+    pub face_of: Vec<u32>,
+    /// The first vertex, face and triangle of each part, and the ends.
+    pub first: Vec<[u32; 3]>,
+    /// Parts that were given inside out.
+    pub turned: usize,
+}
+
+/// A corner of a face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// The vertices after and before it in the face.
+    pub next: u32,
+    pub before: u32,
+    pub face: u32,
+}
+
+/// The corners at each vertex.
+pub(super) struct Around {
+    vertex: u32,
+    start: Vec<u32>,
+    corners: Vec<Corner>,
+}
+
+impl Around {
+    /// Those at one vertex.
+    pub fn of(&self, v: u32) -> &[Corner] {
+        let k = (v - self.vertex) as usize;
+        &self.corners[self.start[k] as usize..self.start[k + 1] as usize]
+    }
+}
+
+impl Parts {
+    /// Checks and collects.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::ExtremeSize`], [`Error::InvalidFace`], [`Error::IndexOutOfRange`],
+    /// [`Error::NotClosed`], [`Error::TooLarge`].
+    pub fn new(given: &[Part<'_>]) -> Result<Parts> {
+        let mut all = Parts {
+            vertices: vec![],
+            corners: vec![],
+            offsets: vec![0],
+            triangles: vec![],
+            face_of: vec![],
+            first: vec![[0; 3]],
+            turned: 0,
+        };
+        for (number, part) in given.iter().enumerate() {
+            check_part(number, part)?;
+            all.add(number, part)?;
+        }
+        Ok(all)
+    }
+
+    fn add(&mut self, number: usize, part: &Part<'_>) -> Result<()> {
+        let [vertex, face, triangle] = self.first[number];
+        let most = self.triangles.len() + part.faces.corners.len();
+        if most > LIMIT || self.vertices.len() + part.vertices.len() > LIMIT {
+            return Err(Error::TooLarge { triangles: most as f64, limit: LIMIT as f64 });
+        }
+        self.vertices.extend_from_slice(part.vertices);
+        for f in 0..part.faces.len() {
+            let of = face + f as u32;
+            let own = part.faces.face(f);
+            triangles(part.vertices, own, |t| {
+                self.triangles.push(t.map(|v| v + vertex));
+                self.face_of.push(of);
+            });
+            self.corners.extend(own.iter().map(|v| v + vertex));
+            self.offsets.push(self.corners.len() as u32);
+        }
+        let own = triangle as usize..self.triangles.len();
+        if volume(&self.vertices, &self.triangles[own.clone()]) < 0.0 {
+            self.turned += 1;
+            self.triangles[own].iter_mut().for_each(|t| t.swap(1, 2));
+            for f in face as usize..self.offsets.len() - 1 {
+                self.corners[self.offsets[f] as usize..self.offsets[f + 1] as usize].reverse();
+            }
+        }
+        self.check_closed(number)?;
+        self.first.push([
+            self.vertices.len() as u32,
+            self.offsets.len() as u32 - 1,
+            self.triangles.len() as u32,
+        ]);
+        Ok(())
+    }
+
+    /// Refuses the last part if it is not closed.
+    fn check_closed(&self, part: usize) -> Result<()> {
+        let [vertex, face, _] = self.first[part];
+        let around = self.around(vertex, face);
+        for v in vertex..self.vertices.len() as u32 {
+            let fan = around.of(v);
+            let bad = |reason| {
+                let at = self.vertices[v as usize].into();
+                Err(Error::NotClosed { part, reason, vertex: v - vertex, at })
+            };
+            let Some(&Corner { next: start, .. }) = fan.first() else { continue };
+            for &Corner { next, before, .. } in fan {
+                for other in [next, before] {
+                    let leaving = fan.iter().filter(|w| w.next == other).count();
+                    let arriving = fan.iter().filter(|w| w.before == other).count();
+                    match (leaving, arriving) {
+                        (1, 1) => {}
+                        (1, 0) | (0, 1) => return bad("an edge has a face on one side only"),
+                        (2, 0) | (0, 2) => return bad("two faces at an edge are wound against each other"),
+                        _ => return bad("an edge joins more than two faces"),
+                    }
+                }
+            }
+            let (mut at, mut steps) = (start, 0);
+            loop {
+                at = fan.iter().find(|w| w.next == at).map_or(start, |w| w.before);
+                steps += 1;
+                if at == start || steps > fan.len() {
+                    break;
+                }
+            }
+            if steps != fan.len() {
+                return bad("faces meet in one vertex only");
+            }
+        }
+        Ok(())
+    }
+
+    /// The corners of faces at each vertex, of the faces and vertices from these on.
+    pub fn around(&self, vertex: u32, face: u32) -> Around {
+        let n = self.vertices.len() - vertex as usize;
+        let mut start = vec![0u32; n + 1];
+        let from = self.offsets[face as usize] as usize;
+        for &v in &self.corners[from..] {
+            start[(v - vertex) as usize + 1] += 1;
+        }
+        for i in 0..n {
+            start[i + 1] += start[i];
+        }
+        let mut fill = start.clone();
+        let none = Corner { next: 0, before: 0, face: 0 };
+        let mut corners = vec![none; self.corners.len() - from];
+        for f in face..self.n_faces() as u32 {
+            let own = self.face(f);
+            let m = own.len();
+            for k in 0..m {
+                let slot = &mut fill[(own[k] - vertex) as usize];
+                corners[*slot as usize] =
+                    Corner { next: own[(k + 1) % m], before: own[(k + m - 1) % m], face: f };
+                *slot += 1;
+            }
+        }
+        Around { vertex, start, corners }
+    }
+
+    /// The corners of a face.
+    pub fn face(&self, f: u32) -> &[u32] {
+        &self.corners[self.offsets[f as usize] as usize..self.offsets[f as usize + 1] as usize]
+    }
+
+    /// The number of faces.
+    pub fn n_faces(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// The number of parts.
+    pub fn len(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    /// The part of a triangle.
+    pub fn part_of_triangle(&self, triangle: u32) -> usize {
+        self.first.partition_point(|f| f[2] <= triangle) - 1
+    }
+
+    /// The part of a face.
+    pub fn part_of_face(&self, face: u32) -> usize {
+        self.first.partition_point(|f| f[1] <= face) - 1
+    }
+
+    /// The part of a vertex.
+    pub fn part_of_vertex(&self, vertex: u32) -> usize {
+        self.first.partition_point(|f| f[0] <= vertex) - 1
+    }
+}
+
+fn check_part(number: usize, part: &Part<'_>) -> Result<()> {
+    let named = |error| match error {
+        Error::InvalidFace { face, reason } => {
+            Error::InvalidFace { face, reason: format!("in part {number} {reason}") }
+        }
+        Error::IndexOutOfRange { what, index, vertices } => {
+            Error::IndexOutOfRange { what: format!("{what} of part {number}"), index, vertices }
+        }
+        other => other,
+    };
+    check_mesh(&format!("part {number}"), part.vertices, part.faces).map_err(named)?;
+    if part.faces.is_empty() {
+        return Err(Error::TooFewPoints { what: format!("part {number}"), distinct: 0 });
+    }
+    Ok(())
+}
+
+/// The volume that triangles enclose.
+pub(super) fn volume(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+    let Some(&[first, ..]) = triangles.first() else { return 0.0 };
+    // Near the mesh, whose place in space is not to cost digits.
+    let origin = vertices[first as usize];
+    let six = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| vertices[v as usize] - origin);
+        a.dot(b.cross(c))
+    };
+    triangles.iter().map(six).sum::<f64>() / 6.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CUBE: [[u32; 4]; 6] =
+        [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+
+    fn cube() -> Vec<DVec3> {
+        let at = |k: u32| DVec3::new(f64::from(k >> 2 & 1), f64::from(k >> 1 & 1), f64::from(k & 1));
+        (0..8).map(at).collect()
+    }
+
+    fn made(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Parts> {
+        let corners = faces.concat();
+        let mut offsets = vec![0];
+        faces.iter().for_each(|f| offsets.push(offsets[offsets.len() - 1] + f.len() as u32));
+        Parts::new(&[Part { vertices, faces: Polygons { corners: &corners, offsets: &offsets } }])
+    }
+
+    fn quads() -> Vec<Vec<u32>> {
+        CUBE.iter().map(|q| q.to_vec()).collect()
+    }
+
+    #[test]
+    fn closed_parts_are_taken_and_turned() {
+        let parts = made(&cube(), &quads()).unwrap();
+        assert_eq!((parts.n_faces(), parts.triangles.len(), parts.turned), (6, 12, 0));
+        assert!((volume(&parts.vertices, &parts.triangles) - 1.0).abs() < 1e-15);
+        let inside_out = quads().into_iter().map(|q| q.into_iter().rev().collect()).collect::<Vec<_>>();
+        let parts = made(&cube(), &inside_out).unwrap();
+        assert_eq!(parts.turned, 1);
+        assert!((volume(&parts.vertices, &parts.triangles) - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_is_not_closed_is_refused() {
+        let reason = |faces: &[Vec<u32>], vertices: &[DVec3]| match made(vertices, faces) {
+            Err(Error::NotClosed { reason, .. }) => reason,
+            other => panic!("{:?}", other.err()),
+        };
+        let one_side = "an edge has a face on one side only";
+        assert_eq!(reason(&quads()[..5], &cube()), one_side);
+        let twice = [quads(), quads()].concat();
+        assert_eq!(reason(&twice, &cube()), "an edge joins more than two faces");
+        let mut turned = quads();
+        turned[3].reverse();
+        assert_eq!(reason(&turned, &cube()), "two faces at an edge are wound against each other");
+        // A second cube that shares one corner.
+        let more =
+            quads().into_iter().map(|q| q.into_iter().map(|v| if v == 0 { 7 } else { v + 7 }).collect());
+        let both = quads().into_iter().chain(more).collect::<Vec<_>>();
+        let far = cube().into_iter().skip(1).map(|p| p + DVec3::ONE);
+        let vertices = cube().into_iter().chain(far).collect::<Vec<_>>();
+        assert_eq!(reason(&both, &vertices), "faces meet in one vertex only");
+    }
+}

@@ -1,0 +1,157 @@
+//! The exact union of the parts: what of each is left, and where surfaces meet.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use glam::DVec3;
+use manifold_rust::manifold::Manifold;
+use manifold_rust::types::{BooleanEngine, MeshGL64, OpType};
+use rustc_hash::FxHashMap;
+
+use super::parts::Parts;
+use crate::error::{Error, Result};
+use crate::geometry::topology::{NONE, Topology};
+use crate::progress::Progress;
+
+/// A closed mesh of what is in any of the parts.
+pub(super) struct Union {
+    pub vertices: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
+    /// The triangle of the parts that each lies on.
+    pub source: Vec<u32>,
+    /// The vertex of the parts that each vertex is, or [`NONE`].
+    pub old: Vec<u32>,
+    /// Its connections.
+    pub topology: Topology,
+}
+
+impl Union {
+    /// Unites the parts.
+    ///
+    /// The Boolean operation is that of the crate `manifold-rust`, which promises a closed result for closed input, but not that
+    /// it never panics; should it, the panic is caught and becomes an [`Error::JoinFailed`].
+    ///
+    /// # Errors
+    /// [`Error::JoinFailed`], [`Error::Cancelled`].
+    pub fn new(parts: &Parts, progress: Progress<'_>) -> Result<Union> {
+        let failed = |reason| Error::JoinFailed { reason, at: parts.vertices[0].into() };
+        let first_id = Manifold::reserve_ids(parts.len() as u32);
+        let mut united: Option<Manifold> = None;
+        for part in 0..parts.len() {
+            progress.report(part as f64 / parts.len() as f64)?;
+            let mesh = solid(parts, part, first_id);
+            let step = || {
+                let own = Manifold::from_mesh_gl64(&mesh);
+                match &united {
+                    Some(all) => all.boolean_with_engine(&own, OpType::Add, BooleanEngine::Exact),
+                    None => own,
+                }
+            };
+            let next = catch_unwind(AssertUnwindSafe(step))
+                .map_err(|_| failed("the Boolean operation on them broke down"))?;
+            if next.is_empty() {
+                return Err(failed("the Boolean operation on them has no result"));
+            }
+            united = Some(next);
+        }
+        let united = united.ok_or(Error::Internal { reason: "no part" })?;
+        let mesh = catch_unwind(AssertUnwindSafe(|| united.get_mesh_gl64(-1)))
+            .map_err(|_| failed("the Boolean operation on them broke down"))?;
+        progress.report(1.0)?;
+        Self::of(parts, &mesh, first_id)
+            .ok_or_else(|| failed("the Boolean operation on them has no sound result"))
+    }
+
+    fn of(parts: &Parts, mesh: &MeshGL64, first_id: u32) -> Option<Union> {
+        let stride = mesh.num_prop as usize;
+        let vertices = mesh.vert_properties.chunks_exact(stride).map(|p| DVec3::new(p[0], p[1], p[2]));
+        let vertices = vertices.collect::<Vec<_>>();
+        let triangles = mesh.tri_verts.chunks_exact(3).map(|t| [t[0] as u32, t[1] as u32, t[2] as u32]);
+        let triangles = triangles.collect::<Vec<_>>();
+        let mut source = vec![NONE; triangles.len()];
+        for (run, id) in mesh.run_original_id.iter().enumerate() {
+            let part = id.checked_sub(first_id).filter(|&part| (part as usize) < parts.len())?;
+            let first = parts.first[part as usize][2];
+            let span = |k: usize| mesh.run_index.get(k).map_or(triangles.len(), |&i| i as usize / 3);
+            for t in span(run)..span(run + 1) {
+                source[t] = first + u32::try_from(*mesh.face_id.get(t)?).ok()?;
+            }
+        }
+        if source.iter().any(|&s| s as usize >= parts.triangles.len()) {
+            return None;
+        }
+        let mut old = vec![NONE; vertices.len()];
+        let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
+        for (t, &s) in triangles.iter().zip(&source) {
+            for &v in t {
+                let here = key(vertices[v as usize]);
+                let corner =
+                    parts.triangles[s as usize].iter().find(|&&c| key(parts.vertices[c as usize]) == here);
+                if let Some(&corner) = corner {
+                    // Where vertices of two parts coincide, one name.
+                    old[v as usize] = old[v as usize].min(corner);
+                }
+            }
+        }
+        let topology = Topology::new(vertices.len(), &triangles);
+        let open = topology.across.iter().flatten().any(|&t| t == NONE);
+        (!open).then_some(Union { vertices, triangles, source, old, topology })
+    }
+
+    /// The part that a triangle lies on.
+    pub fn part(&self, parts: &Parts, triangle: usize) -> usize {
+        parts.part_of_triangle(self.source[triangle])
+    }
+
+    /// Edges between triangles of different parts: their vertices, and the two triangles.
+    pub fn seams(&self, parts: &Parts) -> Vec<([u32; 2], [u32; 2])> {
+        let part = (0..self.triangles.len()).map(|t| self.part(parts, t)).collect::<Vec<_>>();
+        let mut seams = vec![];
+        for (t, beyond) in self.topology.across.iter().enumerate() {
+            for k in 0..3 {
+                let other = beyond[k];
+                if other as usize > t && part[other as usize] != part[t] {
+                    let [a, b] = [self.triangles[t][(k + 1) % 3], self.triangles[t][(k + 2) % 3]];
+                    seams.push(([a, b], [t as u32, other]));
+                }
+            }
+        }
+        seams
+    }
+
+    /// Vertices minus edges plus triangles.
+    pub fn euler(&self) -> i64 {
+        let mut used = vec![false; self.vertices.len()];
+        self.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+        used.iter().filter(|&&u| u).count() as i64 - self.triangles.len() as i64 / 2
+    }
+
+    /// For each source triangle the triangles of the union on it.
+    pub fn by_source(&self) -> FxHashMap<u32, Vec<u32>> {
+        let mut found: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+        for (t, &s) in self.source.iter().enumerate() {
+            found.entry(s).or_default().push(t as u32);
+        }
+        found
+    }
+}
+
+/// A part as the Boolean operation takes it: each triangle a face of its own.
+fn solid(parts: &Parts, part: usize, first_id: u32) -> MeshGL64 {
+    let ([v, _, t], [v_end, _, t_end]) = (parts.first[part], parts.first[part + 1]);
+    let vertices = &parts.vertices[v as usize..v_end as usize];
+    let triangles = &parts.triangles[t as usize..t_end as usize];
+    // Vertices of no face would count as points of the solid's box.
+    let mut used = vec![NONE; vertices.len()];
+    let mut mesh = MeshGL64 { num_prop: 3, ..MeshGL64::default() };
+    for &corner in triangles.iter().flatten() {
+        let slot = &mut used[(corner - v) as usize];
+        if *slot == NONE {
+            *slot = (mesh.vert_properties.len() / 3) as u32;
+            mesh.vert_properties.extend(vertices[(corner - v) as usize].to_array());
+        }
+        mesh.tri_verts.push(u64::from(*slot));
+    }
+    mesh.run_original_id = vec![first_id + part as u32];
+    mesh.face_id = (0..triangles.len() as u64).collect();
+    mesh
+}

@@ -1,0 +1,392 @@
+"""`join`: what is guaranteed of bodies made one."""
+
+import pickle
+import sys
+from pathlib import Path
+
+import gridmesh
+import numpy as np
+import pytest
+import sketches
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
+
+import joins
+from joins import Case, fanned, faults, least_angle, measure
+
+TAU = 2 * np.pi
+
+
+def ball(at=(0, 0, 0), radius=1.0, edge=0.12):
+    """A round body of triangles."""
+    vertices, triangles = joins.body(radius * sketches.circle(120), edge, 1.0)
+    return vertices + np.asarray(at, float), triangles
+
+
+def bar(size, at=(0, 0, 0), cells=None):
+    """A box of quads, `cells` along each axis."""
+    cells = np.asarray(cells if cells is not None else np.maximum(2, np.round(np.array(size) / 0.15)), int)
+    number, vertices, quads = {}, [], []
+
+    def vertex(point):
+        if point not in number:
+            number[point] = len(vertices)
+            vertices.append(np.array(point) / cells * size - np.array(size) / 2 + at)
+        return number[point]
+
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for side in (0, cells[axis]):
+            for i in range(cells[u]):
+                for j in range(cells[v]):
+                    face = []
+                    for a, b in [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]:
+                        point = [0, 0, 0]
+                        point[axis], point[u], point[v] = int(side), a, b
+                        face.append(vertex(tuple(point)))
+                    quads.append(face if side else face[::-1])
+    return np.array(vertices), np.array(quads)
+
+
+def torus(at=(0, 0, 0), radius=1.0, tube=0.3, n=48, m=16):
+    """A ring of triangles around the z axis."""
+    i, j = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
+    s, t = TAU * i / n, TAU * (j + 0.5 * (i % 2)) / m
+    ring = radius + tube * np.cos(t)
+    vertices = np.stack([ring * np.cos(s), ring * np.sin(s), tube * np.sin(t)], axis=-1).reshape(-1, 3)
+    number = lambda i, j: (i % n) * m + j % m  # noqa: E731
+    a, b, c, d = number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)
+    even = (i % 2 == 0)[..., None]
+    one = np.where(even, np.stack([a, b, d], -1), np.stack([a, b, c], -1)).reshape(-1, 3)
+    two = np.where(even, np.stack([b, c, d], -1), np.stack([a, c, d], -1)).reshape(-1, 3)
+    return vertices + np.asarray(at, float), np.vstack([one, two])
+
+
+def joined(*parts, **options):
+    """The joined mesh, checked."""
+    made = gridmesh.join(parts, **options)
+    assert not faults(parts, made)
+    return made
+
+
+def kind_of(*parts, **options):
+    with pytest.raises(gridmesh.GridMeshError) as caught:
+        gridmesh.join(parts, **options)
+    return caught.value.kind, str(caught.value)
+
+
+# --------------------------------------------------------------------------------------------------- topology
+
+
+def test_two_balls_become_one_body_by_a_tube():
+    made = joined(ball(), ball((1.3, 0.1, 0.2), 0.8))
+    report = made.report
+    assert (report["components"], report["genus"], report["collars"], report["tubes"]) == (1, 0, 1, 1)
+    assert report["self_intersections"] == 0
+    assert abs(report["volume"] / report["exact_volume"] - 1) < 0.03
+    assert measure(made, 0).angle > 15
+    assert (made.source_part < 0).sum() == report["collar_triangles"]
+
+
+def test_parts_that_do_not_meet_stay_apart():
+    parts = ball(), ball((5, 0, 0)), ball((0, 5, 0))
+    made = joined(*parts)
+    assert (made.report["components"], made.report["alone"], made.report["collars"]) == (3, 3, 0)
+    assert np.array_equal(made.vertices, np.vstack([vertices for vertices, _ in parts]))
+    assert len(made.triangles) == sum(len(triangles) for _, triangles in parts)
+
+
+def test_a_part_within_another_vanishes():
+    made = joined(ball(), ball(radius=0.4))
+    assert (made.report["components"], made.report["swallowed"]) == (1, 1)
+    assert set(made.vertex_part) == {0}
+
+
+def test_a_handle_raises_the_genus():
+    made = joined(ball(radius=1.0), torus((1.0, 0, 0), 0.8, 0.2))
+    assert (made.report["components"], made.report["genus"], made.report["collars"]) == (1, 1, 2)
+    assert made.report["tubes"] == 2
+
+
+def test_a_bar_through_a_ball():
+    made = joined(ball(), bar((4.0, 0.6, 0.6)))
+    assert (made.report["components"], made.report["genus"], made.report["collars"]) == (1, 0, 2)
+
+
+def test_three_parts_in_one_place():
+    made = joined(ball(), ball((1.0, 0, 0)), ball((0.5, 0.9, 0)))
+    assert (made.report["components"], made.report["genus"]) == (1, 0)
+    assert made.report["self_intersections"] == 0
+
+
+def test_one_part_comes_back_as_it_was():
+    vertices, triangles = ball()
+    made = joined((vertices, triangles))
+    assert np.array_equal(made.vertices, vertices)
+    assert np.array_equal(made.triangles, triangles)
+
+
+def test_a_part_inside_out_is_turned():
+    vertices, triangles = ball((1.3, 0, 0))
+    made = gridmesh.join([ball(), (vertices, triangles[:, ::-1])])
+    assert (made.report["turned"], made.report["components"], made.report["genus"]) == (1, 1, 0)
+    assert joins.volume(made.vertices, fanned(made)[0]) > 0
+
+
+# ------------------------------------------------------------------------------------------------- what stays
+
+
+def test_quads_stay_quads_outside_the_collar():
+    parts = bar((3.0, 1.0, 1.0)), bar((0.6, 0.6, 2.4), (0.1, 0.02, 0.9))
+    made = joined(*parts)
+    assert made.report["components"] == 1
+    assert len(made.quads) > 0.5 * sum(len(quads) for _, quads in parts)
+    assert np.all(made.source_part[len(made.triangles) :] >= 0)
+    assert np.all(made.source_part[: len(made.triangles)] == -1)
+
+
+def test_polygons_are_taken_and_stay():
+    vertices, quads = bar((3.0, 1.0, 1.0))
+    corners, offsets = quads.ravel(), np.arange(0, quads.size + 1, 4)
+    # Two quads on the far end as one face of six corners.
+    left = [k for k, quad in enumerate(quads) if (vertices[quad][:, 0] < -1.49).all()]
+    one = quads[left[0]]
+    other = next(quads[k] for k in left[1:] if len(set(quads[k]) & set(one)) == 2)
+    a = next(i for i in range(4) if one[i] in other and one[(i + 1) % 4] in other)
+    b = next(i for i in range(4) if other[i] == one[a])
+    both = np.r_[[one[(a + k) % 4] for k in range(1, 5)], [other[(b + k) % 4] for k in range(1, 3)]]
+    rest = np.array(
+        [quad for quad in quads if not (np.array_equal(quad, one) or np.array_equal(quad, other))]
+    )
+    corners = np.r_[rest.ravel(), both]
+    offsets = np.r_[np.arange(0, rest.size + 1, 4), rest.size + 6]
+    made = gridmesh.join([(vertices, (corners, offsets)), ball((1.5, 0, 0), 0.4)])
+    assert made.offsets[-1] - made.offsets[-2] == 6
+    assert made.source_face[-1] == len(rest)
+    assert made.report["components"] == 1
+
+
+def test_collars_lie_near_the_line_where_surfaces_meet():
+    parts = ball(edge=0.08), ball((1.2, 0, 0), edge=0.08)
+    wide, narrow = joined(*parts, blend=3.0), joined(*parts, blend=1.0)
+    fresh = lambda made: made.vertices[made.vertex_part < 0]  # noqa: E731
+    # Two equal balls meet in the plane between them.
+    assert np.abs(fresh(wide)[:, 0] - 0.6).max() < 4.2 * 0.08
+    assert np.abs(fresh(narrow)[:, 0] - 0.6).max() < 2.2 * 0.08
+    kept = wide.vertices[wide.vertex_part >= 0]
+    assert np.abs(kept[:, 0] - 0.6).min() > 1.2 * 0.08
+    assert len(fresh(wide)) > len(fresh(narrow))
+
+
+def test_a_given_edge_length_is_what_the_blend_counts_in():
+    parts = ball(edge=0.08), ball((1.2, 0, 0), edge=0.08)
+    one, two = joined(*parts, blend=2.0, edge_length=0.1), joined(*parts, blend=1.0, edge_length=0.2)
+    assert np.array_equal(one.vertices, two.vertices)
+    assert len(one.vertices) != len(joined(*parts, blend=2.0, edge_length=0.2).vertices)
+
+
+# ---------------------------------------------------------------------------------------------------- creases
+
+
+def test_without_blend_the_line_stays_sharp_and_even():
+    made = joined(ball(edge=0.1), ball((1.2, 0, 0), edge=0.1), blend=0.0)
+    assert made.report["components"] == 1
+    on_line = np.abs(made.vertices[:, 0] - 0.6) < 0.02
+    line = made.vertices[on_line & (made.vertex_part < 0)]
+    # The balls meet in a circle, which is there.
+    radius = np.hypot(line[:, 1], line[:, 2])
+    assert len(line) > 20
+    assert radius.min() > 0.72
+    found = measure(made, 0)
+    assert found.ratio < 4
+    assert found.volume < 0.005
+    assert found.angle > 10
+
+
+def test_boxes_without_blend_keep_their_edges():
+    parts = bar((2.0, 1.0, 1.0), cells=(16, 8, 8)), bar((0.5, 0.5, 2.0), (0.03, 0.02, 0.3), cells=(4, 4, 16))
+    made = joined(*parts, blend=0.0)
+    assert abs(made.report["volume"] / made.report["exact_volume"] - 1) < 1e-3
+
+
+# ------------------------------------------------------------------------------------------------------ traps
+
+
+def test_bodies_in_one_plane_share_the_plane_of_their_silhouettes():
+    circle = sketches.circle(120)
+    parts = [joins.body(circle, 0.1, 0.8), joins.body(0.6 * circle + [1.1, 0.2], 0.1, 0.8)]
+    assert all((vertices[:, 2] == 0).any() for vertices, _ in parts)
+    made = joined(*parts)
+    assert (made.report["components"], made.report["genus"], made.report["self_intersections"]) == (1, 0, 0)
+
+
+def test_an_arm_thinner_than_its_collar():
+    arm = joins.body(np.array([[-0.5, -0.06], [0.5, -0.06], [0.5, 0.06], [-0.5, 0.06]]) + [1.3, 0], 0.05, 1.0)
+    made = joined(ball(), arm, blend=4.0)
+    assert (made.report["components"], made.report["genus"]) == (1, 0)
+
+
+def test_arms_side_by_side_whose_collars_would_touch():
+    arm = lambda y: bar((2.0, 0.4, 0.4), (1.3, y, 0), cells=(20, 4, 4))  # noqa: E731
+    made = joined(ball(edge=0.08), arm(0.32), arm(-0.32))
+    assert (made.report["components"], made.report["genus"], made.report["curves"]) == (1, 0, 2)
+    assert made.report["self_intersections"] == 0
+
+
+def test_edge_lengths_of_one_to_four_are_graded():
+    made = joined(ball(edge=0.16), ball((1.2, 0, 0), 0.7, edge=0.04))
+    assert made.report["components"] == 1
+    found = measure(made, 0)
+    assert found.ratio < 2
+    assert found.angle > 12
+
+
+@pytest.mark.parametrize("gap", [-1e-6, 0.0, 1e-6, 1e-3])
+def test_touching_in_a_point_is_closed_or_refused(gap):
+    parts = ball(), ball((2 + gap, 0, 0))
+    try:
+        made = joined(*parts)
+    except gridmesh.GridMeshError as error:
+        assert error.kind == "join_failed"
+        return
+    assert made.report["genus"] == 0
+
+
+def test_coplanar_faces_and_equal_parts():
+    box = bar((2.0, 1.0, 1.0))
+    beside = bar((1.0, 1.0, 1.0), (1.5, 0, 0), cells=(7, 7, 7))
+    for parts in [(box, box), (box, beside), (ball(), ball())]:
+        try:
+            made = joined(*parts)
+        except gridmesh.GridMeshError as error:
+            assert error.kind == "join_failed"
+            continue
+        assert made.report["components"] == 1
+        assert made.report["genus"] == 0
+
+
+@settings(deadline=None, max_examples=25)
+@given(
+    st.tuples(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5), st.floats(-1, 1)),
+    st.floats(0.3, 1.2),
+    st.sampled_from([0.0, 0.5, 1.0, 2.0, 5.0]),
+)
+def test_balls_anywhere(at, radius, blend):
+    try:
+        made = joined(ball(edge=0.2), ball(at, radius, edge=0.2), blend=blend)
+    except gridmesh.GridMeshError as error:
+        assert error.kind == "join_failed"
+        return
+    assert made.report["genus"] == 0
+    assert made.report["components"] in (1, 2)
+
+
+def test_a_campaign_of_random_bodies():
+    """A short run of the campaign; `python tests/campaign/joins.py` makes longer ones."""
+    wrong, refused, found = joins.campaign(12, seed=1)
+    assert not wrong
+    assert len(refused) <= 1
+    measures = [it for it, made in found.values() if made.report["collars"]]
+    of = lambda name: np.array([getattr(it, name) for it in measures])  # noqa: E731
+    assert np.median(of("irregular")) <= 0.06
+    assert np.median(of("angle")) >= 15
+    assert np.median(of("volume")) <= 0.03
+
+
+# -------------------------------------------------------------------------------------------------- the result
+
+
+def test_the_same_bytes_each_time():
+    parts = ball(), ball((1.2, 0.3, 0)), torus((0, 0, 0.8))
+    one, two = gridmesh.join(parts), gridmesh.join(parts)
+    assert one.vertices.tobytes() == two.vertices.tobytes()
+    assert one.corners.tobytes() == two.corners.tobytes()
+
+
+def test_bodies_and_joined_meshes_are_parts():
+    circle = sketches.circle(100)
+    body = gridmesh.inflate(gridmesh.mesh_sketch(circle, quads=300))
+    head = gridmesh.inflate(gridmesh.mesh_sketch(0.6 * circle + [0, 1.2], edge_length=0.1))
+    both = gridmesh.join([body, head])
+    assert both.report["components"] == 1
+    assert len(both.quads)
+    hat = ball((0, 2.0, 0), 0.4)
+    three = gridmesh.join([both, hat])
+    assert three.report["components"] == 1
+    assert set(three.vertex_part) == {-1, 0, 1}
+
+
+def test_pickle_and_copies():
+    made = gridmesh.join([ball(), ball((1.2, 0, 0))])
+    again = pickle.loads(pickle.dumps(made))
+    for name in ("vertices", "triangles", "quads", "corners", "offsets", "source_part", "source_vertex"):
+        assert np.array_equal(getattr(again, name), getattr(made, name))
+        assert not getattr(made, name).flags.writeable
+    assert [[len(r) for r in rims] for rims in again.collars] == [
+        [len(r) for r in rims] for rims in made.collars
+    ]
+    assert again.report == made.report
+
+
+# --------------------------------------------------------------------------------------------------- refusals
+
+
+def test_parts_that_are_not_closed_are_refused_with_the_place():
+    vertices, triangles = ball()
+    kind, message = kind_of(ball((1, 0, 0)), (vertices, triangles[1:]))
+    assert kind == "not_closed"
+    assert "part 1" in message
+    assert "one side only" in message
+    assert kind_of((vertices, np.vstack([triangles, triangles[:1]])))[0] == "not_closed"
+    turned = triangles.copy()
+    turned[5] = turned[5, ::-1]
+    assert kind_of((vertices, turned))[0] == "not_closed"
+    pinched = np.vstack([triangles, triangles + len(vertices)])
+    pinched[pinched == len(vertices)] = 0
+    double = np.vstack([vertices, vertices - vertices[0] * 2])
+    assert kind_of((double, pinched))[0] == "not_closed"
+
+
+@pytest.mark.parametrize(
+    ("change", "kind"),
+    [
+        (lambda v, t: (np.where(v == v.max(), np.nan, v), t), "not_finite"),
+        (lambda v, t: (v, np.where(t == 0, len(v), t)), "index_out_of_range"),
+        (lambda v, t: (v, np.where(t == t[0, 0], t[0, 1], t)), "invalid_face"),
+        (lambda v, t: (v * 1e90, t), "extreme_size"),
+        (lambda v, _: (v, np.zeros((0, 3), int)), "too_few_points"),
+    ],
+)
+def test_what_is_no_mesh_is_refused(change, kind):
+    assert kind_of(ball((1, 0, 0)), change(*ball()))[0] == kind
+
+
+def test_options_that_are_not_allowed():
+    assert kind_of()[0] == "invalid_option"
+    for options in ({"blend": -1}, {"blend": np.inf}, {"edge_length": 0}, {"edge_length": -1.0}):
+        assert kind_of(ball(), **options)[0] in ("invalid_option", "not_finite")
+    with pytest.raises(TypeError):
+        gridmesh.join([3])
+    with pytest.raises(TypeError):
+        gridmesh.join([ball()], blend="wide")
+
+
+def test_cancelling_and_progress():
+    parts = ball(), ball((1.2, 0, 0))
+    seen = []
+    gridmesh.join(parts, progress=lambda f: seen.append(f) or True)
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+    assert kind_of(*parts, progress=lambda f: f < 0.3)[0] == "cancelled"
+
+
+def test_the_campaign_measures_what_it_says():
+    vertices, triangles = ball()
+    made = gridmesh.join([(vertices, triangles)])
+    assert measure(made, 0).meetings == 0
+    assert abs(joins.volume(vertices, triangles) - made.report["volume"]) < 1e-9
+    assert least_angle(np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0]]], float)) == pytest.approx(45)
+    assert faults([(vertices + 1, triangles)], made) == ["vertices of part 0 have moved"]
+    assert Case([(vertices, triangles)]).join().report["components"] == 1
