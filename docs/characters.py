@@ -105,7 +105,7 @@ def characters() -> list[Character]:
             both(smooth((0.4, 0.42), (0.62, 0.38), (0.92, 0.0), (0.98, -0.25), (0.78, -0.32), (0.62, -0.05))),
         ),
         Layer(cream, [oval(0, 0.86, 0.27, 0.21)]),
-        Layer(ink, [oval(0, 0.95, 0.1, 0.08), *both(oval(0.25, 1.13, 0.08, 0.09))]),
+        Layer(ink, [oval(0, 0.95, 0.12, 0.09), *both(oval(0.26, 1.2, 0.1, 0.11))]),
     ]
     blue, white, orange = "#4F8FC0", "#EEF1EC", "#E8963A"
     bird = [
@@ -151,7 +151,7 @@ def characters() -> list[Character]:
             ],
         ),
         Layer(orange, [smooth((0.42, 0.72), (0.7, 0.66), (1.0, 0.52), (0.72, 0.42), (0.44, 0.46))]),
-        Layer(ink, [oval(0.2, 0.72, 0.09, 0.1)]),
+        Layer(ink, [oval(0.12, 0.66, 0.12, 0.13)]),
     ]
     steel, dark, lamp = "#8C9BA8", "#5A6672", "#E2C044"
     robot = [
@@ -292,8 +292,8 @@ def characters() -> list[Character]:
                 *both(oval(0.24, -0.95, 0.2, 0.14)),
             ],
         ),
-        Layer(pink, [oval(0, 0.68, 0.08, 0.06)]),
-        Layer(ink, both(oval(0.24, 0.87, 0.08, 0.1))),
+        Layer(pink, [oval(0, 0.7, 0.12, 0.08)]),
+        Layer(ink, both(oval(0.26, 0.92, 0.11, 0.13))),
     ]
     green, spot = "#6FA56A", "#C9D98A"
     turtle = [
@@ -315,9 +315,9 @@ def characters() -> list[Character]:
                 *both(oval(0.4, -0.36, 0.16, 0.17)),
             ],
         ),
-        Layer(ink, both(oval(0.15, 1.18, 0.07, 0.08))),
+        Layer(ink, both(oval(0.14, 1.16, 0.1, 0.11))),
     ]
-    fine = {"resolution": "EDGE_LENGTH", "edge_length": 0.045, "blend": 1.5}
+    fine = {"resolution": "EDGE_LENGTH", "edge_length": 0.035, "blend": 1.5}
     return [
         Character("bear", bear, fine),
         Character("bird", bird, fine),

@@ -155,10 +155,10 @@ def _named(message: str, parts: Sequence[Part]) -> str:
     """Put the part's name where the library has its number."""
 
     def name(found: re.Match[str]) -> str:
-        number = int(found.group(1))
-        return f"part '{parts[number].name}'" if number < len(parts) else found.group(0)
+        number = int(found.group(2))
+        return f"{found.group(1)}'{parts[number].name}'" if number < len(parts) else found.group(0)
 
-    return re.sub(r"^part\s(\d+)\b", name, message)
+    return re.sub(r"^(part\s)(\d+)\b", name, message)
 
 
 def warnings_of(report: dict[str, Any]) -> list[str]:

@@ -398,6 +398,17 @@ def test_a_mesh_with_a_wall_inside():
     refused("'Head' is not manifold: more than two faces meet at 32 edges", body, head)
 
 
+def test_faces_that_look_against_each_other():
+    body, head = pair()
+    bm = bmesh.new()
+    bm.from_mesh(head.data)
+    bm.faces.ensure_lookup_table()
+    bmesh.ops.reverse_faces(bm, faces=[bm.faces[7]])
+    bm.to_mesh(head.data)
+    bm.free()
+    refused("Part 'Head' is not closed and manifold: .*wound against each other", body, head)
+
+
 def test_a_mesh_without_faces():
     body, head = pair()
     head.data.clear_geometry()
