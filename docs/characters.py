@@ -105,7 +105,7 @@ def characters() -> list[Character]:
             both(smooth((0.4, 0.42), (0.62, 0.38), (0.92, 0.0), (0.98, -0.25), (0.78, -0.32), (0.62, -0.05))),
         ),
         Layer(cream, [oval(0, 0.86, 0.27, 0.21)]),
-        Layer(ink, [oval(0, 0.95, 0.12, 0.09), *both(oval(0.26, 1.2, 0.1, 0.11))]),
+        Layer(ink, [oval(0, 0.95, 0.12, 0.09), *both(oval(0.22, 1.17, 0.12, 0.13))]),
     ]
     blue, white, orange = "#4F8FC0", "#EEF1EC", "#E8963A"
     bird = [
@@ -151,7 +151,7 @@ def characters() -> list[Character]:
             ],
         ),
         Layer(orange, [smooth((0.42, 0.72), (0.7, 0.66), (1.0, 0.52), (0.72, 0.42), (0.44, 0.46))]),
-        Layer(ink, [oval(0.12, 0.66, 0.12, 0.13)]),
+        Layer(ink, [oval(0.12, 0.64, 0.13, 0.14)]),
     ]
     steel, dark, lamp = "#8C9BA8", "#5A6672", "#E2C044"
     robot = [
@@ -293,7 +293,7 @@ def characters() -> list[Character]:
             ],
         ),
         Layer(pink, [oval(0, 0.7, 0.12, 0.08)]),
-        Layer(ink, both(oval(0.26, 0.92, 0.11, 0.13))),
+        Layer(ink, both(oval(0.25, 0.9, 0.14, 0.16))),
     ]
     green, spot = "#6FA56A", "#C9D98A"
     turtle = [
@@ -315,9 +315,9 @@ def characters() -> list[Character]:
                 *both(oval(0.4, -0.36, 0.16, 0.17)),
             ],
         ),
-        Layer(ink, both(oval(0.14, 1.16, 0.1, 0.11))),
+        Layer(ink, both(oval(0.14, 1.1, 0.12, 0.13))),
     ]
-    fine = {"resolution": "EDGE_LENGTH", "edge_length": 0.035, "blend": 1.5}
+    fine = {"resolution": "EDGE_LENGTH", "edge_length": 0.035, "blend": 1.5, "layer_depth": 0.85}
     return [
         Character("bear", bear, fine),
         Character("bird", bird, fine),
@@ -413,6 +413,8 @@ def build(chosen: list[Character], pixels: int, samples: int, wires: bool) -> li
                 body.data.materials[slot] = clay(f"{material.name} clay", colour, 0.4 if wires else 0.0)
     gallery.set_stage(CELL * columns, ROW * rows + 0.3, pixels, samples)
     bpy.context.scene.cycles.max_bounces = 2
+    bpy.context.scene.render.image_settings.color_mode = "RGB"
+    bpy.context.scene.render.image_settings.compression = 100
     return table
 
 
@@ -453,7 +455,7 @@ def main() -> None:
     """Make, render and measure."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="characters (default: all)")
-    parser.add_argument("--width", type=int, default=1400, help="pixels of the picture")
+    parser.add_argument("--width", type=int, default=1000, help="pixels of the picture")
     parser.add_argument("--samples", type=int, default=16)
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "pictures" / "characters.png")
     parser.add_argument("--plain", action="store_true", help="without the lines of the mesh")

@@ -13,6 +13,7 @@ from typing import Any
 import bmesh
 import bpy
 import numpy as np
+from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 from ..data import attributes
@@ -24,6 +25,9 @@ _PART, _NUMBER = "gridmesh_{}_part", "gridmesh_{}_number"
 
 _SHARP = np.radians(30.0)
 """Edges of a crease that turn by more are marked sharp."""
+
+_ROUNDS = 2
+"""How often borders between materials are straightened."""
 
 
 def number(mesh: bpy.types.Mesh, part: int) -> None:
@@ -44,7 +48,7 @@ def perform(bm: Any, made: United, places: np.ndarray, *, mirrored: bool, crease
     kept = {faces[source] for source in _pairs(made.face_part, made.source_face)}
     old = [vertices[source] for source in _pairs(made.vertex_part, made.source_vertex) if source[0] >= 0]
     gone = [face for face in bm.faces if face not in kept]
-    materials = _Materials(gone, {face.material_index for face in bm.faces})
+    materials = _Materials(bm, gone)
     smooth = 2 * sum(face.smooth for face in bm.faces) > len(bm.faces)
     bmesh.ops.delete(bm, geom=gone, context="FACES")
     made_faces = _Collars(bm, made, old, places).make(materials, smooth=smooth, mirrored=mirrored)
@@ -134,13 +138,13 @@ class _Collars:
 class _Materials:
     """Material slots of the faces that go, and so of what comes in their place."""
 
-    def __init__(self, gone: Sequence[Any], slots: set[int]) -> None:
-        self.only = next(iter(slots)) if len(slots) == 1 else None
-        if self.only is None and gone:
-            verts: dict[Any, int] = {}
-            rings = [[verts.setdefault(vertex, len(verts)) for vertex in face.verts] for face in gone]
-            self._tree = BVHTree.FromPolygons([vertex.co.copy() for vertex in verts], rings)
-            self._slots = [face.material_index for face in gone]
+    def __init__(self, bm: Any, gone: Sequence[Any]) -> None:
+        slots = {face.material_index for face in bm.faces}
+        self.only = next(iter(slots)) if len(slots) == 1 or not gone else None
+        if self.only is None:
+            outer = _outside(bm, gone) or gone
+            self._tree = _tree_of(outer)
+            self._slots = [face.material_index for face in outer]
 
     def of(self, triangles: np.ndarray, old: Sequence[Any], places: np.ndarray) -> list[int]:
         """Slots of new triangles: those of what is nearest to their corners; old vertices have that of most faces there.
@@ -157,4 +161,45 @@ class _Materials:
                 ][0]
             else:
                 slot[index] = self._slots[self._tree.find_nearest(places[index].tolist())[2]]
+        for _ in range(_ROUNDS):
+            slot = _settled(slot, triangles, len(old))
         return slot[triangles].max(axis=1).tolist()
+
+
+def _settled(slot: np.ndarray, triangles: np.ndarray, first: int) -> np.ndarray:
+    """Give each vertex from `first` on the slot that most of its neighbours have, where these are clearly more."""
+    votes = np.zeros((len(slot), int(slot.max()) + 1))
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        np.add.at(votes, (triangles[:, a], slot[triangles[:, b]]), 1.0)
+    every = np.arange(len(slot))
+    most = votes.argmax(axis=1)
+    change = (every >= first) & (votes[every, most] > votes[every, slot] + 3)
+    return np.where(change, most, slot)
+
+
+def _outside(bm: Any, faces: Sequence[Any]) -> list[Any]:
+    """Those of some faces whose middle is in no other part than their own."""
+    layer = bm.faces.layers.int[_PART.format("face")]
+    parts: dict[int, list[Any]] = {}
+    for face in bm.faces:
+        parts.setdefault(face[layer], []).append(face)
+    solids = []
+    for part, own in parts.items():
+        points = np.array([vertex.co for face in own for vertex in face.verts])
+        solids.append((part, points.min(axis=0), points.max(axis=0), _tree_of(own)))
+    middles = np.array([face.calc_center_median() for face in faces])
+    of_part = np.array([face[layer] for face in faces])
+    outer = np.ones(len(faces), bool)
+    for part, low, high, tree in solids:
+        near = outer & (of_part != part) & ((middles >= low) & (middles <= high)).all(axis=1)
+        for at in np.flatnonzero(near).tolist():
+            middle = Vector(middles[at])
+            place, normal, _, _ = tree.find_nearest(middle)
+            outer[at] = (middle - place).dot(normal) > 0
+    return [faces[at] for at in np.flatnonzero(outer).tolist()]
+
+
+def _tree_of(faces: Sequence[Any]) -> BVHTree:
+    verts: dict[Any, int] = {}
+    rings = [[verts.setdefault(vertex, len(verts)) for vertex in face.verts] for face in faces]
+    return BVHTree.FromPolygons([vertex.co.copy() for vertex in verts], rings)
