@@ -7,6 +7,7 @@
     fill: editmesh (from Blender) -> holes, api (no bpy) -> editmesh, data.attributes (to Blender)
     regrid: regionmesh (from Blender) -> api (no bpy) -> regionmesh, carried (to Blender)
     cut: cutline, cutobject (from Blender) -> cutsweep, cutting (no bpy) -> cutmesh, cutcorners (to Blender)
+    join: joinobject (from Blender) -> uniting (no bpy) -> joinmesh, joinobject (to Blender); joining does it all, following keeps it up to date
 
 `ui.properties` holds what the redo panel shows, `ui.panels` the sidebar and the menus, `text` all words. The native module `gridmesh` is
 imported by `native` when it is first needed, so that the extension registers, and can say what is wrong, without it;
@@ -55,6 +56,8 @@ def _classes() -> tuple[type, ...]:
     from .cut import operator as cut
     from .draw import operator as draw
     from .fill import operator as fill
+    from .join import following
+    from .join import operator as join
     from .live import properties as live
     from .live import refine
     from .live import ui as live_ui
@@ -70,6 +73,8 @@ def _classes() -> tuple[type, ...]:
         *regrid.classes,
         *bridge.classes,
         *cut.classes,
+        *following.classes,
+        *join.classes,
         *pictures.classes,
         *weights_operator.classes,
         *dropping.classes,
@@ -88,6 +93,7 @@ def _parts() -> tuple[ModuleType, ...]:
     from .cut import tool as cut_tool
     from .data import frames
     from .draw import tool as draw
+    from .join import following
     from .live import engine, handlers, refine, watch
     from .live import properties as live
     from .overlay import ui as overlay
@@ -106,6 +112,7 @@ def _parts() -> tuple[ModuleType, ...]:
         handlers,
         watch,
         refine,
+        following,
         draw,
         cut_tool,
         keys,

@@ -11,6 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from .. import api
 from ..data import defaults, frames, meshes
+from ..join.layering import JoinsBodies
 from ..live import engine
 from ..text import entries
 from ..text.messages import counted, listed
@@ -26,7 +27,9 @@ LONG = 50_000
 """Flat triangles; with more, which take a second or so, the work can be watched and stopped."""
 
 
-class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, ResultShown, bpy.types.Operator):  # noqa: N801
+class OBJECT_OT_gridmesh_from_strokes(  # noqa: N801
+    Waiting, JoinsBodies, SketchOptions, CurveOption, ResultShown, bpy.types.Operator
+):
     """Make a smooth body with a clean mesh of triangles or quads from each closed stroke"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_from_strokes"
@@ -141,7 +144,8 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
             sketches, refused = _only(reading.wanted, sketches, chosen, refused)
         failures += refused
         known: set[tuple[str, str, int]] = set()
-        if self.update_existing:
+        update = self.update_existing and not self.joins
+        if update:
             notes += meshes.made_from_holes(context, sketches)
             sketches, refused = meshes.separate_blocked(context, sketches)
             failures += refused
@@ -164,17 +168,23 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
         notes += meshes.place(
             context,
             bodies,
-            update=self.update_existing,
+            update=update,
             collection=self.collection,
             crease_angle=self.corner_angle,
             made=made,
         )
+        warnings = _warnings(bodies, failures)
+        self.stack(context, bodies, made)
         self._link(context, bodies, made)
-        self.result = self._summary(bodies, perf_counter() - started)
+        whole = self.join(context, bodies, made, warnings)
+        if whole is None:
+            self.result = self._summary(bodies, perf_counter() - started)
+        else:
+            self.result = whole.result(perf_counter() - started)
         self.report({"INFO"}, told(self.result))
         if notes:
             self.report({"INFO"}, told(listed(notes)))
-        for warning in _warnings(bodies, failures):
+        for warning in warnings:
             self.report({"WARNING"}, told(warning))
         return {"FINISHED"}
 
@@ -190,6 +200,7 @@ class OBJECT_OT_gridmesh_from_strokes(Waiting, SketchOptions, CurveOption, Resul
             body.prop(self, "close_gaps")
             body.prop(self, "use_holes")
             body.prop(self, "use_union")
+            self.draw_join(body)
         header, body = layout.panel(f"{self.bl_idname}_objects", default_closed=True)
         header.label(text="Objects")
         if body is not None:

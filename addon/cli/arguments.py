@@ -18,6 +18,7 @@ _HELP = {
     "fill": "fill the holes of meshes",
     "regrid": "mesh areas of meshes anew with a regular grid",
     "cut": "cut meshes along a stroke",
+    "join": "join all meshes of a file to one closed body",
     "sprites": "make meshes of pictures, with the picture on them",
 }
 
@@ -48,7 +49,7 @@ def main(argv: list[str]) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         "gridmesh",
-        description="Bodies from drawings, filled holes, cut meshes and sprites, for any number of files.",
+        description="Bodies from drawings, filled holes, cut and joined meshes, and sprites, for any number of files.",
     )
     verbs = parser.add_subparsers(required=True, metavar="COMMAND", dest="op")
     for op, known in params.OPS.items():

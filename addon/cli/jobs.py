@@ -23,11 +23,12 @@ INPUTS = {
     "fill": (*MESHES, ".blend"),
     "regrid": (*MESHES, ".blend"),
     "cut": (*MESHES, ".blend"),
+    "join": (*MESHES, ".blend"),
     "sprites": (".png", ".jpg", ".jpeg", ".webp"),
 }
 _OUTPUTS = (".ply", ".obj", ".stl", ".glb", ".blend")
 OUTPUTS = {
-    **dict.fromkeys(("strokes", "fill", "regrid", "cut"), _OUTPUTS),
+    **dict.fromkeys(("strokes", "fill", "regrid", "cut", "join"), _OUTPUTS),
     "sprites": (".glb", ".gltf", ".blend", ".json", ".tscn"),
 }
 BESIDE = (".json", ".tscn")

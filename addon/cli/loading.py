@@ -59,12 +59,13 @@ def tidy(path: Path, objects: list[bpy.types.Object]) -> None:
 
 
 def meshes(
-    path: Path, pattern: str | None, *, scripts: bool, weld: bool | None
+    path: Path, pattern: str | None, *, scripts: bool, weld: bool | None, instances: bool = False
 ) -> tuple[list[bpy.types.Object], list[str]]:
     """Load a file; its mesh objects, and what the user should know of the choice.
 
     pattern : which objects, as in a shell; None: all that are visible. scripts : whether a .blend file may run its own.
-    weld : whether vertices at the same place become one; None: in files whose format tears meshes at seams.
+    weld : whether vertices at the same place become one; None: in files whose format tears meshes at seams. instances : all
+    objects that share a mesh, not only one of them.
     """
     damage = sound.require_whole(path)
     _load(path, scripts=scripts)
@@ -72,11 +73,21 @@ def meshes(
     damage += sound.left_out(path, loaded)
     found, notes = _chosen({"MESH"}, pattern, "meshes")
     first = {ob.data.name: ob for ob in reversed(found)}  # of objects that share a mesh, one
-    found = [ob for ob in found if first[ob.data.name] is ob]
     if path.suffix.lower() in _TORN if weld is None else weld:
-        for ob in found:
+        for ob in first.values():
             _weld(ob.data)
+    if not instances:
+        found = [ob for ob in found if first[ob.data.name] is ob]
     return found, damage + notes + _unusable(found)
+
+
+def pieces(ob: bpy.types.Object) -> list[bpy.types.Object]:
+    """Make an object of each piece of a mesh that hangs together."""
+    for other in bpy.context.view_layer.objects:
+        other.select_set(other == ob)
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.mesh.separate(type="LOOSE")
+    return sorted(bpy.context.selected_objects, key=lambda one: (one != ob, one.name))
 
 
 def _unusable(objects: list[bpy.types.Object]) -> list[str]:

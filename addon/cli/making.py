@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operations on a loaded file, through what the operators are made of."""
+"""The operations on meshes and strokes of a loaded file, through what the operators are made of."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from ..cut.cutobject import Caps, Target
 from ..data import defaults
 from ..fill import filling
 from ..fill.editmesh import EditMesh
+from ..join import joining, uniting
 from ..regrid import regridding
 from . import jobs, loading, outputs, params
 from .loading import LoadError
@@ -273,4 +274,26 @@ def _of_object(name: str) -> list[Stroke]:
     return reading.strokes
 
 
-OPS = {"strokes": strokes_to_bodies, "fill": fill, "regrid": regrid, "cut": cut}
+def join(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: bool) -> Made:
+    """Join all meshes to one. Of a file with one mesh, its pieces."""
+    found, notes = loading.meshes(source, pattern, scripts=scripts, weld=options.get("weld"), instances=True)
+    if len(found) == 1:
+        found = loading.pieces(found[0])
+    if len(found) < 2:
+        raise MakeError("one_part", f"'{found[0].name}' is the only mesh, and in one piece; two are needed")
+    chosen = joining.Options(
+        options.get("blend", defaults.BLEND),
+        options.get("edge_length") or None,
+        options.get("strict", False),
+    )
+    try:
+        done = joining.join(bpy.context, found, chosen)
+    except uniting.JoinError as error:
+        raise MakeError(error.kind or "join", str(error)) from error
+    sides = np.array([len(polygon.vertices) for polygon in done.ob.data.polygons])
+    report = {**done.report, "triangles": int((sides == 3).sum()), "quads": int((sides == 4).sum())}
+    numbers = {**_numbers("parts", len(found), [report]), "collars": int(done.report["collars"])}
+    return Made([done.ob], numbers, notes + done.notes + done.warnings)
+
+
+OPS = {"strokes": strokes_to_bodies, "fill": fill, "regrid": regrid, "cut": cut, "join": join}

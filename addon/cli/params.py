@@ -140,6 +140,17 @@ OPS: Mapping[str, Mapping[str, Param]] = {
         "extend_ends": Param("switch", "the ends of the stroke are continued through everything (true)"),
         "close_gaps": Param("number", f"{_GAPS} ({defaults.CUT_CLOSE_GAPS})", least=0, most=1),
     },
+    "join": {
+        "weld": _WELD,
+        "blend": Param(
+            "number",
+            f"edge lengths to each side of a joint that become smooth; 0 keeps the crease ({defaults.BLEND:g})",
+            least=0,
+            most=1000,
+        ),
+        "edge_length": Param("number", "the edge length that blend counts in; 0: that of each part (0)"),
+        "strict": Param("switch", "joints that meet themselves or the parts are refused (false)"),
+    },
     "sprites": {
         "shape": Param("choice", "a flat sheet, or a closed body (flat)", ("flat", "body")),
         "triangles": Param("count", f"triangles of one side ({SPRITE_TRIANGLES})"),

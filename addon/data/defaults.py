@@ -21,3 +21,7 @@ MAX_HOLE_EDGES = 100
 """Where all holes of a mesh are filled, those with more edges are left open."""
 MAX_OPEN_EDGES = 200_000
 """The command line refuses meshes with more open edges: they are not surfaces with holes."""
+BLEND = 2.0
+"""Edge lengths to each side of a joint that become a smooth transition."""
+LAYER_DEPTH = 0.7
+"""How far bodies of a layer stand out of those of the layers below, relative to half their thickness."""

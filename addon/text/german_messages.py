@@ -486,6 +486,90 @@ _BRIDGES = {
     "two paths of a tube meet": "zwei Wege einer Röhre treffen sich",
 }
 
+_JOINS = {
+    "'{}' has no faces to join": "„{0}“ hat keine Flächen zum Verbinden",
+    "'{}' is not closed: it has {}; fill its holes or merge doubled vertices": (
+        "„{0}“ ist nicht geschlossen: {1}; die Löcher füllen oder doppelte Punkte verschmelzen"
+    ),
+    "'{}' is not manifold: more than two faces meet at {}; delete the faces inside": (
+        "„{0}“ ist nicht mannigfaltig: mehr als zwei Flächen treffen sich an {1}; die Flächen im Inneren löschen"
+    ),
+    "Joined {}: {}, {}, {} ms": "{0} verbunden: {1}, {2}, {3} ms",
+    "Select two closed meshes or more in Object Mode, one of them active": (
+        "Zwei oder mehr geschlossene Meshes im Objektmodus auswählen, eines davon aktiv"
+    ),
+    "The joints meet the parts or themselves; blend less, move a part, or switch Strict on to refuse that": (
+        "Die Übergänge treffen die Teile oder sich selbst; schmaler verbinden, einen Teil verschieben oder „Streng“ "
+        "einschalten, um das abzulehnen"
+    ),
+    "Make a joined body, or one of its parts, the active object": (
+        "Einen zusammengeführten Körper oder einen seiner Teile zum aktiven Objekt machen"
+    ),
+    "its mesh was changed by hand; undo that, or apply the join": (
+        "sein Mesh wurde von Hand geändert; das rückgängig machen oder das Zusammenführen anwenden"
+    ),
+    "The bodies stay apart: {}": "Die Körper bleiben getrennt: {0}",
+    "frozen, since a joined body cannot follow its drawings: {}": (
+        "eingefroren, denn ein verbundener Körper kann seinen Zeichnungen nicht folgen: {0}"
+    ),
+    "inside out, and turned round: {}": "von innen nach außen gekehrt und umgedreht: {0}",
+    "joined without their modifiers: {}": "ohne ihre Modifikatoren verbunden: {0}",
+    "the mesh of '{}' is being edited; leave Edit Mode first": (
+        "das Mesh von „{0}“ wird bearbeitet; erst den Bearbeitungsmodus verlassen"
+    ),
+    "'{}' reaches farther than {}; scale it down or move it nearer": (
+        "„{0}“ reicht weiter als {1}; kleiner skalieren oder näher heranrücken"
+    ),
+    "{} inside others left out": "{0} innerhalb anderer weggelassen",
+    "{} without contact to others; moved into another one it would be joined": (
+        "{0} ohne Berührung mit anderen; in einen anderen geschoben würde er verbunden"
+    ),
+    "{} edge": "{0} Kante",
+    "{} edges": "{0} Kanten",
+    "{} open edge": "{0} offene Kante",
+    "{} open edges": "{0} offene Kanten",
+    "{} part": "{0} Teil",
+    "{} parts": "{0} Teile",
+    "{} polygon": "{0} Vieleck",
+    "{} polygons": "{0} Vielecke",
+    # Of the library
+    "a number above 0, or nothing": "eine Zahl über 0, oder nichts",
+    "a number from 0 to 1000, of edge lengths": "eine Zahl von 0 bis 1000, in Kantenlängen",
+    "a rim borders nothing that was taken away": "ein Rand grenzt an nichts, das weggenommen wurde",
+    "an edge has a face on one side only": "eine Kante hat nur auf einer Seite eine Fläche",
+    "an edge joins more than two faces": "eine Kante verbindet mehr als zwei Flächen",
+    "faces meet in one vertex only": "Flächen treffen sich nur in einem Punkt",
+    "in part {} {}": "in Teil {0} {1}",
+    "no part": "kein Teil",
+    "no patch": "kein Flicken",
+    "one closed mesh or more": "ein geschlossenes Mesh oder mehr",
+    "part {}": "Teil {0}",
+    "part {} is not closed and manifold: {} near vertex {} at ({}, {}, {}); fill its holes and merge doubled vertices, "
+    "or delete the surplus faces": (
+        "Teil {0} ist nicht geschlossen und mannigfaltig: {1} bei Punkt {2} in ({3}, {4}, {5}); seine Löcher füllen und doppelte "
+        "Punkte verschmelzen, oder die überzähligen Flächen löschen"
+    ),
+    "the Boolean operation on them broke down": "die boolesche Operation mit ihnen ist abgebrochen",
+    "the Boolean operation on them has no result": "die boolesche Operation mit ihnen hat kein Ergebnis",
+    "the Boolean operation on them has no sound result": "die boolesche Operation mit ihnen hat kein brauchbares Ergebnis",
+    "the joints meet themselves or the parts in {} pairs of triangles, first near ({}, {}, {}); blend less, move a part, "
+    "or allow it": (
+        "die Übergänge treffen sich selbst oder die Teile in {0} Paaren von Dreiecken, zuerst bei ({1}, {2}, {3}); schmaler "
+        "verbinden, einen Teil verschieben oder es erlauben"
+    ),
+    "the parts cannot be joined here: {}, near ({}, {}, {}); move one of them a little, blend less, or give them shorter "
+    "edges there": (
+        "die Teile lassen sich hier nicht verbinden: {0}, bei ({1}, {2}, {3}); eines ein wenig verschieben, schmaler verbinden "
+        "oder ihnen dort kürzere Kanten geben"
+    ),
+    "the patches do not fit together": "die Flicken passen nicht zusammen",
+    "two faces at an edge are wound against each other": "zwei Flächen an einer Kante laufen gegeneinander um",
+    "what was taken away there has no border of whole edges": (
+        "was dort weggenommen wurde, hat keinen Rand aus ganzen Kanten"
+    ),
+    "{} of part {}": "{0} von Teil {1}",
+}
+
 _FILLS = {
     "Cancelled; nothing was filled": "Abgebrochen; nichts wurde gefüllt",
     "Edit a mesh and select the edges of a hole": "Ein Mesh bearbeiten und die Kanten eines Lochs auswählen",
@@ -1040,6 +1124,7 @@ MESSAGES = (
     | _CUTS
     | _FILLS
     | _BRIDGES
+    | _JOINS
     | _QUALITY
     | _MODULE
     | _LIBRARY

@@ -554,6 +554,51 @@ GERMAN = {
         "Drehung der einen Schleife gegen die andere, von dort, wo sie am besten passen"
     ),
     "Twist": "Verdrehung",
+    # Joining bodies
+    "Blend Width": "Übergangsbreite",
+    "Edge lengths to each side of the line where two parts meet that become a smooth transition; 0 keeps the crease": (
+        "Kantenlängen zu beiden Seiten der Linie, an der sich zwei Teile treffen, die ein weicher Übergang werden; 0 behält "
+        "die Falte"
+    ),
+    "Grid Join": "Mit Gitter zusammenführen",
+    "Join the selected meshes to one closed body in the active object, blended where they meet": (
+        "Die ausgewählten Meshes zu einem geschlossenen Körper im aktiven Objekt zusammenführen, mit weichen Übergängen"
+    ),
+    "Join Overlapping Strokes": "Überlappende Striche zusammenführen",
+    "Layer Depth": "Tiefe der Ebenen",
+    "Make one object of all bodies, joined with smooth transitions where they overlap; upper layers lie before lower ones": (
+        "Aus allen Körpern ein Objekt machen, mit weichen Übergängen, wo sie sich überlappen; obere Ebenen liegen vor unteren"
+    ),
+    "How far bodies of a layer stand out of those of the layers below, relative to half their thickness": (
+        "Wie weit Körper einer Ebene aus denen der Ebenen darunter herausragen, im Verhältnis zu ihrer halben Dicke"
+    ),
+    "Apply Join": "Zusammenführen anwenden",
+    "Follow the Parts": "Den Teilen folgen",
+    "Hide Parts": "Teile verbergen",
+    "Joined Body": "Zusammengeführter Körper",
+    "Let the body follow where live bodies are joined, or parts are kept: it is joined anew when one of them changes": (
+        "Den Körper folgen lassen, wo lebende Körper zusammengeführt oder Teile behalten werden: er wird neu zusammengeführt, "
+        "wenn sich eines ändert"
+    ),
+    "Make a plain mesh of the active joined body; its hidden parts are removed": (
+        "Aus dem aktiven zusammengeführten Körper ein einfaches Mesh machen; seine verborgenen Teile werden entfernt"
+    ),
+    "Show Parts": "Teile zeigen",
+    "Show the parts again instead of removing them": "Die Teile wieder zeigen, statt sie zu entfernen",
+    "Show the parts of the active joined body to be edited and hide the body, or the other way round": (
+        "Die Teile des aktiven zusammengeführten Körpers zum Bearbeiten zeigen und den Körper verbergen, oder umgekehrt"
+    ),
+    "Keep Parts": "Teile behalten",
+    "Keep the selected objects, hidden, and make the body a new object; without, they become it": (
+        "Die ausgewählten Objekte verborgen behalten und den Körper zu einem neuen Objekt machen; ohne dies werden sie er"
+    ),
+    "Refuse joints that meet themselves or the parts, instead of warning of them": (
+        "Übergänge ablehnen, die sich selbst oder die Teile treffen, statt davor zu warnen"
+    ),
+    "Strict": "Streng",
+    "The edge length that Blend Width counts in; 0 for that of each part": (
+        "Die Kantenlänge, in der die Übergangsbreite zählt; 0 für die jedes Teils"
+    ),
     # Filling holes
     "All holes that are not hidden, up to a number of edges": (
         "Alle Löcher, die nicht ausgeblendet sind, bis zu einer Anzahl von Kanten"

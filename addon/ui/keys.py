@@ -17,6 +17,7 @@ ENTRIES = (
     ("Mesh", "mesh.gridmesh_bridge"),
     ("Object Mode", "object.gridmesh_cut"),
     ("Mesh", "object.gridmesh_cut"),
+    ("Object Mode", "object.gridmesh_join"),
     ("Object Mode", "object.gridmesh_from_image"),
     ("Object Mode", "object.gridmesh_update_image"),
     ("Object Mode", "object.gridmesh_bone_weights"),

@@ -15,6 +15,7 @@ from ..cut import cutline
 from ..cut.operator import OBJECT_OT_gridmesh_cut
 from ..data import meshes
 from ..fill.operator import MESH_OT_gridmesh_fill
+from ..join.operator import OBJECT_OT_gridmesh_join
 from ..pictures.operator import OBJECT_OT_gridmesh_from_image, OBJECT_OT_gridmesh_update_image
 from ..pictures.weights_operator import OBJECT_OT_gridmesh_bone_weights
 from ..regrid.operator import MESH_OT_gridmesh_regrid
@@ -34,6 +35,7 @@ CUT_MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh")
 FILL_MENUS = ("VIEW3D_MT_edit_mesh_faces", "VIEW3D_MT_edit_mesh_context_menu")
 
 BRIDGE_MENUS = ("VIEW3D_MT_edit_mesh_edges",)
+JOIN_MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_object_context_menu")
 
 
 class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
@@ -50,6 +52,8 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
             self._draw_fill()
         else:
             self._draw_strokes(context)
+        if OBJECT_OT_gridmesh_join.poll(context):
+            self.layout.column().operator(OBJECT_OT_gridmesh_join.bl_idname, icon="SELECT_EXTEND")
         if OBJECT_OT_gridmesh_cut.poll(context):
             _draw_cut(self.layout, context)
 
@@ -138,6 +142,12 @@ def _cut_entry(menu: Any, context: bpy.types.Context) -> None:
         menu.layout.operator(idname, text="Cut & Cap along Stroke").source = "OBJECTS"
 
 
+def _join_entry(menu: Any, context: bpy.types.Context) -> None:
+    if OBJECT_OT_gridmesh_join.poll(context):
+        menu.layout.separator()
+        menu.layout.operator(OBJECT_OT_gridmesh_join.bl_idname)
+
+
 def _entries() -> Iterator[tuple[Any, Any]]:
     """Menus of this version, and what is drawn at their end."""
     for names, entry in (
@@ -145,6 +155,7 @@ def _entries() -> Iterator[tuple[Any, Any]]:
         (FILL_MENUS, _fill_entry),
         (BRIDGE_MENUS, _bridge_entry),
         (CUT_MENUS, _cut_entry),
+        (JOIN_MENUS, _join_entry),
     ):
         for name in names:
             menu = getattr(bpy.types, name, None)

@@ -56,7 +56,7 @@ def test_the_jobs_are_jobs(tmp_path):
 
     (block,) = blocks("json")
     path = write_jobs(tmp_path, [json.loads(line) for line in block.splitlines()])
-    assert [job.op for job in jobs.read(path)] == ["strokes", "fill", "regrid", "cut"]
+    assert [job.op for job in jobs.read(path)] == ["strokes", "fill", "regrid", "cut", "join"]
 
 
 def test_every_option_of_the_page_is_one():

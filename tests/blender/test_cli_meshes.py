@@ -244,6 +244,44 @@ def test_cut_closes_both_sides(tmp_path):
     assert volumes[1] < volumes[2]
 
 
+def test_all_meshes_of_a_file_become_one(tmp_path):
+    ball("Body", opened=False)
+    ball("Head", z=1.3, opened=False)
+    ball("Apart", z=9.0, opened=False)
+    save(tmp_path / "bear.blend")
+    items = [
+        {"id": "some", "op": "join", "in": "bear.blend", "object": "[BH]*", "out": "some.ply"},
+        {"id": "all", "op": "join", "in": "bear.blend", "params": {"blend": 0}, "out": "all.ply"},
+        {"id": "one", "op": "join", "in": "bear.blend", "object": "Head", "out": "one.ply"},
+        {"id": "pieces", "op": "join", "in": "all.ply", "out": "pieces.ply"},
+    ]
+    ran = batch(write_jobs(tmp_path, items))
+    assert ran.returncode == 1, ran.stdout + ran.stderr
+    found = results(tmp_path)
+    assert (found["some"]["parts"], found["some"]["collars"]) == (2, 1)
+    assert found["some"]["quads"] > 200
+    assert (found["all"]["status"], found["all"]["parts"]) == ("warning", 3)
+    assert "without contact" in found["all"]["message"]
+    assert found["one"]["kind"] == "one_part"
+    assert found["pieces"]["parts"] == 2
+    for key, volumes in (("some", (6.0, 8.4)), ("all", (10.0, 12.6)), ("pieces", (10.0, 12.6))):
+        (whole,) = load(tmp_path / f"{key}.ply").values()
+        assert not open_edges(whole)
+        assert volumes[0] < volume(whole) < volumes[1]
+
+
+def test_open_meshes_are_not_joined(tmp_path):
+    ball("Body", opened=False)
+    ball("Head", z=1.3)
+    path = save(tmp_path / "bear.blend")
+    ran = run("join", path, "-o", tmp_path / "no.ply")
+    assert ran.returncode == 1
+    (result,) = results(tmp_path).values()
+    assert result["kind"] == "not_closed"
+    assert "'Head' is not closed" in result["message"]
+    assert not (tmp_path / "no.ply").exists()
+
+
 def test_ends_of_a_cut_are_continued_unless_told_otherwise(tmp_path):
     for x in (-3, 0, 3):
         bpy.ops.mesh.primitive_cube_add(size=2, location=(x, 0, 0))

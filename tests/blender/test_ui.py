@@ -120,7 +120,7 @@ def options(cls, **changed):
     for option in rna.properties:
         if option.identifier != "rna_type":
             setattr(own, option.identifier, getattr(option, "default", None))
-    for name in ("draw_result", "draw_shape_options", "draw_curve", "draw_sketch_options"):
+    for name in ("draw_result", "draw_shape_options", "draw_curve", "draw_sketch_options", "draw_join"):
         if hasattr(cls, name):
             setattr(own, name, getattr(cls, name).__get__(own))
     for name, value in changed.items():

@@ -92,7 +92,7 @@ def case(seed, number, folder=None):
     rng = np.random.default_rng([seed, number])
     known = outlines(folder)
     parts, names = [], []
-    edge = rng.uniform(0.02, 0.05)
+    edge = rng.uniform(0.012, 0.03)
     for k in range(rng.integers(2, 4)):
         is_limb = k > 0 and rng.random() < 0.6
         name, outline = ("limb", limb(rng)) if is_limb else known[rng.integers(len(known))]

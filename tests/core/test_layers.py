@@ -45,6 +45,7 @@ WITHOUT_BLENDER = {
     "cut/cutextension",
     "cut/cutcorners",
     "cut/drawnline",
+    "join/uniting",
     "data/attributes",
     "data/defaults",
     "cli/params",

@@ -3,7 +3,7 @@
 //! [`join()`] does it all. `parts` checks and numbers what is given, `union` finds out by an exact Boolean operation what is within
 //! other parts and where surfaces meet, `collar` which faces lie near that, `rims` makes the borders of what stays simple loops,
 //! `strips` finds the pieces of the union between them. For each one `patch` makes a tube or a fill, or, where it is neither an
-//! annulus nor a disk, evens the piece itself (`take`, `local`, `remesh`) and fairs it (`fair`). `assemble` puts all together and
+//! annulus nor a disk, evens the piece itself (`take`, `local`, `remesh`, `regular`) and fairs it (`fair`). `assemble` puts all together and
 //! proves it closed.
 
 mod assemble;
@@ -11,6 +11,7 @@ mod collar;
 mod options;
 mod parts;
 mod patch;
+mod regular;
 mod rims;
 mod site;
 mod strips;
@@ -35,7 +36,7 @@ use crate::geometry::disjoint::Disjoint;
 use crate::progress::Progress;
 
 /// Times that the blend of curves in one collar is halved, until each has its own.
-const HALVED: usize = 3;
+const HALVED: usize = 2;
 
 /// Joins closed meshes: one closed mesh of what is in any of them.
 ///
@@ -186,11 +187,10 @@ impl Stage<'_> {
     fn collars(&self, progress: Progress<'_>) -> Result<(Outside, Vec<Strip>)> {
         let mut scales = vec![1.0; self.curves.count];
         let simple = |strip: &Strip| strip.sound && strip.rims.len() == 2 && strip.euler == 0;
-        let wide = |strip: &Strip| strip.curves.len() > 1 || strip.rims.len() < 2 || !strip.sound;
         for round in 0..=HALVED {
             progress.report(round as f64 / (HALVED + 1) as f64)?;
             let made = self.attempt(&scales)?;
-            let narrow = made.1.iter().filter(|s| !simple(s) && wide(s)).collect::<Vec<_>>();
+            let narrow = made.1.iter().filter(|s| !simple(s)).collect::<Vec<_>>();
             if narrow.is_empty() {
                 return Ok(made);
             }
@@ -202,7 +202,7 @@ impl Stage<'_> {
         // Those for which it did not help have all the blend that they can have.
         let narrow = self.attempt(&scales)?;
         let mut wide_scales = scales.clone();
-        for strip in narrow.1.iter().filter(|s| !simple(s) && wide(s)) {
+        for strip in narrow.1.iter().filter(|s| !simple(s)) {
             strip.curves.iter().for_each(|&c| wide_scales[c] = 1.0);
         }
         let wide = self.attempt(&wide_scales)?;

@@ -1,12 +1,15 @@
 //! The patch in place of a strip: a tube, a fill, or the strip itself with even triangles.
 
 use glam::DVec3;
+use rustc_hash::FxHashMap;
 
+use super::regular::regularize;
 use super::site::Site;
 use super::strips::Strip;
-use super::take::{Taken, take};
+use super::take::{Taken, surroundings, take};
 use crate::error::{Error, Result};
 use crate::fill::even::fair::fair;
+use crate::fill::even::local::Local;
 use crate::fill::even::remesh::{Ground, flip_valences, remesh};
 use crate::fill::surface::meet::{Box3, MOST, count_meetings, near_boxes};
 use crate::fill::{BridgeOptions, Fill, FillOptions, bridge, fill_hole};
@@ -49,25 +52,36 @@ struct Try {
     angle: f64,
 }
 
+impl Try {
+    fn is_good(&self) -> bool {
+        self.meetings == 0 && self.angle > THIN
+    }
+}
+
+/// That of two with fewer meetings, or with rounder triangles; the first of equal ones.
+fn better(a: Try, b: Try) -> Try {
+    if (a.meetings, -a.angle) <= (b.meetings, -b.angle) { a } else { b }
+}
+
 impl Site<'_> {
     /// Closes one strip.
     ///
     /// # Errors
     /// [`Error::JoinFailed`], [`Error::Cancelled`].
     pub fn close(&self, strip: &Strip, progress: Progress<'_>) -> Result<Patch> {
-        let grid = if self.options.blend > 0.0 { self.grid(strip, progress.part(0.0, 0.5))? } else { None };
-        if let Some(it) = &grid
-            && it.meetings == 0
-            && it.angle > THIN
-        {
-            return Ok(grid.map(|it| it.patch).ok_or(Error::Internal { reason: "no patch" })?);
-        }
+        let grid = if self.options.blend > 0.0 { self.grid(strip, progress.part(0.0, 0.4))? } else { None };
+        let grid = match grid {
+            Some(it) if it.is_good() => return Ok(it.patch),
+            Some(it) => match self.settled(strip, &it.patch, progress.part(0.4, 0.5))? {
+                Some(other) if other.is_good() => return Ok(other.patch),
+                Some(other) => Some(better(it, other)),
+                None => Some(it),
+            },
+            None => None,
+        };
         let own = if strip.sound { self.even(strip, progress.part(0.5, 1.0))? } else { None };
         let best = match (grid, own) {
-            (Some(a), Some(b)) => {
-                let first = (a.meetings, -a.angle) <= (b.meetings, -b.angle);
-                if first { a } else { b }
-            }
+            (Some(a), Some(b)) => better(a, b),
             (Some(it), None) | (None, Some(it)) => it,
             (None, None) => {
                 let reason = "what was taken away there has no border of whole edges";
@@ -104,14 +118,46 @@ impl Site<'_> {
         }
     }
 
+    /// The triangles of a tube or a fill, faired as strips are; `None` for those that have no vertices inside.
+    fn settled(&self, strip: &Strip, patch: &Patch, progress: Progress<'_>) -> Result<Option<Try>> {
+        if patch.vertices.is_empty() {
+            return Ok(None);
+        }
+        let n = self.parts.vertices.len() as u32;
+        let border =
+            strip.rims.iter().flat_map(|&k| self.outside.rims[k].iter().copied()).collect::<Vec<_>>();
+        let place: FxHashMap<u32, u32> = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
+        let m = border.len() as u32;
+        let number = |v: u32| if v < n { place.get(&v).copied() } else { Some(m + v - n) };
+        let mut triangles = Vec::with_capacity(patch.triangles.len());
+        for t in &patch.triangles {
+            let [Some(a), Some(b), Some(c)] = t.map(number) else { return Ok(None) };
+            triangles.push([a, b, c]);
+        }
+        let rims = border.iter().map(|&v| self.parts.vertices[v as usize]);
+        let positions = rims.chain(patch.vertices.iter().copied()).collect();
+        let sides = vec![0; triangles.len()];
+        let mut local = Local::new(positions, triangles, sides, border.len());
+        let beyond = surroundings(self, strip, &border, &place, &mut local);
+        let positions = fair(&local, &beyond, progress)?;
+        let angle = min_angle(&positions, &local.triangles);
+        let vertices = positions[border.len()..].to_vec();
+        let patch = Patch { vertices, triangles: patch.triangles.clone(), ..*patch };
+        let meetings = self.meetings(&patch, progress)?;
+        Ok(Some(Try { patch, meetings, angle }))
+    }
+
     /// The strip with even triangles, faired unless the line is to stay.
     fn even(&self, strip: &Strip, progress: Progress<'_>) -> Result<Option<Try>> {
         let Some(Taken { mut local, beyond, border }) = take(self, strip) else { return Ok(None) };
         let ground = Ground::of(&local);
-        remesh(&mut local, &ground, progress.part(0.0, 0.6))?;
+        remesh(&mut local, &ground, progress.part(0.0, 0.5))?;
         let n = self.parts.vertices.len() as u32;
-        let flat = local.positions.clone();
         let crease = self.options.blend == 0.0;
+        if !crease {
+            regularize(&mut local, &ground, progress.part(0.5, 0.6))?;
+        }
+        let flat = local.positions.clone();
         if !crease {
             for round in 0..ROUNDS {
                 let at = |k: usize| 0.6 + 0.3 * k as f64 / ROUNDS as f64;

@@ -3,6 +3,9 @@
 use super::collar::Left;
 use super::parts::{Around, Parts};
 
+/// Pieces with a rim and fewer vertices inside go.
+const FEW: usize = 4;
+
 /// What stays of the parts.
 pub(super) struct Outside {
     /// Faces that stay.
@@ -94,7 +97,7 @@ impl Trim<'_> {
         !found.is_empty()
     }
 
-    /// Connected faces of which every vertex is on a rim.
+    /// Connected faces with a rim and hardly a vertex inside.
     fn strips(&mut self) -> bool {
         let n = self.parts.n_faces();
         let mut seen = vec![false; n];
@@ -105,12 +108,16 @@ impl Trim<'_> {
             }
             seen[start as usize] = true;
             let (mut piece, mut next) = (vec![start], 0);
-            let mut inner = false;
+            let (mut inner, mut rim) = (0, false);
             while let Some(&f) = piece.get(next) {
                 next += 1;
                 let own = self.parts.face(f);
                 for k in 0..own.len() {
-                    inner |= self.around.of(own[k]).iter().all(|c| self.faces[c.face as usize]);
+                    let fan = self.around.of(own[k]);
+                    let all = fan.iter().all(|c| self.faces[c.face as usize]);
+                    rim |= !all;
+                    // Each vertex once, in the first of its faces.
+                    inner += usize::from(all && fan[0].face == f);
                     let beyond = self.across(own[k], own[(k + 1) % own.len()]);
                     if let Some(g) = beyond.filter(|&g| self.faces[g as usize] && !seen[g as usize]) {
                         seen[g as usize] = true;
@@ -118,7 +125,7 @@ impl Trim<'_> {
                     }
                 }
             }
-            if !inner {
+            if rim && inner < FEW {
                 found.extend(piece);
             }
         }

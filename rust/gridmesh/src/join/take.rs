@@ -72,7 +72,7 @@ pub(super) fn take(site: &Site<'_>, strip: &Strip) -> Option<Taken> {
 }
 
 /// Wanted lengths, numbers of triangles, and edges that exist beyond the border; what lies beyond it.
-fn surroundings(
+pub(super) fn surroundings(
     site: &Site<'_>,
     strip: &Strip,
     border: &[u32],

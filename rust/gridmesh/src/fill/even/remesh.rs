@@ -151,7 +151,7 @@ fn is_unfolded(local: &Local, old: [u32; 2], new: [[u32; 3]; 2]) -> bool {
 }
 
 /// Moves vertices towards the middle of their neighbours, within the surface; those of hard lines along them.
-fn relax(local: &mut Local, ground: &Ground) {
+pub(crate) fn relax(local: &mut Local, ground: &Ground) {
     for v in local.border as u32..local.positions.len() as u32 {
         if local.fan(v).is_empty() || local.knots.contains(&v) {
             continue;

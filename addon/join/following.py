@@ -1,0 +1,332 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Joined bodies that follow their parts: these stay, hidden, and the whole is made anew when one of them has changed.
+
+The parts are children of the whole, so that moving it moves them. How they lie to it, their shapes and the options make a fingerprint;
+the whole is joined anew where that is another one, when changes have ended: from a timer, since data blocks are made.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Sequence
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, CollectionProperty, FloatProperty, PointerProperty, StringProperty
+
+from .. import api
+from ..data import defaults, frames, written
+from ..live import engine
+from . import joining
+from .uniting import JoinError
+
+BY_HAND = "its mesh was changed by hand; undo that, or apply the join"
+"""Why a whole does not follow whose mesh is not what was made of its parts."""
+
+_known: bool | None = None
+"""Whether there are any in the file; None: to be looked for."""
+
+
+class GridMeshPart(bpy.types.PropertyGroup):
+    """A part of a joined body"""  # noqa: D400
+
+    ob: PointerProperty(type=bpy.types.Object, options={"HIDDEN"})
+
+
+def _changed(joined: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    if not joined.quiet and engine.awake():
+        update(joined.id_data)
+
+
+class GridMeshJoined(bpy.types.PropertyGroup):
+    """What a joined body remembers of how it was made. Pointers to the parts outlive renaming and duplicating"""  # noqa: D400
+
+    parts: CollectionProperty(type=GridMeshPart, options={"HIDDEN"})
+    blend: FloatProperty(
+        name="Blend Width",
+        description="Edge lengths to each side of the line where two parts meet that become a smooth transition; 0 keeps "
+        "the crease",
+        default=defaults.BLEND,
+        min=0.0,
+        soft_max=10.0,
+        max=1000.0,
+        update=_changed,
+    )
+    edge_length: FloatProperty(
+        name="Edge Length",
+        description="The edge length that Blend Width counts in; 0 for that of each part",
+        subtype="DISTANCE",
+        default=0.0,
+        min=0.0,
+        update=_changed,
+    )
+    strict: BoolProperty(
+        name="Strict",
+        description="Refuse joints that meet themselves or the parts, instead of warning of them",
+        default=False,
+        update=_changed,
+    )
+    quiet: BoolProperty(options={"HIDDEN"})
+    digest: StringProperty(options={"HIDDEN"})
+    """Fingerprint of what it was made of."""
+    problem: StringProperty(options={"HIDDEN"})
+    """Why it does not follow now."""
+
+
+def is_whole(ob: bpy.types.Object) -> bool:
+    """Whether an object is joined of parts that it remembers. To read a group of properties that is not there would make it."""
+    system = getattr(ob, "bl_system_properties_get", None)  # from Blender 5.0 on
+    stored = ob if system is None else system()
+    return stored is not None and "gridmesh_joined" in stored and len(ob.gridmesh_joined.parts) > 0
+
+
+def wholes() -> list[bpy.types.Object]:
+    """All of them. Walks all objects of the file."""
+    return [ob for ob in bpy.data.objects if ob.type == "MESH" and is_whole(ob)]
+
+
+def parts_of(ob: bpy.types.Object) -> list[bpy.types.Object]:
+    """Parts that are still in a scene."""
+    found = (part.ob for part in ob.gridmesh_joined.parts)
+    return [part for part in found if part is not None and part.type == "MESH" and part.users_scene]
+
+
+def remember(ob: bpy.types.Object, parts: Sequence[bpy.types.Object], options: joining.Options) -> None:
+    """Let a joined body follow its parts from now on."""
+    global _known
+    joined = ob.gridmesh_joined
+    joined.quiet = True
+    joined.blend, joined.edge_length, joined.strict = (
+        options.blend,
+        options.edge_length or 0.0,
+        options.strict,
+    )
+    joined.quiet = False
+    joined.parts.clear()
+    bpy.context.view_layer.update()
+    for part in parts:
+        joined.parts.add().ob = part
+        drawing = part.gridmesh_live.source if frames.is_linked(part) else None
+        if part.parent is None or part.parent == drawing:
+            place = part.matrix_world.copy()
+            part.parent, part.parent_type = ob, "OBJECT"
+            part.matrix_parent_inverse = ob.matrix_world.inverted()
+            part.matrix_world = place
+    bpy.context.view_layer.update()
+    joined.digest = fingerprint(ob)
+    written.sign(ob.data)
+    _known = True
+
+
+def changes(ob: bpy.types.Object) -> bool:
+    """Whether an object changes by itself: it follows a drawing, or its own parts."""
+    return frames.is_linked(ob) or is_whole(ob)
+
+
+def whole_of(ob: bpy.types.Object) -> bpy.types.Object | None:
+    """Return the joined body that an object is, or hangs on as a part of it; None if there is none."""
+    if ob.type == "MESH" and is_whole(ob):
+        return ob
+    above = ob.parent
+    if above is None or above.type != "MESH" or not is_whole(above):
+        return None
+    return above if any(part.ob == ob for part in above.gridmesh_joined.parts) else None
+
+
+def apply(ob: bpy.types.Object, *, keep_parts: bool) -> None:
+    """Make a plain mesh of a joined body (or of that of a part). Its parts are removed, or shown again and on their own."""
+    whole = whole_of(ob)
+    parts = [part for part in parts_of(whole) if whole_of(part) in (whole, part)]
+    own = [part for part in parts if part.parent == whole]
+    show(whole)
+    whole.property_unset("gridmesh_joined")
+    whole.data.property_unset("gridmesh_made")
+    with engine.resting():
+        for part in own:
+            if keep_parts:
+                place = part.matrix_world.copy()
+                part.parent = None
+                part.matrix_world = place
+                _reveal(part, seen=True)
+            else:
+                _remove(part)
+
+
+def swap(ob: bpy.types.Object) -> None:
+    """Show the parts of a joined body instead of it, or it instead of them."""
+    whole = whole_of(ob)
+    if not whole.visible_get():
+        show(whole)
+        refresh()
+        return
+    parts = parts_of(whole)
+    for part in parts:
+        _reveal(part, seen=True)
+    _reveal(whole, seen=False)
+    if parts:
+        _choose(parts[0])
+
+
+def show(whole: bpy.types.Object) -> None:
+    """Show a joined body and hide its parts."""
+    _reveal(whole, seen=True)
+    for part in parts_of(whole):
+        _reveal(part, seen=False)
+    _choose(whole)
+
+
+def _reveal(ob: bpy.types.Object, *, seen: bool) -> None:
+    ob.hide_set(not seen)
+    ob.hide_render = not seen
+
+
+def _choose(ob: bpy.types.Object) -> None:
+    layer = bpy.context.view_layer
+    for other in filter(None, list(layer.objects.selected)):
+        other.select_set(False)
+    ob.select_set(True)
+    layer.objects.active = ob
+
+
+def _remove(part: bpy.types.Object) -> None:
+    engine.freeze(part)
+    mesh = part.data
+    bpy.data.objects.remove(part)
+    if not mesh.users:
+        bpy.data.meshes.remove(mesh)
+
+
+def placed(ob: bpy.types.Object) -> list[Any]:
+    """Where the parts of a whole lie in the world; those of a copy as they lie to the body that it is a copy of."""
+    found = []
+    for part in parts_of(ob):
+        above = part.parent
+        own = above is None or above == ob or not is_whole(above)
+        found.append(
+            part.matrix_world if own else ob.matrix_world @ above.matrix_world.inverted() @ part.matrix_world
+        )
+    return found
+
+
+def fingerprint(ob: bpy.types.Object) -> str:
+    """Fingerprint of all that a whole depends on."""
+    joined = ob.gridmesh_joined
+    texts = [f"{joined.blend:.6g} {joined.edge_length:.6g} {joined.strict}"]
+    own = np.array(ob.matrix_world, float)
+    for part, matrix in zip(parts_of(ob), placed(ob), strict=True):
+        lies = np.linalg.solve(own, np.array(matrix, float)) if abs(np.linalg.det(own)) > 0 else own
+        texts.append(f"{written.digest(part.data)} {(lies + 0.0).round(5).tolist()}")
+    return f"{zlib.crc32(' '.join(texts).encode()):08x}"
+
+
+def update(ob: bpy.types.Object) -> bool:
+    """Join a whole anew if its parts or options have changed; say whether that was done."""
+    joined = ob.gridmesh_joined
+    parts, now = parts_of(ob), fingerprint(ob)
+    if not parts or now == joined.digest:
+        return False
+    if ob.mode != "OBJECT" or not ob.is_editable:
+        return False
+    if written.by_hand(ob.data):
+        joined.problem = BY_HAND
+        return False
+    options = joining.Options(joined.blend, joined.edge_length or None, joined.strict)
+    joined.digest = now
+    try:
+        joining.again(bpy.context, ob, parts, placed(ob), options)
+    except (JoinError, api.NativeError) as error:
+        joined.problem = str(error)
+        return False
+    joined.problem = ""
+    written.sign(ob.data)
+    return True
+
+
+def refresh() -> int:
+    """Join every whole anew whose parts have changed; return how many were."""
+    if not engine.awake() or not any_there():
+        return 0
+    bpy.context.view_layer.update()
+    return sum(update(ob) for ob in wholes())
+
+
+def any_there() -> bool:
+    """Whether there is a whole in the file, as far as is known."""
+    global _known
+    if _known is None:
+        _known = bool(wholes())
+    return _known
+
+
+@bpy.app.handlers.persistent
+def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
+    if not any_there() or not engine.awake() or bpy.app.background:
+        return
+    if any(isinstance(update.id, (bpy.types.Object, bpy.types.Mesh)) for update in depsgraph.updates):
+        _soon()
+
+
+@bpy.app.handlers.persistent
+def _on_other_time(*_: Any) -> None:
+    """After undo, redo and opening a file."""
+    global _known
+    _known = None
+    if any_there() and not bpy.app.background:
+        _soon()
+
+
+@bpy.app.handlers.persistent
+def _on_save(*_: Any) -> None:
+    refresh()
+
+
+def _soon() -> None:
+    """Look again when nothing has changed for a moment."""
+    if bpy.app.timers.is_registered(_look):
+        bpy.app.timers.unregister(_look)
+    bpy.app.timers.register(_look, first_interval=engine.PAUSE)
+
+
+def _look() -> float | None:
+    """Timer: join anew, once bodies are made in full and no tool is running."""
+    if not engine.awake() or engine.tool_runs() or engine.unsettled():
+        return 0.1
+    refresh()
+    return None
+
+
+def _handlers() -> list[tuple[list[Any], Any]]:
+    on = bpy.app.handlers
+    return [
+        (on.depsgraph_update_post, _on_change),
+        (on.undo_post, _on_other_time),
+        (on.redo_post, _on_other_time),
+        (on.load_post, _on_other_time),
+        (on.blend_import_post, _on_other_time),
+        (on.save_pre, _on_save),
+    ]
+
+
+classes = (GridMeshPart, GridMeshJoined)
+
+
+def register() -> None:
+    """Give objects what they remember, and start to listen."""
+    global _known
+    _known = None
+    bpy.types.Object.gridmesh_joined = PointerProperty(type=GridMeshJoined)
+    for handlers, function in _handlers():
+        if function not in handlers:
+            handlers.append(function)
+
+
+def unregister() -> None:
+    """Stop; joined bodies stay as they are."""
+    for handlers, function in _handlers():
+        if function in handlers:
+            handlers.remove(function)
+    if bpy.app.timers.is_registered(_look):
+        bpy.app.timers.unregister(_look)
+    if hasattr(bpy.types.Object, "gridmesh_joined"):
+        del bpy.types.Object.gridmesh_joined

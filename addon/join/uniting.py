@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Closed meshes joined to one: the call of `gridmesh.join`, and what becomes of the parts' own elements.
+
+numpy only, no bpy. Points are float64 in the world.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .. import api
+from ..bodies.outlines import LARGEST
+from ..text.messages import counted
+
+
+class JoinError(ValueError):
+    """The parts cannot be joined. The message says why and what to do."""
+
+    def __init__(self, message: str, kind: str = "") -> None:
+        super().__init__(message)
+        self.kind = kind
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A mesh that is to be joined, wound outward."""
+
+    name: str
+    vertices: np.ndarray
+    """(n, 3)."""
+    corners: np.ndarray
+    offsets: np.ndarray
+    """(m + 1,): face f has the corners `corners[offsets[f]:offsets[f + 1]]`."""
+
+
+@dataclass(frozen=True, eq=False)
+class United:
+    """The joined mesh in terms of its parts: what stays, and the collars between."""
+
+    vertices: np.ndarray
+    """(v, 3) those of the parts that stay, then new ones."""
+    vertex_part: np.ndarray
+    """(v,) the part that each comes from, -1 for new ones."""
+    source_vertex: np.ndarray
+    """(v,) its number there."""
+    face_part: np.ndarray
+    """(k,) the part of each face that stays."""
+    source_face: np.ndarray
+    """(k,) its number there."""
+    collars: np.ndarray
+    """(t, 3) new triangles."""
+    rims: list[np.ndarray]
+    """Closed loops of vertices between what stays and the collars, as the faces that stay run."""
+    report: dict[str, Any]
+
+
+def unite(
+    parts: Sequence[Part],
+    *,
+    blend: float,
+    edge_length: float | None,
+    strict: bool,
+    progress: api.Progress | None = None,
+) -> United:
+    """Join the parts.
+
+    Raises
+    ------
+    JoinError
+        If one of them is no closed mesh, or they cannot be joined, with the library's message.
+    api.NativeError
+        Without the module.
+    api.CancelledError
+        If `progress` or Ctrl-C asked to stop.
+    """
+    gridmesh = api.native("join", "harmonic")
+    for part in parts:
+        _check(part)
+    try:
+        with api.cancelling(gridmesh):
+            made = gridmesh.join(
+                [(part.vertices, (part.corners, part.offsets)) for part in parts],
+                blend=blend,
+                edge_length=edge_length,
+                strict=strict,
+                progress=progress,
+            )
+    except gridmesh.GridMeshError as error:
+        raise JoinError(_named(str(error), parts), error.kind) from error
+    stays = made.source_part >= 0
+    return United(
+        vertices=made.vertices,
+        vertex_part=made.vertex_part,
+        source_vertex=made.source_vertex,
+        face_part=made.source_part[stays],
+        source_face=made.source_face[stays],
+        collars=made.triangles[~stays[: len(made.triangles)]],
+        rims=[np.asarray(rim) for rims in made.collars for rim in rims],
+        report=dict(made.report),
+    )
+
+
+def volume(vertices: np.ndarray, corners: np.ndarray, offsets: np.ndarray) -> float:
+    """Volume within closed faces, negative where they are wound inward."""
+    first = np.repeat(corners[offsets[:-1]], np.diff(offsets))
+    a, b, c = vertices[first], vertices[corners], vertices[after(corners, offsets)]
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+
+def after(corners: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """For each corner the next one of its face."""
+    following = np.roll(corners, -1)
+    following[offsets[1:] - 1] = corners[offsets[:-1]]
+    return following
+
+
+def reversed_faces(corners: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """Return the corners with every face turned round."""
+    place = np.arange(len(corners))
+    sizes = np.diff(offsets)
+    return corners[np.repeat(offsets[:-1] + offsets[1:] - 1, sizes) - place]
+
+
+def _check(part: Part) -> None:
+    bad = np.flatnonzero(~np.isfinite(part.vertices).all(axis=1))
+    if len(bad):
+        raise JoinError(
+            f"vertex {bad[0]} of '{part.name}' has a coordinate that is not a finite number; move or delete it"
+        )
+    if np.abs(part.vertices).max(initial=0.0) > LARGEST:
+        raise JoinError(f"'{part.name}' reaches farther than {LARGEST:g}; scale it down or move it nearer")
+    ends = np.sort(np.column_stack([part.corners, after(part.corners, part.offsets)]), axis=1)
+    keys = ends[:, 0].astype(np.int64) * len(part.vertices) + ends[:, 1]
+    _, faces = np.unique(keys, return_counts=True)
+    n_open, n_branching = int((faces == 1).sum()), int((faces > 2).sum())
+    if n_open:
+        raise JoinError(
+            f"'{part.name}' is not closed: it has {counted(n_open, 'open edge')}; fill its holes or merge doubled vertices",
+            "not_closed",
+        )
+    if n_branching:
+        raise JoinError(
+            f"'{part.name}' is not manifold: more than two faces meet at {counted(n_branching, 'edge')}; "
+            "delete the faces inside",
+            "not_closed",
+        )
+
+
+def _named(message: str, parts: Sequence[Part]) -> str:
+    """Put the part's name where the library has its number."""
+
+    def name(found: re.Match[str]) -> str:
+        number = int(found.group(2))
+        return f"{found.group(1)}'{parts[number].name}'" if number < len(parts) else found.group(0)
+
+    return re.sub(r"^(part\s)(\d+)\b", name, message)
+
+
+def warnings_of(report: dict[str, Any]) -> list[str]:
+    """What a joined mesh tells about itself that a user should look at."""
+    found = []
+    if report["self_intersections"]:
+        found.append(
+            "The joints meet the parts or themselves; blend less, move a part, or switch Strict on to refuse that"
+        )
+    if report["alone"]:
+        found.append(
+            f"{counted(report['alone'], 'part')} without contact to others; moved into another one it would be joined"
+        )
+    if report["swallowed"]:
+        found.append(f"{counted(report['swallowed'], 'part')} inside others left out")
+    return found
