@@ -33,8 +33,11 @@ use crate::progress::Progress;
 /// Rounds of fairing and flips.
 const ROUNDS: usize = 3;
 
-/// How much of the fairing is tried, where all of it makes the patch meet something.
-const SHARES: [f64; 3] = [1.0, 0.5, 0.0];
+/// Times at most that the triangles are made even on a surface that is made smooth.
+const SHAPED: usize = 6;
+
+/// A round that changes the number of vertices by less than this share is the last.
+const SETTLED: f64 = 0.02;
 
 /// See [`fill_loops`](super::fill_loops), for three or more.
 pub(super) fn fill_several(
@@ -97,18 +100,28 @@ impl Several<'_> {
         self.size(&loops, &mut local);
         let beyond = self.beyond(&loops, &loop_);
         let is_flat = self.options.smooth == Smooth::Flat;
-        if !is_flat {
-            // The way that the surface takes first, so that sheets which belong apart are.
+        if is_flat {
+            let ground = Ground::of(&local);
+            remesh(&mut local, &ground, progress.part(0.3, 0.6))?;
+        } else {
+            // Shape and triangles depend on each other.
             refine(&mut local);
-            local.positions = fair(&local, &beyond, progress.part(0.3, 0.4))?;
+            for round in 0..SHAPED {
+                let part = |k: usize| 0.3 + 0.3 * k as f64 / (2 * SHAPED) as f64;
+                local.positions = fair(&local, &beyond, progress.part(part(2 * round), part(2 * round + 1)))?;
+                let ground = Ground::of(&local);
+                let before = local.positions.len() as f64;
+                remesh(&mut local, &ground, progress.part(part(2 * round + 1), part(2 * round + 2)))?;
+                if round > 0 && (local.positions.len() as f64 - before).abs() < SETTLED * before {
+                    break;
+                }
+            }
         }
-        let ground = Ground::of(&local);
-        remesh(&mut local, &ground, progress.part(0.4, 0.6))?;
         clock.stage("grid");
-        let flat = local.positions.clone();
+        let even = local.positions.clone();
         if !is_flat {
             for round in 0..=ROUNDS {
-                let part = |k: usize| 0.6 + 0.3 * k as f64 / (ROUNDS + 1) as f64;
+                let part = |k: usize| 0.6 + 0.2 * k as f64 / (ROUNDS + 1) as f64;
                 if round > 0 {
                     flip_valences(&mut local);
                 }
@@ -131,7 +144,7 @@ impl Several<'_> {
             positions: vec![],
             creases: vec![],
         };
-        self.place(&mut shape, &flat, &local.positions, progress.part(0.9, 1.0))?;
+        shape.positions = self.placed(&shape, &even, &local.positions, progress.part(0.8, 1.0))?;
         clock.stage("fair");
         Ok(self.finish(shape, clock))
     }
@@ -184,52 +197,54 @@ impl Several<'_> {
         (0..loop_.len()).map(of).collect()
     }
 
-    /// Chooses the positions: as smooth as they may be without meeting anything.
-    fn place(
+    /// The smoothest positions of all that meet least.
+    fn placed(
         &self,
-        shape: &mut Shape,
+        shape: &Shape,
         even: &[DVec3],
         faired: &[DVec3],
         progress: Progress<'_>,
-    ) -> Result<()> {
+    ) -> Result<Vec<DVec3>> {
         let work = &shape.work;
-        let mut positions = vec![DVec3::ZERO; work.len()];
-        positions[..work.end].copy_from_slice(even);
+        let mut around = vec![DVec3::ZERO; work.len()];
         for (k, &v) in work.outer.iter().enumerate() {
-            positions[work.end + k] = self.vertices[v as usize];
+            around[work.end + k] = self.vertices[v as usize];
         }
+        let all = |own: &[DVec3]| [own, &around[work.end..]].concat();
+        let mut choices = vec![];
         if self.options.smooth == Smooth::Flat {
-            let weights =
-                work.cotangents(&positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-            let film = Membrane::new(work)?.harmonic(&weights, |v| positions[v].to_array())?;
-            for (v, p) in work.inner().zip(film) {
-                positions[v] = p.into();
+            let mut film = all(even);
+            let weights = work.cotangents(&film).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
+            let found = Membrane::new(work)?.harmonic(&weights, |v| film[v].to_array())?;
+            for (v, p) in work.inner().zip(found) {
+                film[v] = p.into();
             }
+            choices.push(film);
+        } else {
+            let mut bent = all(faired);
+            match shape.bend(&mut bent, None, &mut vec![], progress.part(0.0, 0.5)) {
+                Ok(()) => choices.push(bent),
+                // Triangles without area spoil the equations.
+                Err(Error::Solver { .. }) => {}
+                Err(other) => return Err(other),
+            }
+            choices.push(all(faired));
+            choices.push(all(&even.iter().zip(faired).map(|(p, q)| p.midpoint(*q)).collect::<Vec<_>>()));
         }
-        let base = positions[..work.end].to_vec();
-        let mut best: Option<(usize, Vec<DVec3>)> = None;
-        let shares = if self.options.smooth == Smooth::Flat { &SHARES[2..] } else { &SHARES[..] };
-        for share in shares {
-            for v in work.inner() {
-                positions[v] = base[v].lerp(faired[v], *share);
+        choices.push(all(even));
+        let mut best: Option<(Faults, Vec<DVec3>)> = None;
+        for choice in choices.into_iter().filter(|choice| choice.iter().all(|p| p.is_finite())) {
+            let most = best.as_ref().map_or(usize::MAX, |best| best.0.meetings + 1);
+            let faults = Faults::of(work, &choice, most, progress.part(0.5, 1.0))?;
+            if best.as_ref().is_none_or(|best| faults < best.0) {
+                best = Some((faults, choice));
             }
-            if positions.iter().any(|p| !p.is_finite()) {
-                continue;
-            }
-            let most = best.as_ref().map_or(usize::MAX, |best| best.0);
-            let faults = Faults::of(work, &positions, most, progress)?;
-            if faults.meetings < most {
-                best = Some((faults.meetings, positions.clone()));
-            }
-            if faults.meetings == 0 {
+            if best.as_ref().is_some_and(|best| best.0 == Faults::default()) {
                 break;
             }
         }
-        let Some((_, positions)) = best else {
-            return Err(Error::Solver { stage: "fill", reason: "a vertex is not finite".into() });
-        };
-        shape.positions = positions;
-        Ok(())
+        let found = best.ok_or(Error::Solver { stage: "fill", reason: "a vertex is not finite".into() })?;
+        Ok(found.1)
     }
 
     fn finish(&self, shape: Shape, clock: Clock) -> Fill {

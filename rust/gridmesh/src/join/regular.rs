@@ -1,8 +1,8 @@
 //! Fewer irregular vertices: flips that move them about until they meet, and collapses that take them out in pairs.
 
+use crate::error::Result;
 use crate::fill::even::local::{Local, quality};
 use crate::fill::even::remesh::{Ground, relax};
-use crate::error::Result;
 use crate::progress::Progress;
 
 /// Rounds.

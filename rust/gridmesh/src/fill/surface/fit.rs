@@ -188,7 +188,7 @@ impl Shape {
     }
 
     /// Bends the film; `stages` gets what lies between, to fall back on.
-    fn bend(
+    pub(in crate::fill) fn bend(
         &self,
         positions: &mut [DVec3],
         membrane: Option<Membrane<'_>>,
