@@ -173,6 +173,9 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
         live.draw_shape_options(layout)
         watch.watch()
         layout.prop(live, "pen")
+        row = layout.row()
+        row.active = live.may_bend()
+        row.prop(live, "pen_detail")
         live.draw_sketch_options(layout)
         layout.operator(OBJECT_OT_gridmesh_freeze.bl_idname, icon="FREEZE")
 

@@ -107,9 +107,17 @@ class SketchOptions:
         min=0.0,
         max=1.0,
     )
+    detail: FloatProperty(
+        name="Detail in Thin Parts",
+        description="How much smaller faces are in thin parts than elsewhere, on a grid that bends; at 0 nothing is asked for",
+        subtype="FACTOR",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+    )
     angle_mode: EnumProperty(
         name="Grid Angle",
-        description="Direction of the grid; quads with a fixed one do not bend with the drawing",
+        description="Direction of the grid; a fixed one does not bend with the drawing",
         items=[
             ("AUTO", "Automatic", "Take the best of several angles"),
             ("FIXED", "Fixed", "Give the angle"),
@@ -174,6 +182,7 @@ class SketchOptions:
         return {
             # Quads always bend: poles cost more than irregular vertices of triangles.
             **({"cells": kind} if kind == "quads" else {"bend": self.bend}),
+            **({"density": self.detail} if self.detail and self.may_bend() else {}),
             **fineness[self.resolution],
             "boundary": self.boundary.lower(),
             "max_distance": self.max_distance,
@@ -183,6 +192,11 @@ class SketchOptions:
             "self_crossing": "union" if self.use_union else "error",
         }
 
+    def may_bend(self) -> bool:
+        """Whether the grid bends with the drawing: only then can faces have several sizes."""
+        free = self.boundary == "OPTIMAL" and self.angle_mode == "AUTO"
+        return free and (self.cells == "QUADS" or self.bend > 0)
+
     def draw_sketch_options(self, layout: bpy.types.UILayout) -> None:
         """Draw the resolution, and the grid's options in a closed panel below."""
         layout.prop(self, "cells")
@@ -190,6 +204,9 @@ class SketchOptions:
         column.prop(self, "resolution")
         if self.resolution != "AUTO":
             column.prop(self, fineness_of(self))
+        row = column.row()
+        row.active = self.may_bend()
+        row.prop(self, "detail")
         column.prop(self, "mirror")
         header, body = layout.panel(f"{self.bl_idname}_grid", default_closed=True)
         header.label(text="Grid")
