@@ -21,6 +21,7 @@ from ..bodies import profilecurve
 from ..bodies.outlines import Plane, Sketch, Stroke
 from ..data import frames, meshes, written
 from ..native import NativeError
+from ..ui.properties import may_bend
 from . import applied, family, linework
 from .family import bodies
 from .reading import LostError, sketch_of
@@ -194,7 +195,7 @@ def fingerprint(live: Any, sketch: Sketch) -> str:
 
 
 def _options(live: Any) -> tuple[dict[str, Any], dict[str, Any] | None, float, float]:
-    return live.sketch_options(), live.body_options(), live.pen, live.pen_detail if live.may_bend() else 0.0
+    return live.sketch_options(), live.body_options(), live.pen, live.pen_detail if may_bend(live) else 0.0
 
 
 def _hindrance(ob: bpy.types.Object) -> str:

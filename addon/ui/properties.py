@@ -28,6 +28,12 @@ def fineness_of(options: Any) -> str:
     return "edge_length" if options.resolution == "EDGE_LENGTH" else options.cells.lower()
 
 
+def may_bend(options: Any) -> bool:
+    """Whether the grid bends with the drawing: only then can faces have several sizes."""
+    free = options.boundary == "OPTIMAL" and options.angle_mode == "AUTO"
+    return free and (options.cells == "QUADS" or options.bend > 0)
+
+
 class SketchOptions:
     """How an outline is meshed. Mixed into operators."""
 
@@ -182,7 +188,7 @@ class SketchOptions:
         return {
             # Quads always bend: poles cost more than irregular vertices of triangles.
             **({"cells": kind} if kind == "quads" else {"bend": self.bend}),
-            **({"density": self.detail} if self.detail and self.may_bend() else {}),
+            **({"density": self.detail} if self.detail and may_bend(self) else {}),
             **fineness[self.resolution],
             "boundary": self.boundary.lower(),
             "max_distance": self.max_distance,
@@ -192,11 +198,6 @@ class SketchOptions:
             "self_crossing": "union" if self.use_union else "error",
         }
 
-    def may_bend(self) -> bool:
-        """Whether the grid bends with the drawing: only then can faces have several sizes."""
-        free = self.boundary == "OPTIMAL" and self.angle_mode == "AUTO"
-        return free and (self.cells == "QUADS" or self.bend > 0)
-
     def draw_sketch_options(self, layout: bpy.types.UILayout) -> None:
         """Draw the resolution, and the grid's options in a closed panel below."""
         layout.prop(self, "cells")
@@ -205,7 +206,7 @@ class SketchOptions:
         if self.resolution != "AUTO":
             column.prop(self, fineness_of(self))
         row = column.row()
-        row.active = self.may_bend()
+        row.active = may_bend(self)
         row.prop(self, "detail")
         column.prop(self, "mirror")
         header, body = layout.panel(f"{self.bl_idname}_grid", default_closed=True)
