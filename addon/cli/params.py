@@ -69,6 +69,12 @@ SKETCH = {
     "boundary": Param("choice", "how the rim is found", ("optimal", "grown")),
     "max_distance": Param("number", "how far the rim may stray, in edge lengths"),
     "bend": Param("number", "how far the grid may bend with the outline (1)", least=0, most=1),
+    "density": Param(
+        "number",
+        "how much finer thin parts are, from 0 to 1; not set: about as fine as others",
+        least=0,
+        most=1,
+    ),
     "angle": Param("number", "angle of the grid, radians; the best one if not given"),
     "corner_angle": Param("number", "turns sharper than this are corners, radians"),
     "self_crossing": Param("choice", "what becomes of outlines that cross themselves", ("error", "union")),

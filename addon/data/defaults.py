@@ -11,7 +11,7 @@ QUADS = 1000
 """The same of quads: about as many vertices."""
 CORNER_ANGLE = radians(40.0)
 """Turns sharper than this are corners."""
-BEND = 0.0
+BEND = 1.0
 """How far the lattice may bend with the outline."""
 CLOSE_GAPS = 0.2
 """Largest gap between the ends of a drawn outline that is closed, relative to the stroke."""

@@ -21,6 +21,7 @@ from ..bodies import profilecurve
 from ..bodies.outlines import Plane, Sketch, Stroke
 from ..data import frames, meshes, written
 from ..native import NativeError
+from ..ui.properties import may_bend
 from . import applied, family, linework
 from .family import bodies
 from .reading import LostError, sketch_of
@@ -169,7 +170,7 @@ def hand_over(ob: bpy.types.Object) -> bpy.types.Object:
         live = other.gridmesh_live
         live.copy_options(own)
         live.quiet = True
-        live.pen, live.algorithm = own.pen, own.algorithm
+        live.pen, live.pen_detail, live.algorithm = own.pen, own.pen_detail, own.algorithm
         live.quiet = False
         points = own.curve_points()
         if points is None:
@@ -193,8 +194,8 @@ def fingerprint(live: Any, sketch: Sketch) -> str:
     return digest(sketch, *_options(live))
 
 
-def _options(live: Any) -> tuple[dict[str, Any], dict[str, Any] | None, float]:
-    return live.sketch_options(), live.body_options(), live.pen
+def _options(live: Any) -> tuple[dict[str, Any], dict[str, Any] | None, float, float]:
+    return live.sketch_options(), live.body_options(), live.pen, live.pen_detail if may_bend(live) else 0.0
 
 
 def _hindrance(ob: bpy.types.Object) -> str:
@@ -314,13 +315,13 @@ def _remember_frame(ob: bpy.types.Object) -> None:
 
 def _solved(live: Any, sketch: Sketch, lattice: Lattice | None) -> tuple[Body, Lattice]:
     """Solve on the lattice that stays; if the stroke has left its plane, on the best one."""
-    sketch_options, body_options, pen = _options(live)
+    sketch_options, body_options, pen, detail = _options(live)
     if lattice is not None:
         try:
-            return solve(sketch, sketch_options, body_options, lattice=lattice, pen=pen)
+            return solve(sketch, sketch_options, body_options, lattice=lattice, pen=pen, pen_detail=detail)
         except LeftError:
             pass  # it was turned or bent: there is nothing to keep
-    return solve(sketch, sketch_options, body_options, pen=pen)
+    return solve(sketch, sketch_options, body_options, pen=pen, pen_detail=detail)
 
 
 def _stored(live: Any) -> Lattice | None:

@@ -72,6 +72,15 @@ class GridMeshLive(SketchOptions, ShapeOptions, bpy.types.PropertyGroup):
         max=1.0,
         update=_changed,
     )
+    pen_detail: FloatProperty(
+        name="Detail by Pen Width",
+        description="How much the width of the drawn line drives how many faces there are, on a grid that bends",
+        subtype="FACTOR",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        update=_changed,
+    )
     quiet: BoolProperty(options={"HIDDEN"})
     """Whether several properties are being set, and the body should wait."""
     algorithm: IntProperty(options={"HIDDEN"})

@@ -50,12 +50,13 @@ def solve(
     *,
     lattice: Lattice | None = None,
     pen: float = 0.0,
+    pen_detail: float = 0.0,
 ) -> tuple[Body, Lattice]:
     """Mesh a sketch, and inflate it unless `body_options` is None.
 
     lattice : keep it, and its plane; the body is in the frame of that plane. None: the best one, so that the
         body depends on the sketch and the options alone.
-    pen : how much the width of the pen drives the depth, 0 to 1.
+    pen, pen_detail : how much the width of the pen drives the depth, and how many faces there are; 0 to 1.
 
     Raises
     ------
@@ -74,6 +75,9 @@ def solve(
             options["keep"] = lattice.patch
         else:
             options |= {"edge_length": lattice.edge_length, "angle": lattice.angle, "origin": lattice.origin}
+    many = shares(sketch, pen_detail)
+    if many is not None and options.get("self_crossing") != "union":
+        options["density"] = many.tolist()
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
     try:
         patch = _patch(gridmesh, sketch.outline, holes, options)
@@ -134,8 +138,8 @@ def moved(sketch: Sketch, plane: Plane) -> Sketch:
     )
 
 
-def depths(sketch: Sketch, pen: float) -> np.ndarray | None:
-    """Depth (n,) at each point of the outline from the pen's width there; the mean is 1. None without widths."""
+def shares(sketch: Sketch, pen: float) -> np.ndarray | None:
+    """Share (n,) of the pen's width at each point of the outline in its mean, as far as `pen` says. None without widths."""
     widths = sketch.stroke.widths
     if widths is None or pen <= 0 or len(widths) != len(sketch.stroke.points):
         return None
@@ -152,7 +156,7 @@ def depths(sketch: Sketch, pen: float) -> np.ndarray | None:
 
 
 def _with_pen(options: dict[str, Any], sketch: Sketch, pen: float) -> dict[str, Any]:
-    factors = depths(sketch, pen)
+    factors = shares(sketch, pen)
     if factors is None:
         return options
     options = dict(options)

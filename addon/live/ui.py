@@ -14,6 +14,7 @@ from ..data import frames, written
 from ..text.telling import told
 from ..text.translations import CONTEXT
 from ..ui import wrapping
+from ..ui.properties import may_bend
 from . import engine, migration, watch
 from .solve import ALGORITHM
 
@@ -173,6 +174,9 @@ class VIEW3D_PT_gridmesh_live(bpy.types.Panel):  # noqa: N801
         live.draw_shape_options(layout)
         watch.watch()
         layout.prop(live, "pen")
+        row = layout.row()
+        row.active = may_bend(live)
+        row.prop(live, "pen_detail")
         live.draw_sketch_options(layout)
         layout.operator(OBJECT_OT_gridmesh_freeze.bl_idname, icon="FREEZE")
 

@@ -1106,6 +1106,7 @@ _LIBRARY_PARTS = {
     ),
     "'width' or none: the outer outline has other points": "'width' oder nichts: der äußere Umriss hat andere Punkte",
     "0 to 1": "0 bis 1",
+    "a number from 0 to 1, or one for each point": "eine Zahl von 0 bis 1, oder eine für jeden Punkt",
     "finite numbers above 0": "endliche Zahlen über 0",
     "given, with bend 0": "gegeben, mit bend 0",
     "none, or bend above 0: triangles of a straight lattice have one size": "nichts, oder bend über 0: Dreiecke eines geraden Gitters haben eine Größe",

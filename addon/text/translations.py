@@ -168,8 +168,8 @@ GERMAN = {
     "Automatic": "Automatisch",
     "Boundary": "Rand",
     "Corner Angle": "Eckenwinkel",
-    "Direction of the grid; quads with a fixed one do not bend with the drawing": (
-        "Richtung des Gitters; Vierecke mit einer festen biegen sich nicht mit der Zeichnung"
+    "Direction of the grid; a fixed one does not bend with the drawing": (
+        "Richtung des Gitters; eins mit einer festen biegt sich nicht mit der Zeichnung"
     ),
     "Faces": "Flächen",
     "What the mesh is made of": "Woraus das Netz besteht",
@@ -209,6 +209,14 @@ GERMAN = {
         "Wie weit der Rand des Gitters abweichen darf, bevor er auf den Strich gerückt wird, in Kantenlängen"
     ),
     "Bend": "Biegung",
+    "Detail in Thin Parts": "Feinheit dünner Teile",
+    "How much smaller faces are in thin parts than elsewhere, on a grid that bends; at 0 nothing is asked for": (
+        "Wie viel kleiner die Flächen in dünnen Teilen sind als anderswo, auf einem Gitter, das sich biegt; bei 0 wird nichts verlangt"
+    ),
+    "Detail by Pen Width": "Feinheit nach Strichbreite",
+    "How much the width of the drawn line drives how many faces there are, on a grid that bends": (
+        "Wie sehr die Breite der gezeichneten Linie bestimmt, wie viele Flächen es gibt, auf einem Gitter, das sich biegt"
+    ),
     "How far a grid of triangles may bend with the stroke, which leaves fewer irregular vertices; 0 is straight": (
         "Wie weit sich ein Gitter aus Dreiecken mit dem Strich biegen darf; so bleiben weniger unregelmäßige Punkte; 0 ist gerade"
     ),

@@ -38,6 +38,12 @@ def fineness_of(options: Any) -> str:
     return "edge_length" if options.resolution == "EDGE_LENGTH" else options.cells.lower()
 
 
+def may_bend(options: Any) -> bool:
+    """Whether the grid bends with the drawing: only then can faces have several sizes."""
+    free = options.boundary == "OPTIMAL" and options.angle_mode == "AUTO"
+    return free and (options.cells == "QUADS" or options.bend > 0)
+
+
 class SketchOptions:
     """How an outline is meshed. Mixed into operators."""
 
@@ -117,9 +123,17 @@ class SketchOptions:
         min=0.0,
         max=1.0,
     )
+    detail: FloatProperty(
+        name="Detail in Thin Parts",
+        description="How much smaller faces are in thin parts than elsewhere, on a grid that bends; at 0 nothing is asked for",
+        subtype="FACTOR",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+    )
     angle_mode: EnumProperty(
         name="Grid Angle",
-        description="Direction of the grid; quads with a fixed one do not bend with the drawing",
+        description="Direction of the grid; a fixed one does not bend with the drawing",
         items=[
             ("AUTO", "Automatic", "Take the best of several angles"),
             ("FIXED", "Fixed", "Give the angle"),
@@ -184,6 +198,7 @@ class SketchOptions:
         return {
             # Quads always bend: poles cost more than irregular vertices of triangles.
             **({"cells": kind} if kind == "quads" else {"bend": self.bend}),
+            **({"density": self.detail} if self.detail and may_bend(self) else {}),
             **fineness[self.resolution],
             "boundary": self.boundary.lower(),
             "max_distance": self.max_distance,
@@ -200,6 +215,9 @@ class SketchOptions:
         column.prop(self, "resolution")
         if self.resolution != "AUTO":
             column.prop(self, fineness_of(self))
+        row = column.row()
+        row.active = may_bend(self)
+        row.prop(self, "detail")
         column.prop(self, "mirror")
         header, body = layout.panel(f"{self.bl_idname}_grid", default_closed=True)
         header.label(text="Grid")

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from drawings import activate, grease_pencil
+from drawings import activate, grease_pencil, vertices
 
 from addon.bodies import density
 from addon.bodies.operator import OBJECT_OT_gridmesh_from_strokes
@@ -54,6 +54,34 @@ def test_thin_parts_are_told_and_mended(capfd):
     after = refine.of_body(ob, bpy.context.evaluated_depsgraph_get())
     assert after.across > 4.5
     assert not after.is_low
+
+
+def mean_edges(ob):
+    """Mean edge length of the arm and of the ball."""
+    mesh = ob.data
+    points = np.array([v.co[:] for v in mesh.vertices]) + np.array(ob.location)
+    edges = np.array([e.vertices[:] for e in mesh.edges])
+    lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+    middles = 0.5 * (points[edges[:, 0]] + points[edges[:, 1]])[:, 0]
+    return lengths[middles > 0.8].mean(), lengths[middles < 0.4].mean()
+
+
+@pytest.mark.parametrize("cells", ["TRIANGLES", "QUADS"])
+def test_thin_parts_have_smaller_faces_where_that_is_asked_for(cells):
+    ratios = []
+    for detail in (0.0, 0.5, 1.0):
+        ob = made(cells=cells, resolution="TRIANGLES", triangles=4000, quads=2000, detail=detail)
+        arm, ball = mean_edges(ob)
+        ratios.append(arm / ball)
+    assert ratios[2] < 0.8 * ratios[0]
+    assert ratios[2] < 0.95 * ratios[1]
+
+
+@pytest.mark.parametrize("options", [{"bend": 0.0}, {"boundary": "GROWN"}, {"angle_mode": "FIXED"}])
+def test_detail_is_without_effect_on_a_straight_grid(options):
+    plain = made(resolution="TRIANGLES", triangles=4000, **options)
+    detailed = made(resolution="TRIANGLES", triangles=4000, detail=1.0, **options)
+    assert np.array_equal(vertices(plain.data), vertices(detailed.data))
 
 
 @pytest.mark.parametrize("layout", ["APART", "SHARED"])

@@ -330,7 +330,8 @@ def test_crossing_itself_it_waits(drawn):
     assert body.gridmesh_live.problem == ""
 
 
-def test_the_pen_makes_it_thick():
+def widening():
+    """A live body of a bean whose line gets wider and wider."""
     drawing = grease_pencil([bean()])
     data = drawing.data.layers[0].current_frame().drawing
     radius = np.linspace(0.01, 0.05, 120, dtype=np.float32)
@@ -339,6 +340,30 @@ def test_the_pen_makes_it_thick():
     data.attributes["radius"].data.foreach_set("value", radius)
     body = run_one(follow=True)
     engine.settle()
+    return body
+
+
+def test_the_pen_gives_more_faces():
+    body = widening()
+
+    def share():
+        points = vertices(body.data)
+        angle = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)
+        return (angle > 4.8).sum() / (angle < 1.5).sum()
+
+    even, count = share(), len(body.data.polygons)
+    body.gridmesh_live.pen_detail = 1.0
+    bpy.context.view_layer.update()
+    assert share() > 1.15 * even
+    assert len(body.data.polygons) == pytest.approx(count, rel=0.1)
+    body.gridmesh_live.bend = 0.0
+    bpy.context.view_layer.update()
+    assert share() == pytest.approx(even, rel=0.2)
+    assert body.gridmesh_live.problem == ""
+
+
+def test_the_pen_makes_it_thick():
+    body = widening()
     even = vertices(body.data)
     body.gridmesh_live.pen = 1.0
     bpy.context.view_layer.update()

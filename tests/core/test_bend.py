@@ -155,9 +155,13 @@ def test_density_reaches_holes():
 
 def test_narrow_parts_get_more_triangles_by_width():
     points = with_a_foot(1.4)
-    plain, wide = (mesh_sketch(points, triangles=1500, density=d) for d in (None, "width"))
+    plain, even, wide, most = (
+        mesh_sketch(points, triangles=1500, density=d) for d in (None, 0, "width", 1.0)
+    )
     tip = points[np.argmax(points[:, 0])] - [0.4, 0]
     assert lengths_near(wide, tip, 0.5) <= lengths_near(plain, tip, 0.5)
+    assert lengths_near(wide, tip, 0.5) < lengths_near(even, tip, 0.5)
+    assert wide.vertices.tobytes() == most.vertices.tobytes()
 
 
 def test_lattices_bend_unless_told_otherwise():
@@ -181,6 +185,19 @@ def test_sharp_tips_are_blunted_by_two_edges_at_most(angle):
         assert patch.report["max_deviation"] <= 2
 
 
+@pytest.mark.parametrize("angle", [22, 26, 30])
+def test_tips_with_no_drawn_points_beside_them_are_blunted(angle):
+    # A kite: vertices that are held beside its tip lie between drawn points.
+    half = np.radians(angle / 2)
+    points = np.array([[0.0, -1.0], [1 / np.tan(half), 0.0], [0.0, 1.0], [-1.0, 0.0]])
+    for triangles in (800, 2000, 8000):
+        patch = mesh_sketch(points, triangles=triangles)
+        check_patch(patch, [points])
+        # More than two triangles that shared the tip could have.
+        assert np.degrees(patch.report["min_angle"]) > 0.5 * angle + 2
+        assert patch.report["max_deviation"] <= 2
+
+
 def test_no_edges_are_much_longer_than_most():
     for drawing in DRAWINGS.values():
         patch = mesh_sketch(drawing["points"], triangles=3000)
@@ -193,6 +210,16 @@ def stay(patch, other):
     """The share of a patch's vertices that lie where one of another lies."""
     apart = np.linalg.norm(patch.vertices[:, None] - other.vertices[None], axis=2).min(axis=1)
     return np.mean(apart < 0.02 * other.edge_length)
+
+
+def test_the_first_step_of_a_drag_leaves_the_triangles_where_they_are():
+    for drawing in [*blobs(6), *(np.array(d["points"], float) for d in list(DRAWINGS.values())[:4])]:
+        patch = mesh_sketch(drawing, triangles=1500)
+        assert patch.report["bend"] > 0
+        moved = drawing * (1 + 1e-6 * np.sin(np.arange(len(drawing)))[:, None])
+        kept = gridmesh.mesh_sketch(moved, keep=patch)
+        assert np.array_equal(kept.triangles, patch.triangles)
+        assert np.abs(kept.vertices - patch.vertices).max() < 0.2 * patch.edge_length
 
 
 def test_a_kept_lattice_stays_with_its_bend_while_a_part_is_moved():
@@ -250,6 +277,7 @@ def test_what_a_kept_lattice_decides_is_not_asked_for_beside_it(option):
         ({"density": np.ones(99)}, "invalid_option"),
         ({"density": -np.ones(100)}, "invalid_option"),
         ({"density": "height"}, "invalid_option"),
+        ({"density": 1.5}, "invalid_option"),
         ({"density": "width", "bend": 0}, "invalid_option"),
         ({"density": np.ones(100), "self_crossing": "union"}, "invalid_option"),
     ],

@@ -130,7 +130,7 @@ fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyAny>)
         "bend" => options.bend = argument("a number from 0 to 1").float()?,
         "density" => {
             let it = argument(
-                "'width', one positive number per point of the outline, or a sequence of such arrays, for the outline and its holes; or None",
+                "'width', a number from 0 to 1, one positive number per point of the outline, or a sequence of such arrays, for the outline and its holes; or None",
             );
             options.density = it.optional(density)?;
         }
@@ -174,7 +174,10 @@ pub fn set_inflate(options: &mut InflateOptions, name: &str, value: &Bound<'_, P
 
 fn density(it: Argument<'_, '_>) -> PyResult<Density> {
     if it.value.is_instance_of::<PyString>() {
-        return it.word(&[("width", ())]).map(|()| Density::Width);
+        return it.word(&[("width", ())]).map(|()| Density::Width(1.0));
+    }
+    if let Ok(share) = it.value.extract::<f64>() {
+        return Ok(Density::Width(share));
     }
     // Arrays in a row may have different lengths: they are no array together.
     let mut rows = it.value.try_iter().map_err(|_| it.wrong_type())?;

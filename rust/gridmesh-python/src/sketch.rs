@@ -71,9 +71,9 @@ use crate::{options, reports};
 ///     size of the triangles vary a little. Several bends are tried, and straight lattices where they do not serve. Thin parts
 ///     are about as fine as on a straight lattice; tips sharper than 35 degrees may be blunted, by two edge lengths at most.
 ///     Without effect beside `angle` or `origin` and with boundary="grown".
-/// density : "width", (n,) array of positive numbers, or a sequence of such arrays, optional
-///     With `bend` above 0: where there should be more triangles: "width": in narrow parts; numbers: at each point of the
-///     outline so many times the triangles of elsewhere, as a sequence for the outline and its holes. It is a wish:
+/// density : "width", float, (n,) array of positive numbers, or a sequence of such arrays, optional
+///     With `bend` above 0: where there should be more triangles. "width": in narrow parts; one number from 0 to 1: so much of
+///     that ("width" is 1; at 0 all triangles should be of one size). An array: at each point of the outline so many times the triangles of elsewhere, as a sequence for the outline and its holes. It is a wish:
 ///     the map stays conformal, so that neighbouring triangles differ little in size. Numbers not together with
 ///     self_crossing="union".
 /// keep : Patch, optional

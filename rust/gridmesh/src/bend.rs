@@ -48,7 +48,8 @@ pub(crate) struct Ground {
     carrier: Carrier,
     /// Wishes for the number of triangles at the carrier's boundary vertices.
     densities: Option<Vec<f64>>,
-    asks_width: bool,
+    /// How much finer narrow parts are wished for.
+    narrow: Option<f64>,
     /// The first axis of the frame is an axis of symmetry.
     is_symmetric: bool,
     /// What lattice the plane is bent for.
@@ -71,21 +72,24 @@ impl Ground {
             Some(Density::PerPoint(given)) => Some(densities(contours, &carrier, given)?),
             _ => None,
         };
-        let asks_width = density == Some(&Density::Width);
-        Some(Self { frame, lines, carrier, densities, asks_width, is_symmetric, shape })
+        let narrow = match density {
+            Some(&Density::Width(share)) => Some(share),
+            _ => None,
+        };
+        Some(Self { frame, lines, carrier, densities, narrow, is_symmetric, shape })
     }
 
     /// True if sizes are asked for.
     fn is_asked(&self) -> bool {
-        self.asks_width || self.densities.is_some()
+        self.narrow.is_some() || self.densities.is_some()
     }
 
     /// The sizes that are wished for; none where floors do.
     fn wish(&self) -> Option<Wish> {
         match &self.densities {
             Some(densities) => Some(Wish::of_densities(densities)),
-            None if self.asks_width || self.shape == CellShape::Quad => {
-                Some(Wish::of_narrowness(&self.carrier))
+            None if self.narrow.is_some() || self.shape == CellShape::Quad => {
+                Some(Wish::of_narrowness(&self.carrier, self.narrow.unwrap_or(1.0)))
             }
             None => None,
         }
@@ -291,7 +295,11 @@ mod tests {
             })
             .collect();
         let ground = ground(&wavy, &[])?;
-        let bends = choose::candidates(&ground, 1.0, 2, Progress::NONE)?;
+        let mut bends = Vec::new();
+        choose::candidates(&ground, 1.0, 2, Progress::NONE, |bent, _| {
+            bends.push(bent);
+            Ok(false)
+        })?;
         assert!(!bends.is_empty());
         for bent in bends {
             let carrier = &ground.carrier;

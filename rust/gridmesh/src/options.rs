@@ -56,8 +56,8 @@ pub enum Mirror {
 /// Where a drawing should have more triangles than elsewhere.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Density {
-    /// In narrow parts.
-    Width,
+    /// In narrow parts, 0 to 1: at 1 they have up to eleven times the triangles, so far as others can be larger.
+    Width(f64),
     /// At each input point so many times the triangles of elsewhere: the outline's numbers, then those of
     /// the holes; a contour with no numbers has no wish.
     PerPoint(Vec<Vec<f64>>),
@@ -223,6 +223,11 @@ impl SketchOptions {
                 value: "given, with bend 0".to_owned(),
                 allowed: "none, or bend above 0: triangles of a straight lattice have one size",
             });
+        }
+        if let Some(Density::Width(share)) = self.density
+            && !(0.0..=1.0).contains(&share)
+        {
+            return refuse("density", share, "a number from 0 to 1, or one for each point");
         }
         if let Some(Density::PerPoint(given)) = &self.density {
             if let Some(&wrong) = given.iter().flatten().find(|&&d| !(d.is_finite() && d > 0.0)) {

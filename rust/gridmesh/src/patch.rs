@@ -5,6 +5,7 @@ pub(crate) mod expel;
 pub(crate) mod mirror;
 pub(crate) mod place;
 pub(crate) mod pockets;
+mod tips;
 
 use std::borrow::Cow;
 use std::ops::Range;

@@ -67,7 +67,7 @@ class _Options(TypedDict, total=False):
     self_crossing: Literal["error", "union"]
     proof_nodes: int
     bend: float | None
-    density: Literal["width"] | npt.ArrayLike | Sequence[npt.ArrayLike] | None
+    density: Literal["width"] | float | npt.ArrayLike | Sequence[npt.ArrayLike] | None
     relax: bool
     least: bool
     depth: float
@@ -164,7 +164,7 @@ def mesh_sketch(
     self_crossing: Literal["error", "union"] = "error",
     proof_nodes: int = 0,
     bend: float | None = None,
-    density: Literal["width"] | npt.ArrayLike | Sequence[npt.ArrayLike] | None = None,
+    density: Literal["width"] | float | npt.ArrayLike | Sequence[npt.ArrayLike] | None = None,
     keep: Patch | None = None,
     relax: bool = True,
     least: bool = True,

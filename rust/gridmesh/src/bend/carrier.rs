@@ -41,11 +41,17 @@ impl Line {
 
     /// The point at an arc length from zero to the whole length.
     pub fn at(&self, s: f64) -> DVec2 {
+        let (i, t) = self.place(s);
+        self.points[i].lerp(self.points[(i + 1) % self.points.len()], t)
+    }
+
+    /// The segment on which an arc length lies, and the parameter on it.
+    pub fn place(&self, s: f64) -> (usize, f64) {
         let n = self.points.len();
         let i = self.arcs.partition_point(|&a| a <= s).clamp(1, n) - 1;
         let (from, to) = (self.arcs[i], self.arcs[i + 1]);
         let t = if to > from { ((s - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
-        self.points[i].lerp(self.points[(i + 1) % n], t)
+        (i, t)
     }
 
     /// The drawn points strictly between two arc lengths.

@@ -42,16 +42,19 @@ const SHARES: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 /// Two rotations that differ by less than this everywhere, in radians, are one.
 const SAME: f64 = 0.06;
 
-/// The most promising bends of a drawing, at most `count`, best first.
+/// Hands over the most promising bends of a drawing, at most `count`, best first, each with what the next one is
+/// expected to cost in turns, until one is enough.
 ///
 /// # Errors
-/// [`Error::Cancelled`](crate::error::Error::Cancelled), [`Error::Solver`](crate::error::Error::Solver).
+/// [`Error::Cancelled`](crate::error::Error::Cancelled), [`Error::Solver`](crate::error::Error::Solver), and those
+/// of `is_enough`.
 pub(crate) fn candidates(
     ground: &Arc<Ground>,
     bend: f64,
     count: usize,
     progress: Progress<'_>,
-) -> Result<Vec<Bent>> {
+    mut is_enough: impl FnMut(Bent, f64) -> Result<bool>,
+) -> Result<()> {
     let tangents: Vec<Tangents> =
         ground.lines.iter().map(|line| Tangents::new(&line.points, &line.arcs)).collect();
     let operators = Operators::new(&ground.carrier, &tangents, ground.shape)?;
@@ -102,11 +105,16 @@ pub(crate) fn candidates(
         sized.truncate(count);
     }
     let mirrored = ground.is_symmetric.then(|| Mirrored::new(&ground.carrier));
-    let bent: Vec<Result<Option<Bent>>> = sized
-        .into_par_iter()
-        .map(|(_, rotation)| bent(ground, &solver, rotation.v, mirrored.as_ref(), &narrowest))
-        .collect();
-    bent.into_iter().filter_map(Result::transpose).collect()
+    let expected: Vec<f64> = sized.iter().map(|(cost, _)| *cost).collect();
+    for (k, (_, rotation)) in sized.into_iter().enumerate() {
+        let next = expected.get(k + 1).copied().unwrap_or(f64::INFINITY);
+        if let Some(bent) = bent(ground, &solver, rotation.v, mirrored.as_ref(), &narrowest)?
+            && is_enough(bent, next)?
+        {
+            break;
+        }
+    }
+    Ok(())
 }
 
 /// The drawing bent by a rotation, or by a part of it where it would overlap itself.

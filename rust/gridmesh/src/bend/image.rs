@@ -48,7 +48,12 @@ impl Image {
 pub struct BentContours {
     pub contours: Vec<ClosedCurve>,
     arcs: Vec<ArcMap>,
+    /// Whether the drawn points are among theirs.
+    pub in_detail: bool,
 }
+
+/// Samples of bent contours: for each contour the images, and their arc lengths on the drawing.
+pub type Samples = (Vec<Vec<DVec2>>, Vec<Vec<f64>>);
 
 /// Arc lengths at the points of a bent contour, and on the drawing; both from the bent contour's start.
 struct ArcMap {
@@ -64,6 +69,13 @@ impl BentContours {
     }
 
     fn with(carrier: &Carrier, image: &Image, lines: &[Line], in_detail: bool) -> Option<Self> {
+        let (rings, drawn) = Self::samples(carrier, image, lines, in_detail);
+        let lengths: Vec<f64> = lines.iter().map(Line::length).collect();
+        Self::of_rings(&rings, &drawn, &lengths, in_detail)
+    }
+
+    /// The images of the carrier's boundary and, in detail, of the drawn points between.
+    pub fn samples(carrier: &Carrier, image: &Image, lines: &[Line], in_detail: bool) -> Samples {
         let mut rings: Vec<Vec<DVec2>> = Vec::new();
         let mut drawn: Vec<Vec<f64>> = Vec::new();
         for (rim, line) in carrier.rims.iter().zip(lines) {
@@ -86,13 +98,17 @@ impl BentContours {
             rings.push(ring);
             drawn.push(at);
         }
-        let lengths: Vec<f64> = lines.iter().map(Line::length).collect();
-        Self::of_rings(&rings, &drawn, &lengths)
+        (rings, drawn)
     }
 
     /// Bent rings with the arc lengths on the drawing of their points, and the lengths of the drawn contours.
     /// None if the rings meet themselves or each other.
-    pub fn of_rings(rings: &[Vec<DVec2>], drawn: &[Vec<f64>], lengths: &[f64]) -> Option<Self> {
+    pub fn of_rings(
+        rings: &[Vec<DVec2>],
+        drawn: &[Vec<f64>],
+        lengths: &[f64],
+        in_detail: bool,
+    ) -> Option<Self> {
         let contours = read_contours(&rings[0], &rings[1..]).ok()?;
         let arcs = contours
             .iter()
@@ -100,7 +116,7 @@ impl BentContours {
             .zip(lengths)
             .map(|((contour, at), &length)| ArcMap::new(contour, at, length))
             .collect::<Option<Vec<ArcMap>>>()?;
-        Some(Self { contours, arcs })
+        Some(Self { contours, arcs, in_detail })
     }
 
     /// The arc length on the drawing at one on a bent contour; both unwrapped, increasing together.

@@ -20,11 +20,12 @@ pub struct Wish {
 }
 
 impl Wish {
-    /// Finer where the drawing is narrow; wide parts count little.
-    pub fn of_narrowness(carrier: &Carrier) -> Self {
+    /// Finer where the drawing is narrow, by this share of the most; wide parts count little.
+    pub fn of_narrowness(carrier: &Carrier, share: f64) -> Self {
         const LITTLE: f64 = 0.1;
         let sizes = narrowness(carrier);
         let shares = sizes.iter().map(|size| LITTLE + size / MOST).collect();
+        let sizes = sizes.iter().map(|size| share * size).collect();
         Self { sizes, shares }
     }
 

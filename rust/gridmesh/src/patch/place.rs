@@ -11,6 +11,7 @@ use crate::options::{CellShape, SketchOptions};
 use crate::patch::deviation::{Stray, beside, crossings, deviation};
 use crate::patch::expel::expel;
 use crate::patch::pockets::{Fans, pockets};
+use crate::patch::tips::{BLUNT, blunted, pinned_at, stray_off_tips, turning_at, worn};
 use crate::patch::{Loop, Patch};
 use crate::path::mapping::{Corner, corners, snap};
 use crate::path::outline::{Obstacle, Outline};
@@ -33,12 +34,6 @@ const CLOSE: f64 = 0.7;
 /// Triangles may be bent down to this angle for the drawing's sake.
 const LEAST_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
-/// On bent lattices corners are let go whose triangles have less than this angle, 17.5 degrees: half that of
-/// a drawn corner of 35. Where too much is cut off so, vertices are held so far from the tip along the
-/// drawing, in edges, on either side.
-const BLUNT: f64 = 17.5 * std::f64::consts::PI / 180.0;
-const BACK: f64 = 1.2;
-
 /// A vertex may lie this far outside the drawing, in an inlet that the boundary bridges.
 pub(crate) const INLET: f64 = 0.05;
 
@@ -57,10 +52,12 @@ pub(crate) struct Placed {
     pub(crate) arcs: Vec<Vec<f64>>,
     pub(crate) corners: usize,
     pub(crate) released_corners: usize,
-    /// Those of them that are no tips: a mesh without them looks worn.
-    pub(crate) released_wide: usize,
+    /// Corners wider than tips that the boundary cuts off: a mesh without them looks worn.
+    pub(crate) worn_corners: usize,
     /// Greatest distance of the drawing from the boundary, in edges.
     pub(crate) max_deviation: f64,
+    /// The same elsewhere than at blunted tips.
+    pub(crate) strayed: f64,
     /// Boundary edges that bridge an inlet with a mesh vertex in it.
     pub(crate) bridged_inlets: usize,
     /// Boundary edges that cross others.
@@ -156,6 +153,7 @@ where
         let corners = Band::<N>::corners(self.cells);
         let lattice_positions = &self.positions;
         let h = lattice.edge_length;
+        let is_blunt = blunt.is_some();
         let drawn: Vec<(Vec<DVec2>, Vec<f64>)> = contours
             .iter()
             .map(|contour| {
@@ -205,10 +203,7 @@ where
             if farthest > STRAY * h {
                 strays.retain(|stray| stray.distance > STRAY * h);
                 obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
-                held = match blunt {
-                    Some(blunt) => blunted(&mut strays, &rims, &lines, h, 2.0 * blunt),
-                    None => Vec::new(),
-                };
+                held = if is_blunt { blunted(&mut strays, &rims, &lines, h) } else { Vec::new() };
                 held.extend(to_hold(&strays, &rims, &lengths, h));
                 if held.is_empty() || !options.relax {
                     break;
@@ -233,8 +228,8 @@ where
             let crossing = if options.relax { crossings(&beside, &vertices, &arcs) } else { Vec::new() };
             let n_corners = found.iter().map(Vec::len).sum();
             let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
-            let wide = found.iter().flatten().filter(|corner| is_wide(corner.angle)).count();
-            let kept_wide = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| is_wide(angle)).count();
+            let near = farthest.min(CLOSE * h);
+            let strayed = if is_blunt { stray_off_tips(&strays, &lines, h, near) } else { farthest };
             let (triangles, quads) = (self.faces)(self.cells);
             let placed = Placed {
                 patch: Patch {
@@ -248,8 +243,9 @@ where
                 arcs: own,
                 corners: n_corners,
                 released_corners: n_corners - kept,
-                released_wide: wide.saturating_sub(kept_wide),
+                worn_corners: worn(contours, &beside, &found, h),
                 max_deviation: farthest / h,
+                strayed: strayed / h,
                 bridged_inlets,
                 crossings: crossing.len(),
             };
@@ -261,11 +257,13 @@ where
             if !options.relax || !first && valid.as_ref().is_some_and(|best| best.lost() == 0) {
                 break;
             }
+            held = if is_blunt { blunted(&mut strays, &rims, &lines, h) } else { Vec::new() };
             strays.extend(occupied);
             strays.extend(crossing);
             strays.sort_by_key(|stray| (stray.contour, stray.edge));
             strays.dedup_by_key(|stray| (stray.contour, stray.edge));
-            held = to_hold(&strays, &rims, &lengths, h);
+            strays.retain(|stray| !is_chosen(&held, &rims[stray.contour], stray.edge));
+            held.extend(to_hold(&strays, &rims, &lengths, h));
             if held.is_empty() {
                 break;
             }
@@ -319,7 +317,7 @@ fn loops(
         let mut placed = Loop { start: rim.start as u32, length: contour.length(), ..Loop::default() };
         let mut at = Vec::with_capacity(rim.s.len());
         for (i, &s) in rim.s.iter().enumerate() {
-            let s = if rim.pinned[i] { nearest_drawn(contour, s * h) } else { contour.wrap(s * h) };
+            let s = if rim.pinned[i] { pinned_at(contour, s * h, h) } else { contour.wrap(s * h) };
             at.push(contour.wrap(s));
             vertices[rim.start + i] = contour.point_at(s);
             placed.arc.push(contour.input_arc(s));
@@ -331,16 +329,6 @@ fn loops(
         own.push(at);
     }
     (loops, arcs, own)
-}
-
-/// The angle of the corner at arc length `s`, however its vertex came there; zero if there is none.
-fn turning_at(contour: &ClosedCurve, corners: &[Corner], s: f64, h: f64) -> f64 {
-    const SAME: f64 = 1e-6;
-    let gap = |corner: &Corner| {
-        let turns = (corner.arc * h - s) / contour.length();
-        (turns - turns.round()).abs() * contour.length()
-    };
-    corners.iter().find(|corner| gap(corner) <= SAME * h).map_or(0.0, |corner| corner.angle)
 }
 
 /// The nearer end of each strayed edge and the arc position of the farthest point, in edges, where it
@@ -367,39 +355,10 @@ fn to_hold(strays: &[Stray], rims: &[Rim], lengths: &[f64], h: f64) -> Vec<(usiz
     chosen
 }
 
-/// Takes strays at drawn tips sharper than `sharp`, in radians, out of a list: the ends of the edges that cut those off
-/// are to be held at either side of the tip, [`BACK`] from it.
-fn blunted(
-    strays: &mut Vec<Stray>,
-    rims: &[Rim],
-    lines: &[Contour<'_>],
-    h: f64,
-    sharp: f64,
-) -> Vec<(usize, f64)> {
-    let mut held = Vec::new();
-    strays.retain(|stray| {
-        let (rim, line) = (&rims[stray.contour], &lines[stray.contour]);
-        let at = stray.arc / h;
-        let tip = line.point_at(line.wrap(at));
-        let [a, b] = [-1.0, 1.0].map(|away| line.point_at(line.wrap(at + away)) - tip);
-        let after = (stray.edge + 1) % rim.s.len();
-        // The last edge ends at the first vertex, a lap on.
-        let lap = if after == 0 { line.length() } else { 0.0 };
-        let (before, behind) = (at - rim.s[stray.edge], rim.s[after] + lap - at);
-        let is_free = !rim.held[stray.edge] && !rim.held[after] && before > 0.0 && behind > 0.0;
-        let is_tip = a.angle_to(b).abs() < sharp && is_free;
-        if is_tip {
-            held.push((rim.start + stray.edge, at - before.min(BACK)));
-            held.push((rim.start + after, at + behind.min(BACK) - lap));
-        }
-        !is_tip
-    });
-    held
-}
-
-/// Whether a drawn corner that turns by this angle is wider than the tips that are blunted.
-fn is_wide(turning: f64) -> bool {
-    turning != 0.0 && turning < std::f64::consts::PI - 2.0 * BLUNT
+/// Whether an end of an edge is to be held.
+fn is_chosen(held: &[(usize, f64)], rim: &Rim, edge: usize) -> bool {
+    let ends = [edge, (edge + 1) % rim.s.len()];
+    held.iter().any(|&(v, _)| ends.iter().any(|end| rim.start + end == v))
 }
 
 /// The corners of a contour, with arc lengths in edges.

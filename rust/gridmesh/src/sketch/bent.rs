@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::centroid;
 use crate::bend::{Bent, Ground, choose};
@@ -65,7 +64,7 @@ impl Job<'_> {
             let faults = faults(&placed);
             let bent = Some((Arc::new(bent), lattice));
             let found = Found { faults, bent, outline, placed, mirror_error };
-            let is_good = found.faults <= SLIGHT && found.starved() == 0.0 && found.placed.released_wide == 0;
+            let is_good = found.faults <= SLIGHT && found.starved() == 0.0 && found.placed.worn_corners == 0;
             if best.as_ref().is_none_or(|best| found.score() < best.score()) {
                 best = Some(found);
             }
@@ -90,10 +89,16 @@ impl Job<'_> {
         else {
             return Ok(Vec::new());
         };
-        let bends = choose::candidates(&Arc::new(ground), self.options.bend, TRACED, progress)?;
-        let found: Vec<Result<Option<(Bent, Lattice, Outline)>>> =
-            bends.into_par_iter().map(|bent| self.bent_outline(asked, bent, progress)).collect();
-        found.into_iter().filter_map(Result::transpose).collect()
+        let mut found = Vec::new();
+        let is_enough = |bent: Bent, next: f64| {
+            let Some(traced) = self.bent_outline(asked, bent, progress)? else { return Ok(false) };
+            let cost = traced.0.price + traced.2.cost;
+            found.push(traced);
+            // What the directions promise is hardly ever better on the lattice.
+            Ok(self.options.cells == CellShape::Triangle && cost <= next)
+        };
+        choose::candidates(&Arc::new(ground), self.options.bend, TRACED, progress, is_enough)?;
+        Ok(found)
     }
 
     /// The boundary on the straight lattice of a bent plane, where there is one.

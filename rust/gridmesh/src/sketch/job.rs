@@ -62,7 +62,7 @@ impl Found {
     /// Cost, faults, starved triangles and lost corners in turns.
     pub(crate) fn score(&self) -> f64 {
         let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
-        let corners = TURNS_OF_CORNER * self.placed.released_wide as f64;
+        let corners = TURNS_OF_CORNER * self.placed.worn_corners as f64;
         self.outline.cost + price + TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved() + corners
     }
 
@@ -238,7 +238,7 @@ impl Job<'_> {
         let price = found.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
         found.faults <= SLIGHT
             && found.starved() == 0.0
-            && found.placed.released_wide == 0
+            && found.placed.worn_corners == 0
             && price < 1.0
             && found.outline.turns(self.options.cells) <= FEW * self.contours.len()
     }
@@ -357,7 +357,7 @@ pub(crate) fn faults(placed: &Placed) -> f64 {
     let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
     // A patch that has lost a part of the drawing serves only to say where.
     let lost = 100.0 * placed.lost() as f64;
-    lost + 4.0 * starved + (placed.max_deviation - distance).max(0.0)
+    lost + 4.0 * starved + (placed.strayed - distance).max(0.0)
 }
 
 /// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies

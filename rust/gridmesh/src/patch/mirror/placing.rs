@@ -157,8 +157,8 @@ impl Both<'_> {
                 lattice: patch.lattice,
             },
             released_corners: self.placed.corners.saturating_sub(kept),
-            released_wide: self.placed.released_wide,
             max_deviation: farthest / h,
+            strayed: self.placed.strayed.min(farthest / h),
             bridged_inlets: found.occupied.len(),
             crossings: crossing,
             ..self.placed.clone()
