@@ -354,7 +354,7 @@ mod tests {
     fn circle(n: usize) -> Vec<DVec2> {
         let circle: Vec<DVec2> =
             (0..n).map(|k| DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect();
-        Loop::new(&circle).developed(1.0, 0.2)
+        Loop::new(&circle, Progress::NONE).unwrap().developed(1.0, 0.2)
     }
 
     #[test]
