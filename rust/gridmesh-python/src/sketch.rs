@@ -64,7 +64,7 @@ use crate::{options, reports};
 ///     "error": an outline that crosses itself is refused. "union": its outer outline is taken.
 /// proof_nodes : int
 ///     Bounds the search that proves optimality where the first solution had conflicts: so many parts of the search
-///     space at most, and for each lattice angle tried 15 million states of it, a second or two; 0 beside `mirror`.
+///     space at most, and for each lattice angle tried 6 million states of it, under a second; 0 beside `mirror`.
 /// bend : float, optional
 ///     How far the lattice may bend with the outline, from 0 (straight) to 1; None: 1. A conformal map takes the
 ///     outline to where it runs along lattice directions, which leaves far fewer irregular vertices and lets the

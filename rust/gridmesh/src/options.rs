@@ -118,7 +118,7 @@ pub struct SketchOptions {
     /// What to do with an outline that crosses itself.
     pub self_crossing: SelfCrossing,
     /// Search nodes spent on proving a boundary optimal whose first solution had conflicts, at most; a proof ends
-    /// after 15 million states too, a second or two, whatever this number. Not beside `mirror`.
+    /// after 6 million states too, under a second, whatever this number. Not beside `mirror`.
     pub proof_nodes: usize,
     /// How far the lattice may bend with the drawing, 0 to 1; 0 is a straight lattice. Without effect
     /// beside a given `angle` or `origin` and with `boundary` grown.

@@ -1,7 +1,10 @@
 //! Progress reports and cancelling.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
 
 use crate::error::{Error, Result};
 
@@ -87,6 +90,46 @@ impl<'a> Progress<'a> {
     }
 }
 
+/// Time between two questions while work is done [`aside`].
+const ASK_EVERY: Duration = Duration::from_millis(10);
+
+/// Does work that cannot ask whether to go on, on a thread of its own, while this one asks.
+///
+/// If the answer is no, the work is left to end by itself, unheard. Without a callback it is done here.
+///
+/// # Errors
+/// [`Error::Cancelled`] at once; [`Error::Internal`] if the work panics.
+pub(crate) fn aside<T: Send + 'static>(
+    progress: Progress<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Result<T> {
+    if progress.callback.is_none() {
+        return Ok(work());
+    }
+    let work = Arc::new(Mutex::new(Some(work)));
+    let take = |work: &Mutex<Option<_>>| work.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let (sender, made) = channel();
+    let own = Arc::clone(&work);
+    let thread = thread::Builder::new().spawn(move || {
+        // Nobody waits for it any more once the answer was no.
+        let _ = take(&own).map(|work: _| sender.send(work()));
+    });
+    if thread.is_err()
+        && let Some(work) = take(&work)
+    {
+        return Ok(work());
+    }
+    loop {
+        match made.recv_timeout(ASK_EVERY) {
+            Ok(made) => return Ok(made),
+            Err(RecvTimeoutError::Timeout) => progress.report(0.0)?,
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(Error::Internal { reason: "a thread of a computation died" });
+            }
+        }
+    }
+}
+
 /// Progress that only rises, for work that is done side by side or begins again.
 ///
 /// What is lower than before is passed on as the highest fraction so far. Once the callback has asked to
@@ -128,6 +171,21 @@ mod tests {
         let answers = [0.2, 0.1, 0.5, 0.3, 0.9].map(|f| rising.report(f));
         assert_eq!(answers, [true, true, true, false, false]);
         assert_eq!(*seen.lock().unwrap_or_else(PoisonError::into_inner), [0.2, 0.2, 0.5, 0.5]);
+    }
+
+    #[test]
+    fn work_aside_is_left_when_the_answer_is_no() {
+        let asked = AtomicU64::new(0);
+        let callback = |_: f64| asked.fetch_add(1, Ordering::Relaxed) < 2;
+        let (go_on, wait) = channel::<()>();
+        // Without an answer it would wait for ever.
+        let made = aside(Progress::new(&callback), move || wait.recv().is_ok());
+        assert_eq!(made, Err(Error::Cancelled));
+        assert_eq!(asked.into_inner(), 3);
+        drop(go_on);
+        let yes = |_: f64| true;
+        assert_eq!(aside(Progress::new(&yes), || 6 * 7), Ok(42));
+        assert_eq!(aside(Progress::NONE, || 6 * 7), Ok(42));
     }
 
     #[test]

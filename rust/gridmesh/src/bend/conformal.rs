@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::geometry::laplace::{Factor, Pattern, cotangent_weights};
 use crate::geometry::topology::Topology;
 use crate::options::CellShape;
+use crate::progress::Progress;
 
 /// What keeps the operators definite whose constants are free.
 const FLOOR: f64 = 1e-9;
@@ -46,14 +47,14 @@ pub struct Rotation {
 /// Operators and one factorisation for each boundary weight.
 pub struct Solver<'a> {
     pub operators: &'a Operators,
-    neumann: Factor<'a>,
+    neumann: Factor,
 }
 
 impl Operators {
     pub fn new(carrier: &Carrier, tangents: &[Tangents], shape: CellShape) -> Result<Self> {
         let topology = Topology::new(carrier.vertices.len(), &carrier.triangles);
         let weights = cotangent_weights(&topology, &carrier.vertices, &carrier.triangles)?;
-        let pattern = Pattern::new(&topology, 0)?;
+        let pattern = Pattern::new(&topology, 0, Progress::NONE)?;
         let mut at_rim = Vec::new();
         for (rim, tangents) in carrier.rims.iter().zip(tangents) {
             at_rim.extend(rim.arcs.iter().map(|&s| tangents.at(s)));
@@ -67,15 +68,15 @@ impl Operators {
     }
 
     /// The Laplacian with `beta` times the length of contour that wants a direction on its diagonal.
-    pub fn robin(&self, beta: f64) -> Result<Factor<'_>> {
+    pub fn robin(&self, beta: f64) -> Result<Factor> {
         let diagonal = |v: usize| self.pulls.get(v).map_or(0.0, |pull| beta * pull);
-        self.pattern.factor(&self.topology, &self.weights, diagonal)
+        self.pattern.factor(&self.topology, &self.weights, diagonal, Progress::NONE)
     }
 
     pub fn solver(&self) -> Result<Solver<'_>> {
         Ok(Solver {
             operators: self,
-            neumann: self.pattern.factor(&self.topology, &self.weights, |_| FLOOR)?,
+            neumann: self.pattern.factor(&self.topology, &self.weights, |_| FLOOR, Progress::NONE)?,
         })
     }
 
@@ -132,13 +133,7 @@ impl Operators {
     /// `1/2 |grad v|^2 + beta/2 |v - (step m - tangent)|^2` with `m` the directions of least cost for it,
     /// in turns, from even rotations by `starts` on. `robin` is the factor for `beta`. One solve a
     /// round for all.
-    pub fn rotations(
-        &self,
-        starts: &[f64],
-        beta: f64,
-        robin: &Factor<'_>,
-        price: f64,
-    ) -> Result<Vec<Rotation>> {
+    pub fn rotations(&self, starts: &[f64], beta: f64, robin: &Factor, price: f64) -> Result<Vec<Rotation>> {
         let n = self.topology.start.len() - 1;
         let mut found: Vec<(Vec<f64>, Vec<Directions>)> =
             starts.iter().map(|&start| (vec![start; n], Vec::new())).collect();

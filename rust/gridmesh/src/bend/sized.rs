@@ -22,7 +22,7 @@ impl Solver<'_> {
     pub fn sized(
         &self,
         rotation: &Rotation,
-        pull: (f64, &Factor<'_>),
+        pull: (f64, &Factor),
         (gamma, rounds): (f64, usize),
         wish: &Wish,
     ) -> Result<Vec<f64>> {
@@ -45,7 +45,7 @@ impl Solver<'_> {
         &self,
         carrier: &Carrier,
         rotation: &Rotation,
-        pull: (f64, &Factor<'_>),
+        pull: (f64, &Factor),
         (gamma, rounds, steps): (f64, usize, usize),
         floors: &[f64],
     ) -> Result<Vec<f64>> {
@@ -80,7 +80,7 @@ impl Solver<'_> {
         &self,
         v: &mut [f64],
         still: &[f64],
-        (beta, robin): (f64, &Factor<'_>),
+        (beta, robin): (f64, &Factor),
         steps: usize,
         aim: &Aim,
     ) -> Result<()> {

@@ -80,7 +80,7 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
     let sheet = patch.of_triangles();
     let topology = Topology::new(patch.vertices.len(), &sheet.triangles);
     progress.report(0.05)?;
-    let pattern = Pattern::new(&topology, first)?;
+    let pattern = Pattern::new(&topology, first, progress.part(0.05, 0.05))?;
     progress.report(0.1)?;
     let (low, high) = patch
         .vertices
@@ -156,7 +156,7 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
     }
     progress.report(0.85)?;
     let apart = top[first..].iter().zip(&bottom).all(|(a, b)| a.z >= 0.0 && b.z <= 0.0 && a.z > b.z);
-    let mut surface = Surface::assemble(patch, top, Some(bottom), options.uv);
+    let mut surface = Surface::assemble(patch, top, Some(bottom), options.uv, || progress.report(0.85))?;
     surface.report.shortened = front.shortened;
     surface.report.repaired = height.lifted + usize::from(height.limited);
     clock.stage("assemble");

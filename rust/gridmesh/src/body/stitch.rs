@@ -1,5 +1,6 @@
 //! Flat surfaces: a patch as a sheet, or two copies of it as a pillow.
 
+use std::convert::Infallible;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
@@ -28,7 +29,8 @@ pub fn flat(patch: &Patch) -> Surface {
 fn build(patch: &Patch, back: Option<Vec<DVec3>>) -> Surface {
     let clock = Instant::now();
     let front = patch.vertices.iter().map(|p| p.extend(0.0)).collect();
-    let mut surface = Surface::assemble(patch, front, back, UvLayout::Apart);
+    let go_on = || Ok::<(), Infallible>(());
+    let Ok(mut surface) = Surface::assemble(patch, front, back, UvLayout::Apart, go_on);
     surface.report.embedded = projects_well(patch, &patch.vertices);
     if !surface.report.embedded {
         surface.report.self_intersections = crate::geometry::embed::count_self_intersections(

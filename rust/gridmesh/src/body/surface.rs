@@ -83,13 +83,14 @@ pub struct SurfaceReport {
 
 impl Surface {
     /// The patch's triangles at `front`, with a back sheet at `back` (interior vertices only) unless
-    /// that is none; topology and measures checked, self-intersections left at zero.
-    pub(crate) fn assemble(
+    /// that is none; topology and measures checked, self-intersections left at zero. `go_on` is asked between these.
+    pub(crate) fn assemble<E>(
         patch: &Patch,
         front: Vec<DVec3>,
         back: Option<Vec<DVec3>>,
         layout: UvLayout,
-    ) -> Surface {
+        go_on: impl Fn() -> Result<(), E>,
+    ) -> Result<Surface, E> {
         let first = patch.n_boundary() as u32;
         let offset = patch.vertices.len() as u32 - first;
         let closed = back.is_some();
@@ -104,7 +105,9 @@ impl Surface {
             triangles[half..].iter_mut().for_each(|t| *t = reversed(t.map(behind)));
             quads.extend(patch.quads.iter().map(|q| reversed(q.map(behind))));
         }
+        go_on()?;
         let check = check_mesh(vertices.len(), &triangles);
+        go_on()?;
         let report = SurfaceReport {
             triangles: if is_quads { 0 } else { triangles.len() },
             quads: quads.len(),
@@ -123,13 +126,15 @@ impl Surface {
             },
             ..SurfaceReport::default()
         };
+        go_on()?;
         let silhouette = patch.loops.iter().map(|contour| contour.vertices().collect()).collect();
         let corner = patch.loops.iter().map(|contour| contour.corner.clone()).collect();
         let uv = Texture::new(patch, closed, layout).coordinates(patch);
         if is_quads {
             triangles.clear();
         }
-        Surface { vertices, triangles, quads, silhouette, corner, uv, report }
+        go_on()?;
+        Ok(Surface { vertices, triangles, quads, silhouette, corner, uv, report })
     }
 
     /// The triangles, or each quad cut in two.

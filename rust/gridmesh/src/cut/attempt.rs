@@ -70,9 +70,10 @@ impl<'a> Attempt<'a> {
         for _ in 0..RELEASES {
             progress.report(0.5)?;
             let crossed = self.edges.named(vertices, tolerance, &snaps.wanted, &snaps.released);
+            let names = crossed.names();
             match split::split(vertices, faces, self.sheet, &self.met, crossed, tolerance) {
                 Ok(mut parted) => {
-                    if self.settle(&mut parted, tolerance, &mut snaps, tally, progress)? {
+                    if self.settle(&mut parted, tolerance, (&mut snaps, &names), tally, progress)? {
                         return Ok(Ok(parted));
                     }
                 }
@@ -91,13 +92,13 @@ impl<'a> Attempt<'a> {
         Ok(Err(failed))
     }
 
-    /// Makes the edges along the cut even where that is asked for. Returns false if the cut must be drawn anew, with
-    /// these snaps.
+    /// Makes the edges along the cut even where that is asked for. Returns false if the cut, with crossings of these names,
+    /// must be drawn anew with these snaps.
     fn settle(
         &self,
         parted: &mut Parted,
         tolerance: Tolerance,
-        snaps: &mut Snaps,
+        (snaps, names): (&mut Snaps, &[u32]),
         tally: &mut Tally,
         progress: Progress<'_>,
     ) -> Result<bool> {
@@ -122,7 +123,10 @@ impl<'a> Attempt<'a> {
         let again = |in_the_way: Vec<u32>| {
             let before = wanted.len();
             wanted.extend(in_the_way.into_iter().filter(|v| !released.contains(v)));
-            *redrawn <= REDRAWN && wanted.len() > before
+            let is_other = |wanted: &FxHashSet<u32>| {
+                self.edges.named(vertices, tolerance, wanted, released).names() != names
+            };
+            *redrawn <= REDRAWN && wanted.len() > before && is_other(wanted)
         };
         let off = |v: u32| match released.contains(&v) {
             true => f64::INFINITY,

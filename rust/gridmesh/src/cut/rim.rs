@@ -6,6 +6,7 @@
 pub(crate) mod beside;
 pub(crate) mod defect;
 pub(crate) mod ground;
+mod improve;
 pub(crate) mod line;
 pub(crate) mod nearness;
 pub(crate) mod reshape;
@@ -24,6 +25,7 @@ use super::input::{Polygons, triangles};
 use super::report::Tally;
 use crate::cut::divide::parted::{Part, Parted, SEAM};
 use crate::cut::rim::defect::defect;
+use crate::cut::rim::improve::improve;
 use crate::cut::rim::nearness::closest;
 use crate::cut::rim::slide::Course;
 use crate::cut::rim::spacing::resample;
@@ -39,9 +41,6 @@ const SMALL: f64 = 0.42;
 
 /// Rounds of collapsing, flipping and splitting.
 const ROUNDS: usize = 8;
-
-/// Vertices of the line may go for better angles while its edges stay shorter than this, in edge lengths.
-const LONGEST: f64 = 1.5;
 
 /// Vertices of the line slide where angles are below this.
 const SLIDE: f64 = 0.3;
@@ -68,10 +67,6 @@ pub(super) struct Through<'a> {
 
 /// Triangles looked at between two reports of progress.
 const BATCH: usize = 32;
-
-/// The longest edge of a triangle is halved if the triangle is at least this wide across it, in edge lengths: narrower
-/// ones are between walls, and no better in halves.
-const WIDE: f64 = 0.1;
 
 /// Evens out the line and the faces along it. Returns false if the cut must be repeated: `again` gets the old vertices
 /// beside the line whose triangles stay thin, in order, and says whether to snap the line to them.
@@ -293,105 +288,6 @@ fn clear_beside(strip: &mut Strip<'_>, distance: f64, progress: Progress<'_>) ->
             changes += 1;
         } else {
             strip.give_up(x, Trial::Clear);
-        }
-    }
-    Ok(changes)
-}
-
-/// One round of edits to triangles with small angles.
-fn improve(
-    strip: &mut Strip<'_>,
-    kept: &FxHashSet<u32>,
-    length: f64,
-    round: usize,
-    progress: Progress<'_>,
-) -> Result<usize> {
-    let mut changes = 0;
-    // Near the line: its triangles, and those that were made.
-    let touches = |strip: &Strip<'_>, part: &Part| {
-        part.corners.iter().any(|&v| v as usize >= strip.parted.n_old || !strip.on_line(v).is_empty())
-    };
-    let fresh = std::mem::take(&mut strip.fresh);
-    let looked_at: BTreeSet<u32> = if round == 0 {
-        (0..strip.parts.len() as u32).collect()
-    } else {
-        // Only what has changed, and what is next to it.
-        let corners = fresh.iter().filter_map(|&t| strip.part(t)).flat_map(|p| p.corners);
-        corners.flat_map(|v| strip.triangles_at(v)).copied().collect()
-    };
-    let is_sharp =
-        |t: &u32| strip.part(*t).is_some_and(|p| touches(strip, p) && strip.min_angle(p.corners) < SMALL);
-    let mut queue: BTreeSet<u32> = looked_at.into_iter().filter(is_sharp).collect();
-    let mut budget = 8 * queue.len() + 64;
-    while let Some(t) = queue.pop_first() {
-        if budget == 0 {
-            break;
-        }
-        budget -= 1;
-        if budget.is_multiple_of(BATCH) {
-            progress.report(0.0)?;
-        }
-        let Some(part) = strip.part(t).copied() else { continue };
-        let least = strip.min_angle(part.corners);
-        if least >= SMALL {
-            continue;
-        }
-        let mut edges = [0, 1, 2].map(|k| {
-            let (a, b) = (part.corners[k], part.corners[(k + 1) % 3]);
-            (strip.position(a).distance(strip.position(b)), a, b)
-        });
-        edges.sort_by(|x, y| y.0.total_cmp(&x.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-        let mut done = edges.iter().any(|&(_, a, b)| strip.flip(a, b));
-        if !done {
-            // An edge goes, the shortest if it may, if that leaves better angles than there were.
-            done = edges.iter().rev().any(|&(short, a, b)| {
-                [(a, b), (b, a)].into_iter().any(|(u, v)| {
-                    if short > 0.75 * length && least > POOR
-                        || short > length
-                        || (kept.contains(&u) && !strip.may_go(u, v, LONGEST * length))
-                    {
-                        return false;
-                    }
-                    let worst = strip.triangles_at(u).iter().filter_map(|&t| strip.part(t));
-                    let worst = worst.map(|p| strip.min_angle(p.corners)).fold(f64::INFINITY, f64::min);
-                    strip.collapse(u, v, worst.max(1e-3) * 1.05)
-                })
-            });
-        }
-        if !done && round + 2 < ROUNDS {
-            // The longest edge is halved if it is much longer than the others should be.
-            let (long, a, b) = edges[0];
-            let [p, q, r] = part.corners.map(|v| strip.position(v));
-            if long > 1.6 * length
-                && long > 1.6 * edges[2].0
-                && (q - p).cross(r - p).length() > WIDE * length * long
-                && !strip.parted.cut.contains_key(&(a.min(b), a.max(b)))
-                && let Some(m) = strip.split(a, b, 0.5)
-            {
-                done = true;
-                queue.extend(strip.triangles_at(m));
-            }
-        }
-        if done {
-            changes += 1;
-            for v in part.corners {
-                let own = strip.triangles_at(v).iter().copied();
-                queue.extend(own.filter(|&t| strip.part(t).is_some_and(|p| touches(strip, p))));
-            }
-        }
-    }
-    let new = (strip.parted.n_old..strip.parted.n_old + strip.parted.nodes.len()).map(|v| v as u32);
-    for (k, v) in new.collect::<Vec<_>>().into_iter().enumerate() {
-        if k % BATCH == 0 {
-            progress.report(1.0)?;
-        }
-        if strip.triangles_at(v).is_empty() || strip.is_hopeless(v, Trial::Centre) {
-            continue;
-        }
-        if strip.centre(v) {
-            changes += 1;
-        } else {
-            strip.give_up(v, Trial::Centre);
         }
     }
     Ok(changes)

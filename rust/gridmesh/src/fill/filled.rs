@@ -103,7 +103,17 @@ impl Fill {
     /// # Errors
     /// [`Error::InvalidOption`] if the number of values does not fit, [`Error::NotFinite`].
     pub fn extend(&self, values: &[f64], columns: usize) -> Result<Vec<f64>> {
-        self.shape.extend(values, columns)
+        self.extended(values, columns, Progress::NONE)
+    }
+
+    /// As [`Fill::extend`], and asks whether to go on.
+    pub(crate) fn extended(
+        &self,
+        values: &[f64],
+        columns: usize,
+        progress: Progress<'_>,
+    ) -> Result<Vec<f64>> {
+        self.shape.extend(values, columns, progress)
     }
 
     /// The new vertices if those of the mesh were at `vertices`: the same triangles, solved again. For

@@ -1,6 +1,7 @@
 //! Replaces a region of a mesh by a grid patch on the same boundary and the same surface.
 
 use glam::{DVec2, DVec3};
+use rstar::primitives::CachedEnvelope;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
 use super::parallel::steady;
@@ -202,9 +203,9 @@ fn through_the_plane(
         let weights =
             work.cotangents(&positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
         progress.report(0.0)?;
-        let membrane = Membrane::new(&work)?;
+        let membrane = Membrane::new(&work, progress.part(0.0, 0.0))?;
         progress.report(0.0)?;
-        let inside = membrane.harmonic(&weights, |v| flat[v].to_array())?;
+        let inside = membrane.harmonic(&weights, |v| flat[v].to_array(), progress.part(0.0, 0.0))?;
         laid.extend(inside.into_iter().map(DVec2::from));
     }
     progress.report(0.0)?;
@@ -242,7 +243,7 @@ fn through_the_plane(
 
 /// The region as a set of triangles to project to.
 struct Surface {
-    tree: RTree<Facet>,
+    tree: RTree<CachedEnvelope<Facet>>,
 }
 
 struct Facet {
@@ -252,7 +253,10 @@ struct Facet {
 
 impl Surface {
     fn new(vertices: &[DVec3], numbers: &[u32], region: &[[u32; 3]]) -> Self {
-        let facet = |(&face, t): (&u32, &[u32; 3])| Facet { face, corners: t.map(|v| vertices[v as usize]) };
+        // Their boxes are asked for again and again while the tree is made.
+        let facet = |(&face, t): (&u32, &[u32; 3])| {
+            CachedEnvelope::new(Facet { face, corners: t.map(|v| vertices[v as usize]) })
+        };
         Surface { tree: RTree::bulk_load(numbers.iter().zip(region).map(facet).collect()) }
     }
 

@@ -215,7 +215,8 @@ impl Several<'_> {
         if self.options.smooth == Smooth::Flat {
             let mut film = all(even);
             let weights = work.cotangents(&film).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-            let found = Membrane::new(work)?.harmonic(&weights, |v| film[v].to_array())?;
+            let found =
+                Membrane::new(work, progress)?.harmonic(&weights, |v| film[v].to_array(), progress)?;
             for (v, p) in work.inner().zip(found) {
                 film[v] = p.into();
             }

@@ -267,7 +267,9 @@ fn settle(
             weights[k * n + v] *= held[v];
         }
     }
-    Pattern::new("bone weights", col_ptr, row_idx)?.factor(&entries)?.solve(weights, bones)
+    Pattern::new("bone weights", col_ptr, row_idx, Progress::NONE)?
+        .factor(entries, Progress::NONE)?
+        .solve(weights, bones)
 }
 
 /// By vertex, the strongest alone, summing to 1.

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::cholesky::Pattern;
 use super::disjoint::Disjoint;
 use crate::error::{Error, Result};
+use crate::progress::Progress;
 
 /// Cotangents are bounded, as of triangles whose doubled area is this share of their squared side.
 const THINNEST: f64 = 1e-12;
@@ -72,7 +73,9 @@ pub fn harmonic(
         entries.push(sum);
         col_ptr.push(row_idx.len());
     }
-    Pattern::new("extension", col_ptr, row_idx)?.factor(&entries)?.solve(&mut rhs, columns)?;
+    Pattern::new("extension", col_ptr, row_idx, Progress::NONE)?
+        .factor(entries, Progress::NONE)?
+        .solve(&mut rhs, columns)?;
     write_back(triangles, &unknown, &rhs, values, columns);
     Ok(())
 }

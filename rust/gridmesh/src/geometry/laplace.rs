@@ -6,6 +6,7 @@ use super::cholesky;
 pub(crate) use super::cholesky::Factor;
 use super::topology::Topology;
 use crate::error::{Error, Result};
+use crate::progress::Progress;
 
 fn failed(reason: impl ToString) -> Error {
     Error::Solver { stage: "inflation", reason: reason.to_string() }
@@ -60,7 +61,7 @@ pub(crate) struct Pattern {
 
 impl Pattern {
     /// Fixes the vertices `0..first`. O(n log n) in practice.
-    pub fn new(topology: &Topology, first: usize) -> Result<Self> {
+    pub fn new(topology: &Topology, first: usize, progress: Progress<'_>) -> Result<Self> {
         let n_vertices = topology.start.len() - 1;
         let mut col_ptr = vec![0];
         let mut row_idx = Vec::with_capacity(topology.near.len() / 2 + n_vertices);
@@ -70,7 +71,8 @@ impl Pattern {
             row_idx.push(v - first);
             col_ptr.push(row_idx.len());
         }
-        Ok(Pattern { first, pattern: cholesky::Pattern::new("inflation", col_ptr, row_idx)? })
+        let pattern = cholesky::Pattern::new("inflation", col_ptr, row_idx, progress)?;
+        Ok(Pattern { first, pattern })
     }
 
     /// Number of free vertices.
@@ -84,7 +86,8 @@ impl Pattern {
         topology: &Topology,
         weights: &[f64],
         diagonal: impl Fn(usize) -> f64,
-    ) -> Result<Factor<'_>> {
+        progress: Progress<'_>,
+    ) -> Result<Factor> {
         let mut values = Vec::with_capacity(self.pattern.entries());
         for v in self.first..self.first + self.len() {
             let mut sum = diagonal(v);
@@ -97,6 +100,6 @@ impl Pattern {
             }
             values.push(sum);
         }
-        self.pattern.factor(&values)
+        self.pattern.factor(values, progress)
     }
 }

@@ -1,5 +1,6 @@
 //! From closed lattice paths to the triangles between them.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 
 use crate::lattice::axial::Axial;
@@ -17,11 +18,23 @@ pub struct Region {
     pub n_boundary: usize,
 }
 
+/// Triangles between two questions whether to go on.
+const ASK_EVERY: usize = 1 << 15;
+
 /// Collects the triangles with the paths on their right or left by parity: those that an odd
 /// number of path edges separates from the outside.
 ///
 /// The paths must be simple and disjoint. O(number of triangles + rows of the layout).
 pub fn assemble(paths: &[Vec<Axial>]) -> Region {
+    let Ok(region) = assemble_asking(paths, || Ok::<(), Infallible>(()));
+    region
+}
+
+/// As [`assemble`], and asks again and again whether to go on.
+pub(crate) fn assemble_asking<E>(
+    paths: &[Vec<Axial>],
+    mut go_on: impl FnMut() -> Result<(), E>,
+) -> Result<Region, E> {
     const NONE: u32 = u32::MAX;
     let mut points: Vec<Axial> = paths.concat();
     let n_boundary = points.len();
@@ -53,7 +66,12 @@ pub fn assemble(paths: &[Vec<Axial>]) -> Region {
     let mut triangles = Vec::with_capacity(n_triangles);
     // Euler, for a disk; holes take less.
     points.reserve(n_triangles.saturating_sub(n_boundary) / 2 + 1);
+    let mut asked = 0;
     for wall in walls.chunks_exact(2) {
+        if triangles.len() - asked >= ASK_EVERY {
+            asked = triangles.len();
+            go_on()?;
+        }
         let (r, from, to) = (wall[0].0, wall[0].1, wall[1].1);
         for k in from..to {
             let q = k.div_euclid(2);
@@ -71,7 +89,7 @@ pub fn assemble(paths: &[Vec<Axial>]) -> Region {
             }));
         }
     }
-    Region { points, triangles, n_boundary }
+    Ok(Region { points, triangles, n_boundary })
 }
 
 #[cfg(test)]
@@ -106,6 +124,25 @@ mod tests {
                 assert!(((b - a).perp_dot(c - a) - crate::path::placement::ROW_HEIGHT).abs() < 1e-12);
             }
         }
+    }
+
+    #[test]
+    fn large_regions_ask_whether_to_go_on() {
+        let path = [ring(300, true)];
+        let mut asked = 0;
+        let mut go_on = |most: usize| {
+            asked = 0;
+            assemble_asking(&path, || {
+                asked += 1;
+                if asked > most { Err("no") } else { Ok(()) }
+            })
+        };
+        let region = go_on(usize::MAX).unwrap();
+        assert_eq!(region, assemble(&path));
+        assert_eq!(go_on(1), Err("no"));
+        let _ = go_on(usize::MAX);
+        // A row of triangles more at most.
+        assert!(asked + 1 >= region.triangles.len() / (ASK_EVERY + 4 * 300), "{asked}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::drawing::curve::ClosedCurve;
 use crate::error::Result;
-use crate::lattice::assemble::assemble;
+use crate::lattice::assemble::assemble_asking;
 use crate::lattice::axial::Axial;
 use crate::lattice::squares::assemble_squares;
 use crate::options::{CellShape, SketchOptions};
@@ -98,7 +98,7 @@ pub(crate) fn place(
 ) -> Result<Result<Placed, Obstacle>> {
     match options.cells {
         CellShape::Triangle => {
-            let region = assemble(&outline.paths);
+            let region = assemble_asking(&outline.paths, || progress.report(0.0))?;
             let positions = laid(&region.points);
             let faces = |triangles: &[[u32; 3]]| (triangles.to_vec(), Vec::new());
             let sheet = Sheet { cells: &region.triangles, positions, faces };

@@ -54,7 +54,12 @@ impl<'a> Flat<'a> {
         self.around(&self.cotangent, v, |u| (self.vertices[u] - self.vertices[v]).length_squared())
     }
 
-    fn solve(&self, factor: &Factor<'_>, rhs: impl Fn(usize) -> f64) -> Result<Vec<f64>> {
+    /// Factors the equations of the interior vertices.
+    fn factor(&self, weights: &[f64], diagonal: impl Fn(usize) -> f64) -> Result<Factor> {
+        self.pattern.factor(self.topology, weights, diagonal, self.progress.part(0.5, 0.5))
+    }
+
+    fn solve(&self, factor: &Factor, rhs: impl Fn(usize) -> f64) -> Result<Vec<f64>> {
         self.progress.report(0.5)?;
         let mut x = (self.first..self.vertices.len()).map(rhs).collect::<Vec<_>>();
         factor.solve(&mut x, 1)?;
@@ -68,9 +73,9 @@ impl<'a> Flat<'a> {
     /// positive weights, so that no value leaves the range of the given ones.
     pub fn harmonic(&self, known: &[f64]) -> Result<Vec<f64>> {
         self.progress.report(1.0)?;
-        let pattern = Pattern::new(self.topology, known.len())?;
+        let pattern = Pattern::new(self.topology, known.len(), self.progress.part(1.0, 1.0))?;
         let weights = self.cotangent.iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-        let factor = pattern.factor(self.topology, &weights, |_| 0.0)?;
+        let factor = pattern.factor(self.topology, &weights, |_| 0.0, self.progress.part(1.0, 1.0))?;
         let mut x = (known.len()..self.vertices.len())
             .map(|v| self.around(&weights, v, |u| known.get(u).copied().unwrap_or(0.0)))
             .collect::<Vec<_>>();
@@ -149,14 +154,14 @@ fn torsion(flat: &Flat<'_>, terms: Option<Terms<'_>>) -> Result<(Vec<f64>, bool)
     let (share, drag) = terms.unwrap_or((&|_| 1.0, &|_| 0.0));
     let areas = lumped_areas(flat.vertices, &flat.patch.triangles);
     flat.progress.report(0.5)?;
-    let factor = flat.pattern.factor(flat.topology, &flat.cotangent, |v| drag(v) * areas[v])?;
+    let factor = flat.factor(&flat.cotangent, |v| drag(v) * areas[v])?;
     let value = flat.solve(&factor, |v| flat.load(v) * share(v))?;
     if flat.is_positive(&value) {
         return Ok((value, false));
     }
     // A matrix of positive weights has a positive inverse.
     let weights = flat.cotangent.iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-    let factor = flat.pattern.factor(flat.topology, &weights, |v| drag(v) * areas[v])?;
+    let factor = flat.factor(&weights, |v| drag(v) * areas[v])?;
     Ok((flat.solve(&factor, |v| 4.0 * areas[v] * share(v))?, true))
 }
 
@@ -270,7 +275,7 @@ fn screened(flat: &Flat<'_>, length: f64) -> Result<Vec<f64>> {
     let scale = length * length;
     let weights = flat.cotangent.iter().map(|w| scale * w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
     flat.progress.report(0.5)?;
-    let factor = flat.pattern.factor(flat.topology, &weights, |v| areas[v])?;
+    let factor = flat.factor(&weights, |v| areas[v])?;
     let mut v = flat.solve(&factor, |v| areas[v])?;
     for x in &mut v[flat.first..] {
         *x = x.clamp(f64::MIN_POSITIVE, 1.0);
@@ -290,7 +295,7 @@ fn distance(flat: &Flat<'_>, value: &[f64]) -> Result<(Vec<f64>, usize)> {
             divergence[vertex as usize] += 0.5 * side.perp().dot(direction);
         }
     }
-    let factor = flat.pattern.factor(flat.topology, &flat.cotangent, |_| 0.0)?;
+    let factor = flat.factor(&flat.cotangent, |_| 0.0)?;
     let mut distance = flat.solve(&factor, |v| divergence[v])?;
     let mut lifted = 0;
     for d in &mut distance[flat.first..] {

@@ -19,6 +19,9 @@ use crate::progress::Progress;
 /// How much of its bulge a cap keeps where it would leave the model, tried in this order; then it lies flat.
 const SHARES: [f64; 6] = [1.0, 0.75, 0.5, 0.3, 0.15, 0.05];
 
+/// Vertices between two questions whether to go on.
+const ASK_EVERY: usize = 1 << 10;
+
 /// What became of a cap.
 pub(in crate::cut) enum Bulged {
     /// It is as it should be.
@@ -64,7 +67,7 @@ impl Capper<'_> {
         }
         // Without a bulge: what hangs evenly in the rim.
         let rim = nodes.iter().flat_map(|&v| positions[v as usize].to_array()).collect::<Vec<_>>();
-        let level = fill.extend(&rim, 3)?;
+        let level = fill.extended(&rim, 3, progress.part(1.0, 1.0))?;
         let level = level.chunks_exact(3).map(DVec3::from_slice).collect::<Vec<_>>();
         let other = if both { self.side(!left) } else { vec![] };
         let room = Room::new(self, &positions, [&around, &other], &nodes, inverted);
@@ -86,7 +89,10 @@ impl Capper<'_> {
         let old = positions.len() as u32;
         let known = nodes.iter().map(|&v| GeomWithData::new(positions[v as usize].to_array(), v));
         let tree = RTree::bulk_load(known.collect::<Vec<_>>());
-        for position in at {
+        for (k, position) in at.into_iter().enumerate() {
+            if k % ASK_EVERY == 0 {
+                progress.report(1.0)?;
+            }
             let near = tree.nearest_neighbor(position.to_array()).map_or(nodes[0], |near| near.data);
             self.caps.vertices.push(Node { position, ..self.parted.source(self.cutting.vertices, near) });
         }

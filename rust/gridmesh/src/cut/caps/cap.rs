@@ -72,10 +72,12 @@ pub(in crate::cut) fn close(
         }
         let plan = capper.plan(outline, progress.part(1.0, 1.0))?;
         report.folded += usize::from(plan.folded);
-        capper.roll_up(outline, &plan, found.inverted);
+        capper.roll_up(outline, &plan, found.inverted, progress)?;
     }
     capper.name_sources(&polygons);
+    progress.report(1.0)?;
     capper.prove()?;
+    progress.report(1.0)?;
     capper.measure(tally);
     Ok(capper.caps)
 }
@@ -146,7 +148,7 @@ fn fill_flat(
                 plan = capper.plan(polygon, progress.part(0.0, 0.0))?;
             }
             report.folded += usize::from(plan.folded);
-            capper.roll_up(polygon, &plan, inverted);
+            capper.roll_up(polygon, &plan, inverted, here)?;
         }
     }
     Ok(())

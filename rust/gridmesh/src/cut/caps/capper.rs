@@ -120,7 +120,14 @@ impl Capper<'_> {
     }
 
     /// Makes vertices and triangles of a patch.
-    pub(crate) fn roll_up(&mut self, polygon: &[Spot], patch: &FlatFill, inverted: bool) {
+    pub(crate) fn roll_up(
+        &mut self,
+        polygon: &[Spot],
+        patch: &FlatFill,
+        inverted: bool,
+        progress: Progress<'_>,
+    ) -> Result<()> {
+        progress.report(1.0)?;
         let n = polygon.len();
         let roll = Roll::new(self.sheet, polygon);
         let base = self.first + self.caps.vertices.len() as u32;
@@ -128,6 +135,7 @@ impl Capper<'_> {
         let mut flat = polygon.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
         flat.extend(&patch.interior);
         let near = sources::nearest_on_rim(n, &flat, &patch.triangles);
+        progress.report(1.0)?;
         for (&p, near) in patch.interior.iter().zip(near) {
             let mut node = self.node(roll.unflatten(p));
             let from = self.source(polygon[near as usize].node);
@@ -141,6 +149,7 @@ impl Capper<'_> {
             }
             self.push(t, base);
         }
+        progress.report(1.0)
     }
 
     /// The vertex of this number as a combination of old ones.

@@ -74,6 +74,13 @@ pub(in crate::cut) fn cross(
     Edges { triangles: parts, keys, hits }
 }
 
+impl Crossed<'_> {
+    /// The vertices that the crossings become, edge by edge: what is divided follows from these.
+    pub fn names(&self) -> Vec<u32> {
+        self.hits.iter().flatten().map(|hit| hit.node).collect()
+    }
+}
+
 impl Edges {
     /// Makes vertices of the crossings: those near an end of their edge become that end, from farther away if it
     /// is `wanted`, unless it is `released`.

@@ -3,6 +3,8 @@
 //! Edges of the cut stay edges of the cut. Every triangle remembers the old triangle that it lies on; no edit is
 //! made that leaves the old triangles around by more than the tolerance, or turns a triangle away from its own.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -192,9 +194,22 @@ impl<'a> Strip<'a> {
         found
     }
 
+    /// The triangles at an edge, looked for where there are fewer.
     pub fn with_edge(&self, a: u32, b: u32) -> Vec<u32> {
-        let has = |t: &&u32| self.part(**t).is_some_and(|p| p.corners.contains(&b));
-        self.triangles_at(a).iter().filter(has).copied().collect()
+        let (few, other) =
+            if self.triangles_at(a).len() <= self.triangles_at(b).len() { (a, b) } else { (b, a) };
+        let has = |t: &&u32| self.part(**t).is_some_and(|p| p.corners.contains(&other));
+        self.triangles_at(few).iter().filter(has).copied().collect()
+    }
+
+    /// The triangles changed since there were so many `fresh` ones, and those beside them.
+    pub fn changed_since(&self, from: usize) -> BTreeSet<u32> {
+        let mut found = BTreeSet::new();
+        for part in self.fresh[from..].iter().filter_map(|&t| self.part(t)) {
+            let [a, b, c] = part.corners;
+            found.extend([(a, b), (b, c), (c, a)].into_iter().flat_map(|(a, b)| self.with_edge(a, b)));
+        }
+        found
     }
 
     pub fn has_edge(&self, a: u32, b: u32) -> bool {

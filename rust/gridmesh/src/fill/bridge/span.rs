@@ -230,7 +230,7 @@ impl<'a> Span<'a> {
             creases: vec![],
         };
         if self.options.smooth == Smooth::Curvature {
-            shape.positions = shape.curved(shape.positions.clone())?;
+            shape.positions = shape.curved(shape.positions.clone(), progress)?;
         }
         if shape.positions.iter().any(|p| !p.is_finite()) {
             return Err(Error::Solver { stage: "bridge", reason: "a vertex is not finite".into() });
@@ -311,7 +311,7 @@ impl Shape {
             positions[v] = loft.at(self.flat[v].x, self.flat[v].y).point;
         }
         if self.smooth == Smooth::Curvature {
-            positions = self.curved(positions)?;
+            positions = self.curved(positions, Progress::NONE)?;
         }
         if positions.iter().any(|p| !p.is_finite()) {
             return Err(Error::Solver { stage: "bridge", reason: "a vertex is not finite".into() });
@@ -320,17 +320,17 @@ impl Shape {
     }
 
     /// Moves the vertices of a bridge along their normals towards the curvature of the surroundings.
-    fn curved(&self, start: Vec<DVec3>) -> Result<Vec<DVec3>> {
+    fn curved(&self, start: Vec<DVec3>, progress: Progress<'_>) -> Result<Vec<DVec3>> {
         let work = &self.work;
         if work.inner().is_empty() || !work.closed[..work.n].contains(&true) {
             return Ok(start);
         }
         let steps = || {
-            let (bending, membrane) = (Bending::new(work)?, Membrane::new(work)?);
+            let (bending, membrane) = (Bending::new(work, progress)?, Membrane::new(work, progress)?);
             let mut positions = start.clone();
             for _ in 0..CURVED {
-                let target = curvature_target(work, &membrane, &positions)?;
-                bending.normal_step(&mut positions, SEAM_OF_CURVATURE, Some(&target))?;
+                let target = curvature_target(work, &membrane, &positions, progress)?;
+                bending.normal_step(&mut positions, SEAM_OF_CURVATURE, Some(&target), progress)?;
             }
             Ok(positions)
         };

@@ -9,7 +9,12 @@
 
 use glam::DVec2;
 
+use crate::error::Result;
 use crate::fill::planar::steps::Steps;
+use crate::progress::Progress;
+
+/// Pairs of vertices between two questions whether to go on.
+const ASK_EVERY: usize = 1 << 20;
 
 /// The loop's edges and angles.
 pub(in crate::fill) struct Loop {
@@ -23,14 +28,17 @@ pub(in crate::fill) struct Loop {
 
 impl Loop {
     /// O(n^2) where the edges are uneven, by a few operations.
-    pub fn new(points: &[DVec2]) -> Loop {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled).
+    pub fn new(points: &[DVec2], progress: Progress<'_>) -> Result<Loop> {
         let n = points.len();
         let edges: Vec<DVec2> = (0..n).map(|k| points[(k + 1) % n] - points[k]).collect();
         let turning: Vec<f64> = (0..n).map(|k| edges[(k + n - 1) % n].angle_to(edges[k])).collect();
         let lengths: Vec<f64> = edges.iter().map(|e| e.length()).collect();
         let heading = edges.first().map_or(0.0, |e| e.to_angle());
-        let flux = flux(points, &lengths);
-        Loop { turning, heading, flux }
+        let flux = flux(points, &lengths, progress)?;
+        Ok(Loop { turning, heading, flux })
     }
 
     /// Positions of the vertices when every edge is one step of the grid long
@@ -61,14 +69,18 @@ impl Loop {
     }
 }
 
-fn flux(points: &[DVec2], lengths: &[f64]) -> Vec<f64> {
+fn flux(points: &[DVec2], lengths: &[f64], progress: Progress<'_>) -> Result<Vec<f64>> {
     let n = points.len();
     let before = |k: usize| lengths[(k + n - 1) % n];
     let scale: Vec<f64> =
         (0..n).map(|k| 0.5 * (before(k).max(1e-300) * lengths[k].max(1e-300)).ln()).collect();
     let share: Vec<f64> = (0..n).map(|k| 0.5 * (before(k) + lengths[k])).collect();
     let mut flux = vec![0.0; n];
+    let rows = ASK_EVERY / n.max(1) + 1;
     for i in 0..n {
+        if i % rows == 0 {
+            progress.report(0.0)?;
+        }
         for j in i + 1..n {
             // Not nearer than the edges are long: across a slit the kernel would explode.
             let apart =
@@ -80,11 +92,13 @@ fn flux(points: &[DVec2], lengths: &[f64]) -> Vec<f64> {
             }
         }
     }
-    flux
+    Ok(flux)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
     use crate::lattice::grid::{Square, Triangular};
 
@@ -95,7 +109,7 @@ mod tests {
         points.extend((0..5).map(|i| DVec2::new(20.0, f64::from(i))));
         points.extend((0..20).map(|i| DVec2::new(20.0 - f64::from(i), 5.0)));
         points.extend((0..5).map(|i| DVec2::new(0.0, 5.0 - f64::from(i))));
-        let developed = Loop::new(&points);
+        let developed = Loop::new(&points, Progress::NONE).unwrap();
         let below: f64 = developed.flux[2..9].iter().sum();
         let above: f64 = developed.flux[17..34].iter().sum();
         assert!(below > 0.5 && above < -0.5, "{below} {above}");
@@ -103,11 +117,21 @@ mod tests {
     }
 
     #[test]
+    fn long_loops_ask_whether_to_go_on() {
+        let points: Vec<DVec2> =
+            (0..4000).map(|k| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / 4000.0)).collect();
+        let asked = AtomicUsize::new(0);
+        let go_on = |_: f64| asked.fetch_add(1, Ordering::Relaxed) < 3;
+        assert!(Loop::new(&points, Progress::new(&go_on)).is_err());
+        assert_eq!(asked.into_inner(), 4);
+    }
+
+    #[test]
     fn even_loops_keep_their_shape() {
         let points: Vec<DVec2> =
             (0..24).map(|k| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / 24.0)).collect();
         fn even<G: Steps>(points: &[DVec2]) {
-            let places = Loop::new(points).developed::<G>(1.0, 0.0);
+            let places = Loop::new(points, Progress::NONE).unwrap().developed::<G>(1.0, 0.0);
             for k in 0..24 {
                 let step = places[(k + 1) % 24] - places[k];
                 assert!((G::along(step) - 1.0).abs() < 1e-9);

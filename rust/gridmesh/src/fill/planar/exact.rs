@@ -353,7 +353,7 @@ mod tests {
     fn circle(n: usize) -> Vec<DVec2> {
         let circle: Vec<DVec2> =
             (0..n).map(|k| DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect();
-        Loop::new(&circle).developed::<Triangular>(1.0, 0.2)
+        Loop::new(&circle, Progress::NONE).unwrap().developed::<Triangular>(1.0, 0.2)
     }
 
     #[test]
@@ -392,7 +392,7 @@ mod tests {
         for n in (6..80).step_by(2).chain([300]) {
             let circle: Vec<DVec2> =
                 (0..n).map(|k| DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect();
-            let target = Loop::new(&circle).developed::<Square>(1.0, 0.2);
+            let target = Loop::new(&circle, Progress::NONE).unwrap().developed::<Square>(1.0, 0.2);
             let turns = vec![[1 << 20, TURN, 0, TURN, 1 << 20]; n];
             let wishes = Wishes { target: &target, turns: &turns, closeness: 0.1, reach: 2 };
             let path = route::<Square>(&wishes, &|_, _| false, 1000, 60, Progress::NONE).unwrap();

@@ -20,7 +20,7 @@ use crate::error::{Error, Result};
 use crate::fill::layout::develop::Loop;
 use crate::fill::layout::lobes::without_lobes;
 use crate::fill::layout::thin::{put_back, thinned};
-use crate::lattice::assemble::assemble;
+use crate::lattice::assemble::assemble_asking;
 use crate::lattice::axial::Axial;
 use crate::lattice::grid::Triangular;
 use crate::options::BoundaryMethod;
@@ -297,7 +297,7 @@ impl Contest<'_> {
 
     /// Lattice patches: the cheapest paths over several angles, placed and measured.
     fn lattice(&mut self, options: &FlatOptions, progress: Progress<'_>) -> Result<()> {
-        let shape = Loop::new(self.points);
+        let shape = Loop::new(self.points, progress)?;
         let turns = turn_costs(&shape.turning, self.wanted, self.taken, options.shape);
         // The whole flux is right where it is right at all; where the developed loop covers itself,
         // less of it may not.
@@ -356,7 +356,7 @@ impl Contest<'_> {
     /// Triangles inside a path, mapped to the loop.
     fn place(&mut self, path: &[Axial], method: Method, progress: Progress<'_>) -> Result<()> {
         progress.report(0.0)?;
-        let patch = assemble(&[path.to_vec()]);
+        let patch = assemble_asking(&[path.to_vec()], || progress.report(0.0))?;
         progress.report(0.0)?;
         if let Some(interior) = place::off_lattice(self.points, &patch, progress)? {
             self.enter(interior, patch.triangles, method, progress)?;

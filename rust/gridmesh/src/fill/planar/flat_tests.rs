@@ -64,7 +64,7 @@ proptest! {
     #[test]
     fn simple_loops_get_disks_that_are_not_folded(polygon in star_shaped(), seed in 0usize..5) {
         let n = polygon.len();
-        let turns: f64 = Loop::new(&polygon).turning.iter().sum();
+        let turns: f64 = Loop::new(&polygon, Progress::NONE).unwrap().turning.iter().sum();
         prop_assume!((turns - std::f64::consts::TAU).abs() < 1e-6);
         let widest = (0..n).map(|k| polygon[k].angle_to(polygon[(k + 1) % n])).fold(0.0, |a: f64, b| a.max(b.abs()));
         prop_assume!(widest < 3.0);

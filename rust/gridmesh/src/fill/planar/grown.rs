@@ -120,13 +120,14 @@ mod tests {
     use crate::fill::layout::develop::Loop;
     use crate::fill::planar::exact::turning;
     use crate::lattice::grid::Triangular;
+    use crate::progress::Progress;
 
     #[test]
     fn round_loops_get_as_many_vertices_as_they_have() {
         for n in 12..80 {
             let circle: Vec<DVec2> =
                 (0..n).map(|k| DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect();
-            let target = Loop::new(&circle).developed::<Triangular>(1.0, 0.3);
+            let target = Loop::new(&circle, Progress::NONE).unwrap().developed::<Triangular>(1.0, 0.3);
             let Some(path) = grown(&target) else { panic!("no path of {n}") };
             assert_eq!(path.len(), n);
             assert_eq!(turning::<Triangular>(&path), 6);

@@ -9,11 +9,16 @@ use glam::DVec2;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use crate::error::Result;
 use crate::lattice::axial::Axial;
 use crate::path::placement::Laid;
+use crate::progress::Progress;
 
 /// Steps of the loop to one step of the coarse lattice.
 const COARSER: usize = 96;
+
+/// Coarse points, and others, between two questions whether to go on.
+const ASK_EVERY: (usize, usize) = (1 << 7, 1 << 14);
 
 /// Steps between coarse points for a loop of `n`.
 pub(in crate::fill) fn step(n: usize) -> i32 {
@@ -21,12 +26,23 @@ pub(in crate::fill) fn step(n: usize) -> i32 {
 }
 
 /// Values at `inner` points from those at the vertices of the polygon `outline`.
-pub(in crate::fill) fn spread<G: Laid>(outline: &[Axial], values: &[DVec2], inner: &[Axial]) -> Vec<DVec2> {
+pub(in crate::fill) fn spread<G: Laid>(
+    outline: &[Axial],
+    values: &[DVec2],
+    inner: &[Axial],
+    progress: Progress<'_>,
+) -> Result<Vec<DVec2>> {
     let step = step(outline.len());
     let cell = |p: Axial| {
         (Axial::new(p.q.div_euclid(step), p.r.div_euclid(step)), p.q.rem_euclid(step), p.r.rem_euclid(step))
     };
-    let mut cells: Vec<Axial> = inner.iter().map(|&p| cell(p).0).collect();
+    let mut cells: Vec<Axial> = vec![];
+    for part in inner.chunks(ASK_EVERY.1) {
+        progress.report(0.0)?;
+        cells.extend(part.iter().map(|&p| cell(p).0));
+        // They come row by row.
+        cells.dedup();
+    }
     cells.sort_unstable();
     cells.dedup();
     let around = [Axial::new(0, 0), Axial::new(1, 0), Axial::new(0, 1), Axial::new(1, 1)];
@@ -35,7 +51,11 @@ pub(in crate::fill) fn spread<G: Laid>(outline: &[Axial], values: &[DVec2], inne
     coarse.dedup();
     let polygon: Vec<DVec2> = outline.iter().map(|&p| G::units(p)).collect();
     let at = |c: &Axial| (*c, mean_value(&polygon, values, G::units(Axial::new(c.q * step, c.r * step))));
-    let known: FxHashMap<Axial, DVec2> = coarse.into_par_iter().map(|c| at(&c)).collect();
+    let mut known: FxHashMap<Axial, DVec2> = FxHashMap::default();
+    for part in coarse.chunks(ASK_EVERY.0) {
+        progress.report(0.0)?;
+        known.par_extend(part.par_iter().map(at));
+    }
     let corners: FxHashMap<Axial, [DVec2; 4]> =
         cells.into_iter().map(|c| (c, around.map(|d| known[&(c + d)]))).collect();
     let value = |&p: &Axial| {
@@ -48,7 +68,12 @@ pub(in crate::fill) fn spread<G: Laid>(outline: &[Axial], values: &[DVec2], inne
             d + (c - d) * (1.0 - u) + (b - d) * (1.0 - v)
         }
     };
-    inner.iter().map(value).collect()
+    let mut found = Vec::with_capacity(inner.len());
+    for part in inner.chunks(ASK_EVERY.1) {
+        progress.report(0.0)?;
+        found.extend(part.iter().map(value));
+    }
+    Ok(found)
 }
 
 fn mean_value(polygon: &[DVec2], values: &[DVec2], x: DVec2) -> DVec2 {
@@ -76,7 +101,10 @@ fn mean_value(polygon: &[DVec2], values: &[DVec2], x: DVec2) -> DVec2 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
+    use crate::error::Error;
     use crate::lattice::assemble::assemble;
     use crate::lattice::dir::Dir;
     use crate::lattice::grid::Triangular;
@@ -106,8 +134,33 @@ mod tests {
             DVec2::new(2.0 * x.x - x.y + 3.0, 0.5 * x.y)
         };
         let values: Vec<DVec2> = outline.iter().map(|&p| linear(p)).collect();
-        for (&p, value) in inner.iter().zip(spread::<Triangular>(outline, &values, inner)) {
+        for (&p, value) in
+            inner.iter().zip(spread::<Triangular>(outline, &values, inner, Progress::NONE).unwrap())
+        {
             assert!(value.distance(linear(p)) < 1e-7, "{p:?}: {value} is not {}", linear(p));
+        }
+    }
+
+    #[test]
+    fn large_patches_ask_whether_to_go_on() {
+        let path = bent(120);
+        let patch = assemble(std::slice::from_ref(&path));
+        let (outline, inner) = patch.points.split_at(path.len());
+        let values = vec![DVec2::ZERO; outline.len()];
+        let asked = AtomicUsize::new(0);
+        let most = AtomicUsize::new(usize::MAX);
+        let go_on = |_: f64| asked.fetch_add(1, Ordering::Relaxed) < most.load(Ordering::Relaxed);
+        spread::<Triangular>(outline, &values, inner, Progress::new(&go_on)).unwrap();
+        let all = asked.swap(0, Ordering::Relaxed);
+        assert!(all > 2 * inner.len() / ASK_EVERY.1, "{all}");
+        // Wherever the answer is no, it ends there.
+        for k in 0..all {
+            (asked.store(0, Ordering::Relaxed), most.store(k, Ordering::Relaxed));
+            assert_eq!(
+                spread::<Triangular>(outline, &values, inner, Progress::new(&go_on)),
+                Err(Error::Cancelled)
+            );
+            assert_eq!(asked.load(Ordering::Relaxed), k + 1);
         }
     }
 
@@ -124,7 +177,9 @@ mod tests {
         let values: Vec<DVec2> = outline.iter().map(|&p| harmonic(p)).collect();
         let (low, high) =
             values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v.x), b.max(v.x)));
-        for (&p, value) in inner.iter().zip(spread::<Triangular>(outline, &values, inner)) {
+        for (&p, value) in
+            inner.iter().zip(spread::<Triangular>(outline, &values, inner, Progress::NONE).unwrap())
+        {
             assert!((value.x - harmonic(p).x).abs() < 0.1 * (high - low), "{p:?}: {value}");
         }
     }

@@ -27,7 +27,7 @@ pub(in crate::fill) fn off_lattice(
     progress.report(0.0)?;
     let Some(rings) = Rings::new(&patch.triangles, n, positions.len(), progress)? else { return Ok(None) };
     let mut moved: Vec<DVec2> = points.iter().zip(&positions).map(|(p, q)| *p - *q).collect();
-    moved.extend(spread::<Triangular>(&patch.points[..n], &moved, &patch.points[n..]));
+    moved.extend(spread::<Triangular>(&patch.points[..n], &moved, &patch.points[n..], progress)?);
     progress.report(0.0)?;
     extend(&rings, &mut positions, moved, f64::from(step(n)), SWEEPS, progress)?;
     positions[..n].copy_from_slice(points);

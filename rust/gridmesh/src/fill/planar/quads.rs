@@ -96,7 +96,7 @@ impl Contest<'_> {
                 return Ok(());
             }
         }
-        let search = Search::new(self.points, self.wanted, self.taken);
+        let search = Search::new(self.points, self.wanted, self.taken, progress)?;
         self.lattice(&search, false, progress.part(0.0, 0.4))?;
         if !self.is_good() {
             self.lattice(&search, true, progress.part(0.4, 0.8))?;
@@ -147,7 +147,7 @@ impl Contest<'_> {
         let fit = Similarity::between(&positions[..n], self.points);
         positions.iter_mut().for_each(|p| *p = fit.apply(*p));
         let mut moved: Vec<DVec2> = self.points.iter().zip(&positions).map(|(p, q)| *p - *q).collect();
-        moved.extend(cells.spread(&moved));
+        moved.extend(cells.spread(&moved, progress)?);
         let stars = cells.stars();
         extend(&stars, &mut positions, moved, cells.wave(), SWEEPS, progress)?;
         positions[..n].copy_from_slice(self.points);

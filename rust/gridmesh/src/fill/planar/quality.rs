@@ -74,8 +74,11 @@ pub(in crate::fill) fn measure(
     quality.irregular = valence[n..].iter().filter(|&&v| v != 6).count();
     quality.excess = wanted.iter().zip(&valence).map(|(w, v)| (v + 1 - w).unsigned_abs() as usize).sum();
     let centre = positions[..n].iter().sum::<DVec2>() / n as f64;
-    progress.report(0.0)?;
-    quality.embedded = first_inverted(positions, triangles, centre).is_none();
+    quality.embedded = true;
+    for part in triangles.chunks(ASK_EVERY) {
+        progress.report(0.0)?;
+        quality.embedded = quality.embedded && first_inverted(positions, part, centre).is_none();
+    }
     Ok(quality)
 }
 

@@ -52,8 +52,11 @@ impl Rings {
         progress: Progress<'_>,
     ) -> Result<Option<Rings>> {
         let mut start = vec![0u32; n_vertices - n_loop + 1];
-        for &v in triangles.iter().flatten().filter(|&&v| v as usize >= n_loop) {
-            start[v as usize - n_loop + 1] += 1;
+        for part in triangles.chunks(ASK_EVERY) {
+            progress.report(0.0)?;
+            for &v in part.iter().flatten().filter(|&&v| v as usize >= n_loop) {
+                start[v as usize - n_loop + 1] += 1;
+            }
         }
         for i in 1..start.len() {
             start[i] += start[i - 1];
@@ -115,7 +118,6 @@ pub(in crate::fill) fn extend(
     // The best factor for a grid of this diameter.
     let factor = 2.0 / (1.0 + (std::f64::consts::PI / wave.max(2.0)).sin());
     for sweep in 0..sweeps {
-        progress.report(0.0)?;
         let mut largest = 0.0f64;
         let mut visit = |i: usize| {
             let near = stars.near(i);
@@ -124,10 +126,15 @@ pub(in crate::fill) fn extend(
             moved[n + i] += step;
             largest = largest.max(step.length_squared());
         };
-        if sweep % 2 == 0 {
-            (0..stars.len()).for_each(&mut visit)
-        } else {
-            (0..stars.len()).rev().for_each(&mut visit)
+        let last = stars.len();
+        for from in (0..last).step_by(ASK_EVERY) {
+            progress.report(0.0)?;
+            let to = last.min(from + ASK_EVERY);
+            if sweep % 2 == 0 {
+                (from..to).for_each(&mut visit)
+            } else {
+                (last - to..last - from).rev().for_each(&mut visit)
+            }
         }
         if largest < 1e-6 {
             break;
@@ -156,7 +163,11 @@ pub(in crate::fill) fn untangle(
         })
     };
     // Triangles become tangled only where a vertex has moved: only those are looked at again.
-    let mut bad: Vec<usize> = (0..stars.len()).filter(|&i| tangled(positions, i)).collect();
+    let mut bad: Vec<usize> = vec![];
+    for from in (0..stars.len()).step_by(ASK_EVERY) {
+        progress.report(0.0)?;
+        bad.extend((from..stars.len().min(from + ASK_EVERY)).filter(|&i| tangled(positions, i)));
+    }
     let mut active: Vec<usize> = Vec::new();
     for sweep in 0..sweeps {
         if bad.is_empty() {
@@ -172,7 +183,10 @@ pub(in crate::fill) fn untangle(
         }
         active.sort_unstable();
         active.dedup();
-        for &i in &active {
+        for (k, &i) in active.iter().enumerate() {
+            if k % ASK_EVERY == 0 {
+                progress.report(sweep as f64 / sweeps as f64)?;
+            }
             positions[stars.n_loop() + i] = untangled(positions[stars.n_loop() + i], stars, i, positions);
         }
         bad = active.iter().copied().filter(|&i| tangled(positions, i)).collect();

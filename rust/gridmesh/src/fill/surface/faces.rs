@@ -49,7 +49,7 @@ impl Shape {
         let mut solved = self.centred()?.solved(mesh, progress.part(0.0, 0.6))?;
         solved.positions.drain(work.end..work.end + work.quads);
         let mut polished = solved.positions.clone();
-        if self.smooth != Smooth::Flat && !work.inner().is_empty() && self.polish(&mut polished).is_ok() {
+        if self.smooth != Smooth::Flat && !work.inner().is_empty() && self.polish(&mut polished, progress).is_ok() {
             for (p, to) in solved.positions.iter_mut().zip(polished) {
                 *p = p.lerp(to, POLISH);
             }
@@ -68,14 +68,16 @@ impl Shape {
 
     /// A step along the normals with the diagonals that the quads are cut along: they are what meets the
     /// surroundings in the end.
-    fn polish(&self, positions: &mut [DVec3]) -> Result<()> {
+    fn polish(&self, positions: &mut [DVec3], progress: Progress<'_>) -> Result<()> {
         let work = &self.work;
-        let bending = Bending::new(work)?;
+        let bending = Bending::new(work, progress)?;
         let curvature = self.smooth == Smooth::Curvature;
-        let target =
-            if curvature { Some(curvature_target(work, &Membrane::new(work)?, positions)?) } else { None };
+        let target = match curvature {
+            true => Some(curvature_target(work, &Membrane::new(work, progress)?, positions, progress)?),
+            false => None,
+        };
         let seam = if curvature { SEAM_OF_CURVATURE } else { SEAM };
-        bending.normal_step(positions, seam, target.as_deref())?;
+        bending.normal_step(positions, seam, target.as_deref(), progress)?;
         sound(positions)
     }
 

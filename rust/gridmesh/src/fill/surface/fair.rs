@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::patchwork::Patchwork;
 use super::solver::LeastSquares;
 use crate::error::Result;
+use crate::progress::Progress;
 
 /// Equations of second order, one for each vertex at which a curvature can be read: the Laplacian there.
 pub(crate) struct Bending<'a> {
@@ -17,7 +18,7 @@ pub(crate) struct Bending<'a> {
 }
 
 impl<'a> Bending<'a> {
-    pub fn new(work: &'a Patchwork) -> Result<Self> {
+    pub fn new(work: &'a Patchwork, progress: Progress<'_>) -> Result<Self> {
         let rows = (0..work.end as u32).filter(|&v| {
             let v = v as usize;
             let own = work.unknown(v).is_some();
@@ -39,13 +40,13 @@ impl<'a> Bending<'a> {
             columns.extend(work.unknown(apex as usize));
             start.push(columns.len() as u32);
         }
-        let system = LeastSquares::new(work.end - work.n, start, columns)?;
+        let system = LeastSquares::new(work.end - work.n, start, columns, progress)?;
         Ok(Bending { work, rows, seams, system })
     }
 
     /// The thin plate: minimises the squared Laplacians of the positions on the present metric, one
     /// factorisation for the three coordinates.
-    pub fn positions(&self, positions: &mut [DVec3]) -> Result<()> {
+    pub fn positions(&self, positions: &mut [DVec3], progress: Progress<'_>) -> Result<()> {
         let work = self.work;
         let cotangents = work.cotangents(positions);
         let masses = bounded_masses(work, positions);
@@ -82,7 +83,7 @@ impl<'a> Bending<'a> {
         coefficients.resize(coefficients.len() + self.seams.len(), 0.0);
         right.resize(n_rows, [0.0; 3]);
         weights.resize(n_rows, 0.0);
-        let found = self.system.solve(&coefficients, &weights, &right)?;
+        let found = self.system.solve(&coefficients, &weights, &right, progress)?;
         for (v, x) in work.inner().zip(found) {
             positions[v] = x.into();
         }
@@ -96,17 +97,19 @@ impl<'a> Bending<'a> {
         positions: &mut [DVec3],
         seam: f64,
         target: Option<&[f64]>,
+        progress: Progress<'_>,
     ) -> Result<[f64; 2]> {
         const HALVINGS: usize = 4;
         let work = self.work;
         let state = self.state(positions, seam, target);
-        let found = self.system.solve(&state.coefficients, &state.weights, &state.right)?;
+        let found = self.system.solve(&state.coefficients, &state.weights, &state.right, progress)?;
         let start = positions[work.inner()].to_vec();
         let mut share = 1.0;
         for _ in 0..HALVINGS {
             for (k, v) in work.inner().enumerate() {
                 positions[v] = start[k] + share * found[k][0] * state.normals[v];
             }
+            progress.report(0.0)?;
             let energy = self.state(positions, seam, target).energy();
             if energy < state.energy() {
                 return Ok([state.energy(), energy]);
@@ -214,7 +217,7 @@ pub(crate) struct Membrane<'a> {
 }
 
 impl<'a> Membrane<'a> {
-    pub fn new(work: &'a Patchwork) -> Result<Self> {
+    pub fn new(work: &'a Patchwork, progress: Progress<'_>) -> Result<Self> {
         let mut edges = vec![];
         let mut start = vec![0];
         let mut columns = vec![];
@@ -229,7 +232,7 @@ impl<'a> Membrane<'a> {
                 }
             }
         }
-        let system = LeastSquares::new(work.end - work.n, start, columns)?;
+        let system = LeastSquares::new(work.end - work.n, start, columns, progress)?;
         Ok(Membrane { work, edges, system })
     }
 
@@ -238,6 +241,7 @@ impl<'a> Membrane<'a> {
         &self,
         weights: &[f64],
         known: impl Fn(usize) -> [f64; K],
+        progress: Progress<'_>,
     ) -> Result<Vec<[f64; K]>> {
         let work = self.work;
         let mut coefficients = vec![];
@@ -255,6 +259,6 @@ impl<'a> Membrane<'a> {
                 right.push(known(u as usize));
             }
         }
-        self.system.solve(&coefficients, &importance, &right)
+        self.system.solve(&coefficients, &importance, &right, progress)
     }
 }

@@ -158,7 +158,11 @@ impl Shape {
         }
         let weights =
             work.cotangents(&self.positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-        let rest = Membrane::new(work)?.harmonic(&weights, |v| left(v).to_array())?;
+        let rest = Membrane::new(work, Progress::NONE)?.harmonic(
+            &weights,
+            |v| left(v).to_array(),
+            Progress::NONE,
+        )?;
         for (p, rest) in found.iter_mut().zip(rest) {
             *p += DVec3::from(rest);
         }
@@ -178,9 +182,9 @@ impl Shape {
         }
         let weights = work.cotangents(&self.laid_out());
         progress.report(0.05)?;
-        let membrane = Membrane::new(work)?;
+        let membrane = Membrane::new(work, progress.part(0.05, 0.05))?;
         progress.report(0.1)?;
-        let film = membrane.harmonic(&weights, |v| positions[v].to_array())?;
+        let film = membrane.harmonic(&weights, |v| positions[v].to_array(), progress.part(0.1, 0.1))?;
         for (v, p) in work.inner().zip(film) {
             positions[v] = p.into();
         }
@@ -196,13 +200,13 @@ impl Shape {
         progress: Progress<'_>,
     ) -> Result<()> {
         let work = &self.work;
-        let bending = Bending::new(work)?;
+        let bending = Bending::new(work, progress.part(0.0, 0.0))?;
         progress.report(0.1)?;
-        bending.positions(positions)?;
+        bending.positions(positions, progress.part(0.1, 0.1))?;
         sound(positions)?;
         progress.report(0.15)?;
         let membrane = match (self.smooth, membrane) {
-            (Smooth::Curvature, None) => Some(Membrane::new(work)?),
+            (Smooth::Curvature, None) => Some(Membrane::new(work, progress.part(0.15, 0.15))?),
             (Smooth::Curvature, some) => some,
             _ => None,
         };
@@ -219,8 +223,9 @@ impl Shape {
                 sweep(work, positions);
             }
             progress.report(0.5)?;
-            let target = membrane.as_ref().map(|m| curvature_target(work, m, positions)).transpose()?;
-            let [before, after] = bending.normal_step(positions, seam, target.as_deref())?;
+            let here = progress.part(0.5, 0.5);
+            let target = membrane.as_ref().map(|m| curvature_target(work, m, positions, here)).transpose()?;
+            let [before, after] = bending.normal_step(positions, seam, target.as_deref(), here)?;
             sound(positions)?;
             if after > (1.0 - SETTLED) * before {
                 break;
@@ -254,7 +259,12 @@ impl Shape {
     }
 
     /// See [`crate::fill::Fill::extend`].
-    pub(in crate::fill) fn extend(&self, values: &[f64], columns: usize) -> Result<Vec<f64>> {
+    pub(in crate::fill) fn extend(
+        &self,
+        values: &[f64],
+        columns: usize,
+        progress: Progress<'_>,
+    ) -> Result<Vec<f64>> {
         const TOGETHER: usize = 8;
         let work = &self.work;
         if values.len() != work.n * columns {
@@ -275,14 +285,14 @@ impl Shape {
         }
         let weights =
             work.cotangents(&self.positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-        let membrane = Membrane::new(work)?;
+        let membrane = Membrane::new(work, progress)?;
         for first in (0..columns).step_by(TOGETHER) {
             let part = first..columns.min(first + TOGETHER);
-            let found = membrane.harmonic::<TOGETHER>(&weights, |v| {
-                std::array::from_fn(|c| {
-                    if first + c < part.end { values[row(v) * columns + first + c] } else { 0.0 }
-                })
-            })?;
+            let value = |v: usize, c: usize| {
+                if first + c < part.end { values[row(v) * columns + first + c] } else { 0.0 }
+            };
+            let known = |v: usize| std::array::from_fn(|c| value(v, c));
+            let found = membrane.harmonic::<TOGETHER>(&weights, known, progress)?;
             for column in part {
                 let own = values.iter().skip(column).step_by(columns);
                 let (low, high) =
@@ -326,6 +336,7 @@ pub(in crate::fill) fn curvature_target(
     work: &Patchwork,
     membrane: &Membrane<'_>,
     positions: &[DVec3],
+    progress: Progress<'_>,
 ) -> Result<Vec<f64>> {
     let cotangents = work.cotangents(positions);
     let areas = work.areas(positions);
@@ -354,7 +365,7 @@ pub(in crate::fill) fn curvature_target(
         }
     }
     let weights = cotangents.iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-    target.extend(membrane.harmonic(&weights, |v| [target[v]])?.into_iter().flatten());
+    target.extend(membrane.harmonic(&weights, |v| [target[v]], progress)?.into_iter().flatten());
     Ok(target)
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::cholesky::Pattern;
+use crate::progress::Progress;
 
 fn failed(reason: impl ToString) -> Error {
     Error::Solver { stage: "fill", reason: reason.to_string() }
@@ -24,7 +25,7 @@ pub(crate) struct LeastSquares {
 impl LeastSquares {
     /// `columns[start[i]..start[i + 1]]` are the unknowns of equation `i`, each once. Every unknown
     /// must be in some equation.
-    pub fn new(unknowns: usize, start: Vec<u32>, columns: Vec<u32>) -> Result<Self> {
+    pub fn new(unknowns: usize, start: Vec<u32>, columns: Vec<u32>, progress: Progress<'_>) -> Result<Self> {
         let row = |i: usize| &columns[start[i] as usize..start[i + 1] as usize];
         let n_rows = start.len() - 1;
         // The equations of each unknown.
@@ -63,7 +64,8 @@ impl LeastSquares {
             row_idx[begin..].sort_unstable();
             col_ptr.push(row_idx.len());
         }
-        let pattern = Pattern::new("fill", col_ptr, row_idx)?;
+        let pattern = Pattern::new("fill", col_ptr, row_idx, progress)?;
+        progress.report(0.0)?;
         let mut slots = vec![];
         for i in 0..n_rows {
             for (k, &a) in row(i).iter().enumerate() {
@@ -86,6 +88,7 @@ impl LeastSquares {
         coefficients: &[f64],
         weights: &[f64],
         right: &[[f64; K]],
+        progress: Progress<'_>,
     ) -> Result<Vec<[f64; K]>> {
         let n = self.unknowns;
         let mut values = vec![0.0; self.pattern.entries()];
@@ -104,7 +107,11 @@ impl LeastSquares {
                 }
             }
         }
-        self.pattern.factor(&values)?.solve(&mut x, K)?;
+        progress.report(0.0)?;
+        let factor = self.pattern.factor(values, progress)?;
+        progress.report(0.0)?;
+        factor.solve(&mut x, K)?;
+        progress.report(0.0)?;
         Ok((0..n).map(|c| std::array::from_fn(|r| x[r * n + c])).collect())
     }
 }
@@ -117,12 +124,12 @@ mod tests {
     fn a_line_is_fitted() {
         // y = a + b t through five points, and the same twice as steep.
         let start = (0..=5).map(|i| 2 * i).collect();
-        let system = LeastSquares::new(2, start, [0, 1].repeat(5)).unwrap();
+        let system = LeastSquares::new(2, start, [0, 1].repeat(5), Progress::NONE).unwrap();
         let coefficients = (0..5).flat_map(|t| [1.0, f64::from(t)]).collect::<Vec<_>>();
         let right = [1.0, 3.1, 4.9, 7.1, 8.9].map(|y| [y, 2.0 * y]);
-        let found = system.solve(&coefficients, &[1.0; 5], &right).unwrap();
+        let found = system.solve(&coefficients, &[1.0; 5], &right, Progress::NONE).unwrap();
         assert!((found[0][0] - 1.04).abs() < 1e-12 && (found[1][0] - 1.98).abs() < 1e-12, "{found:?}");
         assert!((found[1][1] - 3.96).abs() < 1e-12);
-        assert!(LeastSquares::new(2, vec![0, 1], vec![0]).is_err());
+        assert!(LeastSquares::new(2, vec![0, 1], vec![0], Progress::NONE).is_err());
     }
 }

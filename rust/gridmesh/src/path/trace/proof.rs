@@ -31,7 +31,7 @@ const EFFORT: u64 = 5;
 
 /// States that a proof that was asked for may take in all: a second or two, however many parts are allowed. There
 /// is one for each of four lattice angles.
-const MOST: u64 = 15_000_000;
+const MOST: u64 = 6_000_000;
 
 /// What is known after a proof was tried.
 pub(super) struct Proof<G> {

@@ -2,11 +2,13 @@
 
 use glam::DVec2;
 
+use crate::error::Result;
 use crate::fill::planar::mean_value::{spread, step};
 use crate::lattice::axial::Axial;
 use crate::lattice::grid::Square;
 use crate::lattice::squares::squares_within;
 use crate::path::placement::Laid;
+use crate::progress::Progress;
 
 /// What a vertex of a path stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,11 +168,11 @@ impl Cells {
     }
 
     /// A guess of the harmonic extension of values at the loop to the other vertices.
-    pub fn spread(&self, values: &[DVec2]) -> Vec<DVec2> {
+    pub fn spread(&self, values: &[DVec2], progress: Progress<'_>) -> Result<Vec<DVec2>> {
         let outline = self.follows.iter().map(|&k| values[k]).collect::<Vec<_>>();
         let row = outline.iter().zip(&self.new).filter(|(_, new)| **new).map(|(value, _)| *value);
         let (path, inner) = self.lattice.split_at(self.follows.len());
-        row.chain(spread::<Square>(path, &outline, inner)).collect()
+        Ok(row.chain(spread::<Square>(path, &outline, inner, progress)?).collect())
     }
 
     /// Waves of fewer edges are not in that guess.

@@ -69,10 +69,15 @@ impl<'a> Search<'a> {
     /// Rounds with ever less of the loop's unevenness developed away.
     pub const ROUNDS: usize = 3;
 
-    pub fn new(points: &[DVec2], wanted: &'a [f64], taken: &'a dyn Fn(usize, usize) -> bool) -> Search<'a> {
+    pub fn new(
+        points: &[DVec2],
+        wanted: &'a [f64],
+        taken: &'a dyn Fn(usize, usize) -> bool,
+        progress: Progress<'_>,
+    ) -> Result<Search<'a>> {
         let n = points.len();
         let lengths = (0..n).map(|k| points[k].distance(points[(k + 1) % n])).collect();
-        Search { shape: Loop::new(points), wanted, taken, lengths }
+        Ok(Search { shape: Loop::new(points, progress)?, wanted, taken, lengths })
     }
 
     fn len(&self) -> usize {
