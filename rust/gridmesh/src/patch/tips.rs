@@ -17,8 +17,8 @@ const BACK: (f64, f64) = (0.8, 1.9);
 /// Tips that are cut off so many times farther from their point are cut off nearer to it.
 const FAR: f64 = 1.15;
 
-/// A corner of the drawing is lost that lies so far from the boundary, in edges.
-const WORN: f64 = 0.2;
+/// A corner of the drawing is lost that lies so far from the boundary, in edges: one that has no vertex.
+const WORN: f64 = 1e-3;
 
 /// The angle of the drawing at an arc length, in radians, if it is a tip's; in edges.
 fn tip(line: &Contour<'_>, at: f64) -> Option<f64> {

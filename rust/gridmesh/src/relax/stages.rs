@@ -7,7 +7,6 @@ use super::check::first_inverted;
 use super::energy::{Energy, Power, Regularised, det};
 use super::sweep::{Active, Motion};
 use crate::error::Result;
-use crate::geometry::segments::nearest_on_segment;
 use crate::progress::Progress;
 
 /// Triangles of less than this share of the equilateral triangle's area count as tangled.
@@ -182,7 +181,7 @@ where
     ///
     /// With interior angle a of the boundary at the vertex, no triangulation there has a least
     /// angle above a / 2, so a triangle starves below .45 a, where 14 degrees are always enough.
-    /// With `blunt` it starves below that angle where the corner is sharper than twice that, or hardly sticks out.
+    /// With `blunt` it starves below that angle where the corner is sharper than twice that.
     pub fn release_starved(
         &mut self,
         blunt: Option<f64>,
@@ -211,27 +210,18 @@ where
     }
 
     fn starves(&self, v: usize, blunt: Option<f64>) -> bool {
-        // What a boundary without the corner may cut off, in edges.
-        const SLIGHT: f64 = 0.2;
         let x = self.band.positions[v];
         let mut interior = 0.0;
         let mut sharpest = 0.0f64;
-        let mut beside = [x, x];
-        for (k, pair) in self.band.own_corners(v).enumerate() {
+        for pair in self.band.own_corners(v) {
             let [a, b] = pair.map(|w| self.band.positions[w as usize]);
             interior += (a - x).angle_to(b - x);
             sharpest = sharpest.max(sharpness([x, a, b]));
-            beside = [if k == 0 { a } else { beside[0] }, b];
         }
         let own = f64::min(14.0, 0.45 * interior.to_degrees());
         // Two triangles at least share a corner of the drawing.
         let least = match blunt {
-            Some(blunt)
-                if interior < 2.0 * blunt
-                    || nearest_on_segment(x, beside[0], beside[1]).1 < SLIGHT * SLIGHT =>
-            {
-                own.max(blunt.to_degrees())
-            }
+            Some(blunt) if interior < 2.0 * blunt => own.max(blunt.to_degrees()),
             _ => own,
         };
         sharpest > cotangent(least)

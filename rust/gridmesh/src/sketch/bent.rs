@@ -43,15 +43,33 @@ impl Job<'_> {
         if effort != Effort::Full || !self.bends() {
             return Ok(None);
         }
-        let started = Instant::now();
-        let mut outlines = match self.bent_outlines(asked, progress.part(0.0, 0.3)) {
-            // What the solver cannot do is left to the straight lattice; the report says so.
-            Err(Error::Solver { .. }) => Vec::new(),
-            outlines => outlines?,
-        };
-        outlines.sort_by(|a, b| (a.0.price + a.2.cost).total_cmp(&(b.0.price + b.2.cost)));
-        self.lap("bend", started);
         let mut best: Option<Found> = None;
+        // The second bend is traced if the first was not expected to be better, or is not good when it is placed.
+        for pass in 0..TRACED {
+            let started = Instant::now();
+            let outlines = match self.bent_outlines(asked, pass > 0, progress.part(0.0, 0.3)) {
+                // What the solver cannot do is left to the straight lattice; the report says so.
+                Err(Error::Solver { .. }) => Vec::new(),
+                outlines => outlines?,
+            };
+            let is_last = outlines.len() != 1 || self.options.cells == CellShape::Quad;
+            let mut outlines: Vec<(Bent, Lattice, Outline)> = outlines.into_iter().skip(pass).collect();
+            outlines.sort_by(|a, b| (a.0.price + a.2.cost).total_cmp(&(b.0.price + b.2.cost)));
+            self.lap("bend", started);
+            if self.best_placed(outlines, &mut best, progress)? || is_last {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// Places patches until one is good, and keeps the best; true if one was good.
+    fn best_placed(
+        &mut self,
+        outlines: Vec<(Bent, Lattice, Outline)>,
+        best: &mut Option<Found>,
+        progress: Progress<'_>,
+    ) -> Result<bool> {
         for (bent, lattice, outline) in outlines {
             self.placements += 1;
             let started = Instant::now();
@@ -66,17 +84,23 @@ impl Job<'_> {
             let found = Found { faults, bent, outline, placed, mirror_error };
             let is_good = found.faults <= SLIGHT && found.starved() == 0.0 && found.placed.worn_corners == 0;
             if best.as_ref().is_none_or(|best| found.score() < best.score()) {
-                best = Some(found);
+                *best = Some(found);
             }
             if is_good {
-                break;
+                return Ok(true);
             }
         }
-        Ok(best)
+        Ok(false)
     }
 
-    /// The boundaries on the most promising bent lattices.
-    fn bent_outlines(&self, asked: Asked, progress: Progress<'_>) -> Result<Vec<(Bent, Lattice, Outline)>> {
+    /// The boundaries on the most promising bent lattices: of triangles, unless all are wanted, none after one that costs
+    /// no more than the next bend promises.
+    fn bent_outlines(
+        &self,
+        asked: Asked,
+        all: bool,
+        progress: Progress<'_>,
+    ) -> Result<Vec<(Bent, Lattice, Outline)>> {
         let edge_length = match asked {
             Asked::EdgeLength(h) => h,
             Asked::Cells(n) => self.first_guess(n),
@@ -94,8 +118,7 @@ impl Job<'_> {
             let Some(traced) = self.bent_outline(asked, bent, progress)? else { return Ok(false) };
             let cost = traced.0.price + traced.2.cost;
             found.push(traced);
-            // What the directions promise is hardly ever better on the lattice.
-            Ok(self.options.cells == CellShape::Triangle && cost <= next)
+            Ok(!all && self.options.cells == CellShape::Triangle && cost <= next)
         };
         choose::candidates(&Arc::new(ground), self.options.bend, TRACED, progress, is_enough)?;
         Ok(found)
