@@ -25,7 +25,7 @@ use super::input::{Polygons, triangles};
 use super::report::Tally;
 use crate::cut::divide::parted::{Part, Parted, SEAM};
 use crate::cut::rim::defect::defect;
-use crate::cut::rim::improve::improve;
+use crate::cut::rim::improve::{BATCH, POOR, ROUNDS, SMALL, improve};
 use crate::cut::rim::nearness::closest;
 use crate::cut::rim::slide::Course;
 use crate::cut::rim::spacing::resample;
@@ -35,12 +35,6 @@ use crate::progress::Progress;
 
 /// Vertices nearer to the line than this, in edge lengths, are taken out where the surface allows it.
 const BESIDE: f64 = 0.45;
-
-/// Angles below this are worked on.
-const SMALL: f64 = 0.42;
-
-/// Rounds of collapsing, flipping and splitting.
-const ROUNDS: usize = 8;
 
 /// Vertices of the line slide where angles are below this.
 const SLIDE: f64 = 0.3;
@@ -52,9 +46,6 @@ const LONG: f64 = 1.4;
 /// So often the line is drawn through vertices beside it, where it is.
 const DRAWN: usize = 2;
 
-/// Angles below this are reason enough to draw the cut through a vertex.
-const POOR: f64 = 0.19;
-
 /// What the line is to become, and which old vertices it may be drawn through.
 pub(super) struct Through<'a> {
     /// Its edges' length.
@@ -64,9 +55,6 @@ pub(super) struct Through<'a> {
     /// How far each is off where the line was drawn.
     pub off: &'a dyn Fn(u32) -> f64,
 }
-
-/// Triangles looked at between two reports of progress.
-const BATCH: usize = 32;
 
 /// Evens out the line and the faces along it. Returns false if the cut must be repeated: `again` gets the old vertices
 /// beside the line whose triangles stay thin, in order, and says whether to snap the line to them.

@@ -5,10 +5,21 @@ use std::collections::BTreeSet;
 use rustc_hash::FxHashSet;
 
 use super::strip::{Strip, Trial};
-use super::{BATCH, POOR, ROUNDS, SMALL};
 use crate::cut::divide::parted::Part;
 use crate::error::Result;
 use crate::progress::Progress;
+
+/// Angles below this are worked on.
+pub(super) const SMALL: f64 = 0.42;
+
+/// Rounds of collapsing, flipping and splitting.
+pub(super) const ROUNDS: usize = 8;
+
+/// Angles below this are reason enough to draw the cut through a vertex.
+pub(super) const POOR: f64 = 0.19;
+
+/// Triangles looked at between two reports of progress.
+pub(super) const BATCH: usize = 32;
 
 /// Vertices of the line may go for better angles while its edges stay shorter than this, in edge lengths.
 const LONGEST: f64 = 1.5;
