@@ -191,7 +191,9 @@ impl Stage<'_> {
     /// long as that helps.
     fn collars(&self, progress: Progress<'_>) -> Result<(Outside, Vec<Strip>)> {
         let mut scales = vec![1.0; self.curves.count];
-        let simple = |strip: &Strip| strip.sound && strip.rims.len() == 2 && strip.euler == 0;
+        let simple = |strip: &Strip| {
+            strip.sound && strip.rims.len() == 2 && strip.euler == 0 && strip.curves.len() == 1
+        };
         for round in 0..=HALVED {
             progress.report(round as f64 / (HALVED + 1) as f64)?;
             let made = self.attempt(&scales)?;

@@ -174,7 +174,6 @@ impl Site<'_> {
             }
             local.positions = fair(&local, &beyond, progress.part(0.9, 0.9))?;
             mend_thin(&mut local);
-            polish(&mut local);
         }
         let faired = local.positions.clone();
         let m = local.border as u32;
@@ -182,8 +181,12 @@ impl Site<'_> {
         let triangles = local.triangles.iter().map(|t| t.map(name)).collect::<Vec<_>>();
         let mut best: Option<Try> = None;
         for share in if crease { &SHARES[3..] } else { &SHARES[..] } {
-            let positions = flat.iter().zip(&faired).map(|(a, b)| a.lerp(*b, *share)).collect::<Vec<_>>();
-            let angle = min_angle(&positions, &local.triangles);
+            local.positions = flat.iter().zip(&faired).map(|(a, b)| a.lerp(*b, *share)).collect();
+            if !crease {
+                polish(&mut local);
+            }
+            let positions = &local.positions;
+            let angle = min_angle(positions, &local.triangles);
             let patch = Patch {
                 kind: Kind::Strip,
                 vertices: positions[m as usize..].to_vec(),
@@ -193,7 +196,7 @@ impl Site<'_> {
             if best.as_ref().is_none_or(|best| (meetings, -angle) < (best.meetings, -best.angle)) {
                 best = Some(Try { patch, meetings, angle });
             }
-            if meetings == 0 {
+            if meetings == 0 && angle > THIN {
                 break;
             }
         }
