@@ -127,7 +127,7 @@ pub(crate) fn flip_valences(local: &mut Local) {
 }
 
 /// Flips edges of thin triangles where that makes them rounder.
-fn mend_thin(local: &mut Local) {
+pub(crate) fn mend_thin(local: &mut Local) {
     for _ in 0..3 {
         for e in local.edges() {
             let Some((old, new)) = local.flipped(e) else { continue };

@@ -49,9 +49,16 @@ impl Shape {
         let mut solved = self.centred()?.solved(mesh, progress.part(0.0, 0.6))?;
         solved.positions.drain(work.end..work.end + work.quads);
         let mut polished = solved.positions.clone();
-        if self.smooth != Smooth::Flat && !work.inner().is_empty() && self.polish(&mut polished, progress).is_ok() {
-            for (p, to) in solved.positions.iter_mut().zip(polished) {
-                *p = p.lerp(to, POLISH);
+        if self.smooth != Smooth::Flat && !work.inner().is_empty() {
+            match self.polish(&mut polished, progress.part(0.6, 0.6)) {
+                Ok(()) => {
+                    for (p, to) in solved.positions.iter_mut().zip(polished) {
+                        *p = p.lerp(to, POLISH);
+                    }
+                }
+                // Triangles without area can spoil the equations.
+                Err(Error::Solver { .. }) => {}
+                Err(other) => return Err(other),
             }
         }
         let film = solved.faults.film;
