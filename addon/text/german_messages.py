@@ -541,7 +541,6 @@ _JOINS = {
     "faces meet in one vertex only": "Flächen treffen sich nur in einem Punkt",
     "in part {} {}": "in Teil {0} {1}",
     "no part": "kein Teil",
-    "no patch": "kein Flicken",
     "one closed mesh or more": "ein geschlossenes Mesh oder mehr",
     "part {}": "Teil {0}",
     "part {} is not closed and manifold: {} near vertex {} at ({}, {}, {}); fill its holes and merge doubled vertices, "
