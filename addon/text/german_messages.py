@@ -840,6 +840,21 @@ _LIBRARY = {
         "was der Strich kreuzt, hängt um den Schnitt herum noch zusammen, bei ({0}, {1}, {2}); über alles "
         "zeichnen, was getrennt werden soll, oder die Enden verlängern lassen"
     ),
+    "part {} is not closed and manifold: {} near vertex {} at ({}, {}, {}); fill its holes and merge doubled vertices, "
+    "or delete the surplus faces": (
+        "Teil {0} ist nicht geschlossen und mannigfaltig: {1} bei Punkt {2} an ({3}, {4}, {5}); Löcher füllen und doppelte "
+        "Punkte zusammenfügen, oder die überzähligen Flächen löschen"
+    ),
+    "the parts cannot be joined here: {}, near ({}, {}, {}); move one of them a little, blend less, or give them "
+    "shorter edges there": (
+        "die Teile lassen sich hier nicht verbinden: {0}, bei ({1}, {2}, {3}); eines davon etwas verschieben, schmaler "
+        "überblenden oder ihnen dort kürzere Kanten geben"
+    ),
+    "the joints meet themselves or the parts in {} pairs of triangles, first near ({}, {}, {}); blend less, move a "
+    "part, or allow it": (
+        "die Verbindungen treffen sich selbst oder die Teile in {0} Paaren von Dreiecken, zuerst bei ({1}, {2}, {3}); "
+        "schmaler überblenden, ein Teil verschieben oder es erlauben"
+    ),
     "without relaxation triangles are inverted, one of them near ({}, {}); leave relax on, or use more triangles": (
         "ohne Relaxation sind Dreiecke umgestülpt, eines davon bei ({0}, {1}); relax anlassen oder mehr Dreiecke "
         "nehmen"
@@ -918,6 +933,23 @@ _LIBRARY_PARTS = {
     "the matrix is not positive definite ({})": "die Matrix ist nicht positiv definit ({0})",
     "the number of triangles is not reached": "die Zahl der Dreiecke wird nicht erreicht",
     "the patch has no interior vertex": "der Flicken hat keinen inneren Punkt",
+    "part {}": "Teil {0}",
+    "{} of part {}": "{0} von Teil {1}",
+    "no part": "kein Teil",
+    "a number above 0, or nothing": "eine Zahl über 0, oder nichts",
+    "a number from 0 to 1000, of edge lengths": "eine Zahl von 0 bis 1000, in Kantenlängen",
+    "one closed mesh or more": "ein geschlossenes Mesh oder mehrere",
+    "in part {} {}": "in Teil {0}: {1}",
+    "an edge has a face on one side only": "eine Kante hat nur auf einer Seite eine Fläche",
+    "two faces at an edge are wound against each other": "zwei Flächen an einer Kante laufen gegeneinander",
+    "an edge joins more than two faces": "eine Kante verbindet mehr als zwei Flächen",
+    "faces meet in one vertex only": "Flächen treffen sich nur in einem Punkt",
+    "what was taken away there has no border of whole edges": "was dort weggenommen wurde, hat keinen Rand aus ganzen Kanten",
+    "the Boolean operation on them broke down": "die boolesche Operation auf ihnen ist gescheitert",
+    "the Boolean operation on them has no result": "die boolesche Operation auf ihnen hat kein Ergebnis",
+    "the Boolean operation on them has no sound result": "die boolesche Operation auf ihnen hat kein brauchbares Ergebnis",
+    "the patches do not fit together": "die Flicken passen nicht zusammen",
+    "a rim borders nothing that was taken away": "ein Rand grenzt an nichts, was weggenommen wurde",
     "the rim of a tunnel is too rough to be capped": "der Rand eines Tunnels ist für einen Deckel zu rau",
     "the solution is not finite": "die Lösung ist nicht endlich",
     "the triangle of the vertices {} of the patch is not positive": (

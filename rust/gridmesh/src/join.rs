@@ -3,7 +3,7 @@
 //! [`join()`] does it all. `parts` checks and numbers what is given, `union` finds out by an exact Boolean operation what is within
 //! other parts and where surfaces meet, `collar` which faces lie near that, `rims` makes the borders of what stays simple loops,
 //! `strips` finds the pieces of the union between them. For each one `patch` makes a tube or a fill, or, where it is neither an
-//! annulus nor a disk, evens the piece itself (`take`, `local`, `remesh`, `regular`) and fairs it (`fair`). `assemble` puts all together and
+//! annulus nor a disk, evens the piece itself (`take`, `local`, `remesh`, `regular`) and fairs it (`fair`, `polish`). `assemble` puts all together and
 //! proves it closed.
 
 mod assemble;
@@ -14,6 +14,7 @@ mod nearest;
 mod options;
 mod parts;
 mod patch;
+mod polish;
 mod regular;
 mod remesh;
 mod rims;
@@ -186,8 +187,8 @@ impl Stage<'_> {
         Ok((outside, found))
     }
 
-    /// What stays, and the strips between; collars of several curves, and of those that swallow a part, are made narrower
-    /// as long as that helps.
+    /// What stays, and the strips between; collars of several curves, and those that are not annuli, are made narrower as
+    /// long as that helps.
     fn collars(&self, progress: Progress<'_>) -> Result<(Outside, Vec<Strip>)> {
         let mut scales = vec![1.0; self.curves.count];
         let simple = |strip: &Strip| strip.sound && strip.rims.len() == 2 && strip.euler == 0;

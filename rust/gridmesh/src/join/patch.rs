@@ -5,8 +5,9 @@ use rustc_hash::FxHashMap;
 
 use super::fair::fair;
 use super::local::Local;
+use super::polish::polish;
 use super::regular::regularize;
-use super::remesh::{Ground, flip_valences, remesh};
+use super::remesh::{Ground, flip_valences, mend_thin, remesh};
 use super::site::Site;
 use super::strips::Strip;
 use super::take::{Taken, surroundings, take};
@@ -16,8 +17,11 @@ use crate::fill::{BridgeOptions, Fill, FillOptions, bridge, fill_hole};
 use crate::geometry::metrics::min_angle;
 use crate::progress::Progress;
 
-/// A tube with a smaller angle, in radians, is compared with the strip made even.
+/// A patch with a smaller angle, in radians, is compared with others.
 const THIN: f64 = 0.15;
+
+/// A tube with a smaller one is compared with its faired self.
+const FINE: f64 = 0.35;
 
 /// How much of the fairing is tried, where all of it makes a patch meet something.
 const SHARES: [f64; 4] = [1.0, 0.6, 0.3, 0.0];
@@ -37,6 +41,7 @@ pub(super) enum Kind {
 }
 
 /// What takes the place of a strip.
+#[derive(Clone)]
 pub(super) struct Patch {
     pub kind: Kind,
     /// Its new vertices.
@@ -71,14 +76,16 @@ impl Site<'_> {
     pub fn close(&self, strip: &Strip, progress: Progress<'_>) -> Result<Patch> {
         let grid = if self.options.blend > 0.0 { self.grid(strip, progress.part(0.0, 0.4))? } else { None };
         let grid = match grid {
-            Some(it) if it.is_good() => return Ok(it.patch),
+            Some(it) if it.is_good() && it.angle > FINE => return Ok(it.patch),
             Some(it) => match self.settled(strip, &it.patch, progress.part(0.4, 0.5))? {
-                Some(other) if other.is_good() => return Ok(other.patch),
                 Some(other) => Some(better(it, other)),
                 None => Some(it),
             },
             None => None,
         };
+        if let Some(it) = grid.as_ref().filter(|it| it.is_good()) {
+            return Ok(it.patch.clone());
+        }
         let own = if strip.sound { self.even(strip, progress.part(0.5, 1.0))? } else { None };
         let best = match (grid, own) {
             (Some(a), Some(b)) => better(a, b),
@@ -139,9 +146,10 @@ impl Site<'_> {
         let sides = vec![0; triangles.len()];
         let mut local = Local::new(positions, triangles, sides, border.len());
         let beyond = surroundings(self, strip, &border, &place, &mut local);
-        let positions = fair(&local, &beyond, progress)?;
-        let angle = min_angle(&positions, &local.triangles);
-        let vertices = positions[border.len()..].to_vec();
+        local.positions = fair(&local, &beyond, progress)?;
+        polish(&mut local);
+        let angle = min_angle(&local.positions, &local.triangles);
+        let vertices = local.positions[border.len()..].to_vec();
         let patch = Patch { vertices, triangles: patch.triangles.clone(), ..*patch };
         let meetings = self.meetings(&patch, progress)?;
         Ok(Some(Try { patch, meetings, angle }))
@@ -165,6 +173,8 @@ impl Site<'_> {
                 flip_valences(&mut local);
             }
             local.positions = fair(&local, &beyond, progress.part(0.9, 0.9))?;
+            mend_thin(&mut local);
+            polish(&mut local);
         }
         let faired = local.positions.clone();
         let m = local.border as u32;

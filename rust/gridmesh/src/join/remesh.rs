@@ -115,7 +115,7 @@ pub(super) fn flip_valences(local: &mut Local) {
 }
 
 /// Flips edges of thin triangles where that makes them rounder.
-fn mend_thin(local: &mut Local) {
+pub(super) fn mend_thin(local: &mut Local) {
     for _ in 0..3 {
         for e in local.edges() {
             let Some((old, new)) = local.flipped(e) else { continue };
