@@ -105,7 +105,7 @@ def characters() -> list[Character]:
             both(smooth((0.4, 0.42), (0.62, 0.38), (0.92, 0.0), (0.98, -0.25), (0.78, -0.32), (0.62, -0.05))),
         ),
         Layer(cream, [oval(0, 0.86, 0.27, 0.21)]),
-        Layer(ink, [oval(0, 0.95, 0.12, 0.09), *both(oval(0.22, 1.17, 0.12, 0.13))]),
+        Layer(ink, [oval(0, 0.95, 0.12, 0.09), *both(oval(0.22, 1.17, 0.1, 0.11))]),
     ]
     blue, white, orange = "#4F8FC0", "#EEF1EC", "#E8963A"
     bird = [
@@ -315,7 +315,7 @@ def characters() -> list[Character]:
                 *both(oval(0.4, -0.36, 0.16, 0.17)),
             ],
         ),
-        Layer(ink, both(oval(0.14, 1.1, 0.12, 0.13))),
+        Layer(ink, both(oval(0.14, 1.12, 0.1, 0.1))),
     ]
     fine = {"resolution": "EDGE_LENGTH", "edge_length": 0.035, "blend": 1.5, "layer_depth": 0.85}
     return [

@@ -142,15 +142,28 @@ def apply(ob: bpy.types.Object, *, keep_parts: bool) -> None:
     show(whole)
     whole.property_unset("gridmesh_joined")
     whole.data.property_unset("gridmesh_made")
+    if not keep_parts:
+        discard(own)
+        return
     with engine.resting():
         for part in own:
-            if keep_parts:
-                place = part.matrix_world.copy()
-                part.parent = None
-                part.matrix_world = place
-                _reveal(part, seen=True)
-            else:
-                _remove(part)
+            place = part.matrix_world.copy()
+            part.parent = None
+            part.matrix_world = place
+            _reveal(part, seen=True)
+
+
+def hidden_parts(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Parts of those of some objects that are joined bodies, as far as they are nobody else's to be seen."""
+    own = [part for ob in objects if is_whole(ob) for part in parts_of(ob) if part.parent == ob]
+    return [part for part in own if part not in objects and not part.visible_get()]
+
+
+def discard(parts: Sequence[bpy.types.Object]) -> None:
+    """Remove parts whose whole has become something else."""
+    with engine.resting():
+        for part in parts:
+            _remove(part)
 
 
 def swap(ob: bpy.types.Object) -> None:

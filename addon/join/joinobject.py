@@ -100,6 +100,7 @@ class Target:
                 ob = self._beside(context, mesh, transaction)
             else:
                 ob = self.objects[0]
+                ob.property_unset("gridmesh_joined")
                 _give(ob, mesh)
                 for other in self.objects[1:]:
                     _take_away(other, ob)

@@ -75,6 +75,7 @@ class OBJECT_OT_gridmesh_join(ResultShown, bpy.types.Operator):  # noqa: N801
         objects = join_objects(context)
         keep = self.keep_parts or (self.follow and any(following.changes(ob) for ob in objects))
         options = joining.Options(self.blend, self.edge_length or None, self.strict, keep)
+        needless = [] if keep else following.hidden_parts(objects)
         try:
             with Pointer(context) as pointer:
                 done = joining.join(context, objects, options, pointer)
@@ -84,6 +85,7 @@ class OBJECT_OT_gridmesh_join(ResultShown, bpy.types.Operator):  # noqa: N801
         except api.CancelledError:
             self.report({"WARNING"}, told("Cancelled; nothing was joined"))
             return {"CANCELLED"}
+        following.discard(needless)
         if keep and self.follow:
             following.remember(done.ob, objects, options)
         self.result = done.result(perf_counter() - started)

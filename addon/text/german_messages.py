@@ -532,42 +532,6 @@ _JOINS = {
     "{} parts": "{0} Teile",
     "{} polygon": "{0} Vieleck",
     "{} polygons": "{0} Vielecke",
-    # Of the library
-    "a number above 0, or nothing": "eine Zahl über 0, oder nichts",
-    "a number from 0 to 1000, of edge lengths": "eine Zahl von 0 bis 1000, in Kantenlängen",
-    "a rim borders nothing that was taken away": "ein Rand grenzt an nichts, das weggenommen wurde",
-    "an edge has a face on one side only": "eine Kante hat nur auf einer Seite eine Fläche",
-    "an edge joins more than two faces": "eine Kante verbindet mehr als zwei Flächen",
-    "faces meet in one vertex only": "Flächen treffen sich nur in einem Punkt",
-    "in part {} {}": "in Teil {0} {1}",
-    "no part": "kein Teil",
-    "no patch": "kein Flicken",
-    "one closed mesh or more": "ein geschlossenes Mesh oder mehr",
-    "part {}": "Teil {0}",
-    "part {} is not closed and manifold: {} near vertex {} at ({}, {}, {}); fill its holes and merge doubled vertices, "
-    "or delete the surplus faces": (
-        "Teil {0} ist nicht geschlossen und mannigfaltig: {1} bei Punkt {2} in ({3}, {4}, {5}); seine Löcher füllen und doppelte "
-        "Punkte verschmelzen, oder die überzähligen Flächen löschen"
-    ),
-    "the Boolean operation on them broke down": "die boolesche Operation mit ihnen ist abgebrochen",
-    "the Boolean operation on them has no result": "die boolesche Operation mit ihnen hat kein Ergebnis",
-    "the Boolean operation on them has no sound result": "die boolesche Operation mit ihnen hat kein brauchbares Ergebnis",
-    "the joints meet themselves or the parts in {} pairs of triangles, first near ({}, {}, {}); blend less, move a part, "
-    "or allow it": (
-        "die Übergänge treffen sich selbst oder die Teile in {0} Paaren von Dreiecken, zuerst bei ({1}, {2}, {3}); schmaler "
-        "verbinden, einen Teil verschieben oder es erlauben"
-    ),
-    "the parts cannot be joined here: {}, near ({}, {}, {}); move one of them a little, blend less, or give them shorter "
-    "edges there": (
-        "die Teile lassen sich hier nicht verbinden: {0}, bei ({1}, {2}, {3}); eines ein wenig verschieben, schmaler verbinden "
-        "oder ihnen dort kürzere Kanten geben"
-    ),
-    "the patches do not fit together": "die Flicken passen nicht zusammen",
-    "two faces at an edge are wound against each other": "zwei Flächen an einer Kante laufen gegeneinander um",
-    "what was taken away there has no border of whole edges": (
-        "was dort weggenommen wurde, hat keinen Rand aus ganzen Kanten"
-    ),
-    "{} of part {}": "{0} von Teil {1}",
 }
 
 _FILLS = {

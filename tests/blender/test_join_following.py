@@ -198,6 +198,27 @@ def test_applied_it_is_a_plain_mesh(snowman, keep):
     assert np.array_equal(vertices(whole.data), before)
 
 
+@pytest.mark.parametrize("follow", [False, True])
+def test_a_whole_can_be_a_part(snowman, follow):
+    drawing, whole, parts = snowman
+    n_parts = len(parts)
+    ball("Hat", 0.0, 0.5)
+    hat = bpy.data.objects["Hat"]
+    hat.location = (0, 2.0, 0)
+    bpy.context.view_layer.update()
+    larger = join(whole, hat, follow=follow)
+    check_sound(larger)
+    assert top(larger) == pytest.approx(2.5, abs=0.02)
+    assert (larger == whole) != follow
+    assert following.is_whole(larger) == follow
+    assert len(mesh_objects()) == (n_parts + 3 if follow else 1)
+    redraw(drawing, "Body", circle(radius=1.2))
+    settle()
+    settle()
+    bottom = min(point[1] for face in faces_in_world(larger) for point in face)
+    assert bottom == pytest.approx(-1.2 if follow else -1.0, abs=0.02)
+
+
 def test_plain_meshes_that_are_kept_are_followed_too():
     body, head = ball("Body"), ball("Head", 1.1, 0.7)
     whole = join(body, head, keep_parts=True)
