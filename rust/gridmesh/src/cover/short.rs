@@ -73,10 +73,10 @@ pub(super) fn around(patch: &Patch, vertex: usize) -> (f64, f64) {
     for face in faces(patch).filter(|face| face.contains(&(vertex as u32))) {
         let n = face.len();
         let place = |k: usize| patch.vertices[face[k % n] as usize];
-        for k in 0..n {
+        for (k, &corner) in face.iter().enumerate() {
             let (ahead, back) = (place(k + 1) - place(k), place(k + n - 1) - place(k));
             thinnest = thinnest.min(ahead.angle_to(back));
-            if face[k] as usize == vertex {
+            if corner as usize == vertex {
                 shortest = shortest.min(ahead.length()).min(back.length());
             }
         }

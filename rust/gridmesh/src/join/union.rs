@@ -72,8 +72,8 @@ impl Union {
             let part = id.checked_sub(first_id).filter(|&part| (part as usize) < parts.len())?;
             let first = parts.first[part as usize][2];
             let span = |k: usize| mesh.run_index.get(k).map_or(triangles.len(), |&i| i as usize / 3);
-            for t in span(run)..span(run + 1) {
-                source[t] = first + u32::try_from(*mesh.face_id.get(t)?).ok()?;
+            for (t, source) in source.iter_mut().enumerate().take(span(run + 1)).skip(span(run)) {
+                *source = first + u32::try_from(*mesh.face_id.get(t)?).ok()?;
             }
         }
         if source.iter().any(|&s| s as usize >= parts.triangles.len()) {
@@ -107,8 +107,7 @@ impl Union {
         let part = (0..self.triangles.len()).map(|t| self.part(parts, t)).collect::<Vec<_>>();
         let mut seams = vec![];
         for (t, beyond) in self.topology.across.iter().enumerate() {
-            for k in 0..3 {
-                let other = beyond[k];
+            for (k, &other) in beyond.iter().enumerate() {
                 if other as usize > t && part[other as usize] != part[t] {
                     let [a, b] = [self.triangles[t][(k + 1) % 3], self.triangles[t][(k + 2) % 3]];
                     seams.push(([a, b], [t as u32, other]));

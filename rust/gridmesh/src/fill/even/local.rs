@@ -281,9 +281,9 @@ impl Local {
         let live = (0..self.triangles.len()).filter(|&t| self.triangles[t] != GONE).collect::<Vec<_>>();
         let mut name = vec![NONE; self.positions.len()];
         let mut count = 0;
-        for v in 0..self.positions.len() {
+        for (v, name) in name.iter_mut().enumerate() {
             if v < self.border || !self.at[v].is_empty() {
-                name[v] = count;
+                *name = count;
                 self.positions[count as usize] = self.positions[v];
                 self.sizes[count as usize] = self.sizes[v];
                 count += 1;

@@ -155,7 +155,8 @@ mod tests {
         assert!(all > 2 * inner.len() / ASK_EVERY.1, "{all}");
         // Wherever the answer is no, it ends there.
         for k in 0..all {
-            (asked.store(0, Ordering::Relaxed), most.store(k, Ordering::Relaxed));
+            asked.store(0, Ordering::Relaxed);
+            most.store(k, Ordering::Relaxed);
             assert_eq!(
                 spread::<Triangular>(outline, &values, inner, Progress::new(&go_on)),
                 Err(Error::Cancelled)

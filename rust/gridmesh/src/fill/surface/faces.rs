@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::fair::{Bending, Membrane};
 use super::fit::{Faults, SEAM, SEAM_OF_CURVATURE, Solved, TANGLED, curvature_target, sound};
 use super::patchwork::Patchwork;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fill::filled::Shape;
 use crate::fill::options::Smooth;
 use crate::fill::planar::stars::CornerStars;

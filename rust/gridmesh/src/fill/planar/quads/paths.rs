@@ -141,7 +141,7 @@ impl<'a> Search<'a> {
         }
         let mut all: Vec<Wanted> =
             edges(most / 2).into_iter().map(|edge| self.along(Belt::Whole, edge)).collect();
-        if n > LARGE || n < 8 {
+        if !(8..=LARGE).contains(&n) {
             return all;
         }
         let corners = self.corners(if odd { CORNERS_OF_ODD } else { CORNERS });
