@@ -482,7 +482,16 @@ _BRIDGES = {
     # Of the library
     "a finite angle in radians": "ein endlicher Winkel im Bogenmaß",
     "a vertex is not finite": "ein Punkt ist nicht endlich",
+    "a finite length, at least 0": "eine endliche Länge, mindestens 0",
+    "a thread of a computation died": "ein Thread einer Berechnung ist abgebrochen",
     "a whole number above 0, or nothing": "eine ganze Zahl über 0, oder nichts",
+    "given, with {} loops": "angegeben, bei {} Randlinien",
+    "no triangles between the loops are sound": "keine Dreiecke zwischen den Randlinien sind brauchbar",
+    "none, with several loops": "keine, bei mehreren Randlinien",
+    "one loop or more": "eine Randlinie oder mehr",
+    "quads, with {} loops": "Vierecke, bei {} Randlinien",
+    "the loops have too few vertices to be joined": "die Randlinien haben zu wenige Punkte, um verbunden zu werden",
+    "triangles, with several loops": "Dreiecke, bei mehreren Randlinien",
     "two paths of a tube meet": "zwei Wege einer Röhre treffen sich",
 }
 

@@ -407,7 +407,7 @@ def _surface(
 def _fill(
     loop: Any,
     backwards: Any,
-    second: Any,
+    later: Any,
     smooth: Any,
     vertices: Any,
     flat: Any,

@@ -116,19 +116,9 @@ impl Task<'_> {
         Ok(Attempt { unrolled, patch, shape, solved })
     }
 
-    /// Normals of the triangles beyond the loop's edges, as if wound like the patch.
+    /// See [`outside`].
     pub(super) fn outside(&self) -> Vec<Option<DVec3>> {
-        let loop_ = &self.checked.vertices;
-        let at = |v: u32| self.job.vertices[self.rim.ids[v as usize] as usize];
-        let beyond = |k: usize| {
-            let (a, b) = (self.rim.local(loop_[k])?, self.rim.local(loop_[(k + 1) % loop_.len()])?);
-            let fan = self.rim.around(a).iter().map(|&t| self.rim.triangles[t as usize]);
-            let triangle = fan.into_iter().find(|t| t.contains(&b))?;
-            let [p, q, r] = triangle.map(at);
-            let along = (0..3).any(|i| triangle[i] == a && triangle[(i + 1) % 3] == b);
-            Some((q - p).cross(r - p) * if along { -1.0 } else { 1.0 })
-        };
-        (0..loop_.len()).map(beyond).collect()
+        outside(&self.checked.vertices, self.rim, self.job.vertices)
     }
 
     fn finish(&self, attempt: Attempt, creases: usize, clock: Clock) -> Fill {
@@ -174,4 +164,18 @@ impl Task<'_> {
         let given = if checked.reversed { loop_.iter().rev().copied().collect() } else { loop_.clone() };
         Fill::of(given, shape, report)
     }
+}
+
+/// Normals of the triangles beyond a loop's edges, as if wound like the patch.
+pub(super) fn outside(loop_: &[u32], rim: &Rim, vertices: &[DVec3]) -> Vec<Option<DVec3>> {
+    let at = |v: u32| vertices[rim.ids[v as usize] as usize];
+    let beyond = |k: usize| {
+        let (a, b) = (rim.local(loop_[k])?, rim.local(loop_[(k + 1) % loop_.len()])?);
+        let fan = rim.around(a).iter().map(|&t| rim.triangles[t as usize]);
+        let triangle = fan.into_iter().find(|t| t.contains(&b))?;
+        let [p, q, r] = triangle.map(at);
+        let along = (0..3).any(|i| triangle[i] == a && triangle[(i + 1) % 3] == b);
+        Some((q - p).cross(r - p) * if along { -1.0 } else { 1.0 })
+    };
+    (0..loop_.len()).map(beyond).collect()
 }

@@ -9,18 +9,19 @@ mod tour;
 use glam::{DVec2, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use self::polygon::triangulated;
+use self::polygon::{Outline, triangulated};
 use self::tour::{Loops, turned};
 use crate::error::{Error, Result};
 use crate::fill::even::fair::{Beyond, fair};
 use crate::fill::even::local::{Local, edge};
-use crate::fill::even::remesh::{Ground, flip_valences, refine, remesh};
+use crate::fill::even::remesh::{Ground, adapt, flip_valences, mend_thin, refine, remesh};
 use crate::fill::filled::{Bridged, Clock, Fill, Shape};
 use crate::fill::job::{Job, SOUND_RINGS};
 use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::check::{Checked, check_loop, check_near};
 use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::wanted;
+use crate::fill::one::outside;
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::report::{FillReport, Grid};
 use crate::fill::surface::fair::Membrane;
@@ -34,7 +35,7 @@ use crate::progress::Progress;
 const ROUNDS: usize = 3;
 
 /// Times at most that the triangles are made even on a surface that is made smooth.
-const SHAPED: usize = 6;
+const SHAPED: usize = 10;
 
 /// A round that changes the number of vertices by less than this share is the last.
 const SETTLED: f64 = 0.02;
@@ -92,7 +93,13 @@ impl Several<'_> {
         let at = loop_.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
         let taken = self.taken(&loop_);
         let loops = Loops::new(self.checked.iter().map(|c| c.vertices.len()));
-        let (positions, triangles) = triangulated(&loops, spanning, &at, &taken, progress.part(0.0, 0.3))?;
+        let outside = self
+            .checked
+            .iter()
+            .flat_map(|c| outside(&c.vertices, self.rim, self.vertices))
+            .collect::<Vec<_>>();
+        let outline = Outline { loops: &loops, at: &at, outside: &outside, taken: &taken };
+        let (positions, triangles) = triangulated(&outline, spanning, progress.part(0.0, 0.3))?;
         clock.stage("surface");
         let mut local = Local::new(positions, triangles, vec![], loop_.len());
         local.sides = vec![0; local.triangles.len()];
@@ -104,15 +111,17 @@ impl Several<'_> {
             let ground = Ground::of(&local);
             remesh(&mut local, &ground, progress.part(0.3, 0.6))?;
         } else {
-            // Shape and triangles depend on each other.
+            // Shape and triangles depend on each other. Fairing spreads the vertices too: to project them to a surface
+            // with two sheets close to each other would mix these up.
             refine(&mut local);
             for round in 0..SHAPED {
-                let part = |k: usize| 0.3 + 0.3 * k as f64 / (2 * SHAPED) as f64;
-                local.positions = fair(&local, &beyond, progress.part(part(2 * round), part(2 * round + 1)))?;
-                let ground = Ground::of(&local);
+                let part = progress
+                    .part(0.3, 0.6)
+                    .part(round as f64 / SHAPED as f64, (round + 1) as f64 / SHAPED as f64);
+                local.positions = fair(&local, &beyond, part)?;
                 let before = local.positions.len() as f64;
-                remesh(&mut local, &ground, progress.part(part(2 * round + 1), part(2 * round + 2)))?;
-                if round > 0 && (local.positions.len() as f64 - before).abs() < SETTLED * before {
+                adapt(&mut local);
+                if round > 1 && (local.positions.len() as f64 - before).abs() < SETTLED * before {
                     break;
                 }
             }
@@ -124,6 +133,7 @@ impl Several<'_> {
                 let part = |k: usize| 0.6 + 0.2 * k as f64 / (ROUNDS + 1) as f64;
                 if round > 0 {
                     flip_valences(&mut local);
+                    mend_thin(&mut local);
                 }
                 local.positions = fair(&local, &beyond, progress.part(part(round), part(round + 1)))?;
             }

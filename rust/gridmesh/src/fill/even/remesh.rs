@@ -71,6 +71,14 @@ pub(crate) fn remesh(local: &mut Local, ground: &Ground, progress: Progress<'_>)
     Ok(())
 }
 
+/// Splits, collapses and flips once, without moving anything.
+pub(crate) fn adapt(local: &mut Local) {
+    split_long(local);
+    collapse_short(local);
+    flip_valences(local);
+    local.compact();
+}
+
 /// Divides what is longer than wanted, without moving anything.
 pub(crate) fn refine(local: &mut Local) {
     for _ in 0..ROUNDS {

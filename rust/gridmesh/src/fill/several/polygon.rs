@@ -1,7 +1,7 @@
 //! The first surface in several loops: triangles between their vertices.
 //!
 //! Source: Barequet and Sharir, *Filling gaps in the boundary of a polyhedron*, 1995, for the dynamic program; Liepa, *Filling holes in
-//! meshes*, 2003, for the weight: the largest angle between triangles, then their area.
+//! meshes*, 2003, weighs by angles between triangles and to those around, too.
 
 use std::collections::BTreeMap;
 
@@ -19,28 +19,35 @@ const MOST: usize = 160;
 /// Vertices of a loop that are looked at in any case.
 const LEAST: usize = 8;
 
-/// Angles that differ by less count as equal, in radians.
-const ALIKE: f64 = 0.02;
+/// The loops, and what is around them.
+pub(super) struct Outline<'a> {
+    pub loops: &'a Loops,
+    /// Where each place is.
+    pub at: &'a [DVec3],
+    /// The normal of the triangle beyond the edge that begins at each place, as if wound like the patch.
+    pub outside: &'a [Option<DVec3>],
+    /// Edges that the mesh has between places.
+    pub taken: &'a FxHashSet<[u32; 2]>,
+}
 
 /// Positions, those of the loops' places first, and triangles between them, which have every edge of the loops once.
 ///
 /// # Errors
 /// [`Error::NoPatch`], [`Error::Cancelled`].
 pub(super) fn triangulated(
-    loops: &Loops,
+    outline: &Outline<'_>,
     spanning: &[[usize; 2]],
-    at: &[DVec3],
-    taken: &FxHashSet<[u32; 2]>,
     progress: Progress<'_>,
 ) -> Result<(Vec<DVec3>, Vec<[u32; 3]>)> {
+    let Outline { loops, at, taken, .. } = *outline;
     let refused = |reason: &str| Error::NoPatch { reason: reason.into(), at: at[0].truncate().to_array() };
     let coarse = Coarse::new(loops, at.len());
     let links = coarse
         .links(spanning, at, taken)
         .ok_or_else(|| refused("the loops have too few vertices to be joined"))?;
     let walk = walk(&coarse.loops, &links).into_iter().map(|k| coarse.places[k]).collect::<Vec<_>>();
-    let triangles =
-        cheapest(&walk, at, progress)?.ok_or_else(|| refused("no triangles between the loops are sound"))?;
+    let triangles = cheapest(&walk, outline, progress)?
+        .ok_or_else(|| refused("no triangles between the loops are sound"))?;
     let mut draft =
         Draft { names: walk.iter().map(|&k| k as u32).collect(), positions: at.to_vec(), triangles };
     draft.insert_skipped(loops);
@@ -108,41 +115,59 @@ impl Coarse {
     }
 }
 
-/// The triangulation of a polygon with the least largest angle, and of those the least area; by places in the polygon. None if
-/// all have a triangle with a vertex twice.
-fn cheapest(polygon: &[usize], at: &[DVec3], progress: Progress<'_>) -> Result<Option<Vec<[u32; 3]>>> {
+/// The triangulation of a polygon that is bent least: with the least sum, over all edges, of length times squared angle, to what lies
+/// beyond too; by places in the polygon. None if all have a triangle with a vertex twice.
+fn cheapest(
+    polygon: &[usize],
+    outline: &Outline<'_>,
+    progress: Progress<'_>,
+) -> Result<Option<Vec<[u32; 3]>>> {
     let n = polygon.len();
-    let point = |i: usize| at[polygon[i]];
+    let point = |i: usize| outline.at[polygon[i]];
     let normal = |[i, j, k]: [usize; 3]| (point(j) - point(i)).cross(point(k) - point(i));
-    // For the chord from i to k: the largest angle and the area on its side, and the apex of the triangle there.
-    let mut best: Vec<Option<(f64, f64, usize)>> = vec![None; n * n];
+    let own_loop = polygon.iter().map(|&place| outline.loops.of(place)).collect::<Vec<_>>();
+    let bend = |a: DVec3, b: DVec3| {
+        let angle = a.angle_between(b);
+        if angle.is_finite() { angle * angle } else { std::f64::consts::PI * std::f64::consts::PI }
+    };
+    // For the chord from i to k: the price of its side, and the apex of the triangle there.
+    let mut best: Vec<Option<(f64, usize)>> = vec![None; n * n];
+    // The price of a side of a triangle: a chord with the triangle beyond, or an edge of a loop.
+    let turn = |own: DVec3, [a, c]: [usize; 2], apex: usize| {
+        let length = point(a).distance(point(c));
+        if c > a + 1 && c - a < n - 1 {
+            return length * bend(own, normal([a, apex, c]));
+        }
+        let edge = if c == a + 1 { a } else { c };
+        match outline.outside[polygon[edge]] {
+            Some(beyond) if own_loop[a] == own_loop[c] => length * bend(own, beyond),
+            _ => 0.0,
+        }
+    };
     for span in 1..n {
         progress.report(span as f64 / n as f64)?;
         for i in 0..n - span {
             let k = i + span;
             if span == 1 {
-                best[i * n + k] = Some((0.0, 0.0, i));
+                best[i * n + k] = Some((0.0, i));
                 continue;
             }
             if polygon[i] == polygon[k] {
                 continue;
             }
-            let mut least: Option<(f64, f64, usize)> = None;
+            let mut least: Option<(f64, usize)> = None;
             for j in i + 1..k {
                 let (Some(left), Some(right)) = (best[i * n + j], best[j * n + k]) else { continue };
                 if polygon[j] == polygon[i] || polygon[j] == polygon[k] {
                     continue;
                 }
                 let own = normal([i, j, k]);
-                let turn = |[a, c]: [usize; 2], apex: usize| {
-                    if c == a + 1 { 0.0 } else { own.angle_between(normal([a, apex, c])) }
-                };
-                let angle = turn([i, j], left.2).max(turn([j, k], right.2)).max(left.0).max(right.0);
-                let angle =
-                    if angle.is_finite() { (angle / ALIKE).round() * ALIKE } else { std::f64::consts::PI };
-                let area = left.1 + right.1 + own.length();
-                if least.is_none_or(|least| (angle, area) < (least.0, least.1)) {
-                    least = Some((angle, area, j));
+                let mut price = left.0 + right.0 + turn(own, [i, j], left.1) + turn(own, [j, k], right.1);
+                if span == n - 1 {
+                    price += turn(own, [i, k], j);
+                }
+                if least.is_none_or(|least| price < least.0) {
+                    least = Some((price, j));
                 }
             }
             best[i * n + k] = least;
@@ -154,7 +179,7 @@ fn cheapest(polygon: &[usize], at: &[DVec3], progress: Progress<'_>) -> Result<O
     let (mut triangles, mut stack) = (vec![], vec![(0, n - 1)]);
     while let Some((i, k)) = stack.pop() {
         if k > i + 1
-            && let Some((.., j)) = best[i * n + k]
+            && let Some((_, j)) = best[i * n + k]
         {
             triangles.push([i as u32, j as u32, k as u32]);
             stack.extend([(i, j), (j, k)]);
@@ -249,8 +274,9 @@ mod tests {
             ];
             let loops = Loops::new(rings.iter().map(Vec::len));
             let at = rings.concat();
-            let (positions, triangles) =
-                triangulated(&loops, &[[0, 1], [0, 2]], &at, &FxHashSet::default(), Progress::NONE).unwrap();
+            let outside = vec![None; at.len()];
+            let outline = Outline { loops: &loops, at: &at, outside: &outside, taken: &FxHashSet::default() };
+            let (positions, triangles) = triangulated(&outline, &[[0, 1], [0, 2]], Progress::NONE).unwrap();
             let check = check_mesh(positions.len(), &triangles);
             assert_eq!((check.boundaries, check.components, check.euler), (3, 1, -1), "{n}");
             assert_eq!((check.bad_edges, check.boundary_edges), (0, 3 * n));
