@@ -51,10 +51,10 @@ use crate::progress::Progress;
 /// gives the same output for any number of threads.
 ///
 /// # Errors
-/// A loop that is not fit has its own variant for each reason: [`Error::IndexOutOfRange`](crate::error::Error::IndexOutOfRange),
-/// [`Error::TooFewPoints`](crate::error::Error::TooFewPoints), [`Error::RepeatedVertex`](crate::error::Error::RepeatedVertex), [`Error::FigureEight`](crate::error::Error::FigureEight), [`Error::NotFinite`](crate::error::Error::NotFinite),
-/// [`Error::ExtremeSize`](crate::error::Error::ExtremeSize), [`Error::ZeroLengthEdge`](crate::error::Error::ZeroLengthEdge), [`Error::SelfTouching`](crate::error::Error::SelfTouching), [`Error::FacesOnBothSides`](crate::error::Error::FacesOnBothSides),
-/// [`Error::NonManifold`](crate::error::Error::NonManifold). [`Error::InvalidOption`](crate::error::Error::InvalidOption); [`Error::FillIntersects`](crate::error::Error::FillIntersects) if `strict`; [`Error::Cancelled`](crate::error::Error::Cancelled).
+/// A loop that is not fit has its own variant for each reason: [`Error::IndexOutOfRange`],
+/// [`Error::TooFewPoints`], [`Error::RepeatedVertex`], [`Error::FigureEight`], [`Error::NotFinite`],
+/// [`Error::ExtremeSize`], [`Error::ZeroLengthEdge`], [`Error::SelfTouching`], [`Error::FacesOnBothSides`],
+/// [`Error::NonManifold`]. [`Error::InvalidOption`]; [`Error::FillIntersects`] if `strict`; [`Error::Cancelled`].
 /// Vertices within two rings of triangles around the loop have to be finite, wherever else they need not.
 ///
 /// Source: Nealen et al. 2009, section V, for the patch. The paper leaves the positions of the inner
@@ -73,14 +73,14 @@ pub fn fill_hole(
 
 /// Fills one hole that has several loops: a patch whose boundary they all are.
 ///
-/// One loop is filled as by [`fill_hole`], two are joined by a tube as by [`bridge`]. Between three or more the triangles are
+/// One loop is filled as by [`fill_hole`], two are joined by a tube as by [`bridge()`]. Between three or more the triangles are
 /// even, but no grid: the patch is a sphere with as many holes, every loop is exact and untouched, each of its edges gets one new triangle, no edge of the mesh is
 /// repeated, and the surface goes on from what is around all loops. Loops without faces are taken the way round that suits the
 /// nearest others. The loop of the [`Fill`] is the loops one after the other.
 ///
 /// # Errors
-/// Those of [`fill_hole`] and [`bridge`]; [`Error::InvalidOption`](crate::error::Error::InvalidOption) without a loop, and for quads with two loops or more;
-/// [`Error::NoPatch`](crate::error::Error::NoPatch) if the loops have too few vertices to be joined; [`Error::FigureEight`](crate::error::Error::FigureEight) for a vertex of two loops.
+/// Those of [`fill_hole`] and [`bridge()`]; [`Error::InvalidOption`] without a loop, and for quads with two loops or more;
+/// [`Error::NoPatch`] if the loops have too few vertices to be joined; [`Error::FigureEight`] for a vertex of two loops.
 pub fn fill_loops(
     vertices: &[DVec3],
     triangles: &[[u32; 3]],
@@ -118,8 +118,8 @@ pub fn fill_loops(
 /// another fill.
 ///
 /// # Errors
-/// [`Error::IndexOutOfRange`](crate::error::Error::IndexOutOfRange) if a triangle of the mesh names a vertex that does not exist,
-/// [`Error::Cancelled`](crate::error::Error::Cancelled). Of an item: those of [`fill_hole`], and [`Error::SharedEdge`](crate::error::Error::SharedEdge) if an earlier loop has
+/// [`Error::IndexOutOfRange`] if a triangle of the mesh names a vertex that does not exist,
+/// [`Error::Cancelled`]. Of an item: those of [`fill_hole`], and [`Error::SharedEdge`] if an earlier loop has
 /// used one of its edges.
 pub fn fill_holes(
     vertices: &[DVec3],
