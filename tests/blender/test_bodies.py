@@ -35,7 +35,7 @@ def test_body_is_the_one_of_the_module():
     ob = run_one(triangles=700, depth=0.8)
     check_body(ob)
     flat = points[:, :2] - bounds_middle(points[:, :2])
-    surface = gridmesh.inflate(gridmesh.mesh_sketch(flat, triangles=700, bend=0), depth=0.8)
+    surface = gridmesh.inflate(gridmesh.mesh_sketch(flat, triangles=700), depth=0.8)
     assert np.array_equal(triangles(ob.data), surface.triangles)
     assert np.allclose(vertices(ob.data), surface.vertices, rtol=0, atol=1e-6)
     assert np.allclose(uv_of(ob), surface.uv, rtol=0, atol=1e-6)

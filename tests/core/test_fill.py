@@ -281,7 +281,7 @@ def test_unfit_arguments_are_refused() -> None:
         ((vertices, faces[:, :2], loop), {}, gridmesh.GridMeshError),
         ((vertices, faces.astype(float), loop), {}, TypeError),
         ((vertices, faces, loop.astype(float)), {}, TypeError),
-        ((vertices, faces, [loop]), {}, gridmesh.GridMeshError),
+        ((vertices, faces, loop[None]), {}, gridmesh.GridMeshError),
         ((vertices, faces + 20, loop), {}, gridmesh.GridMeshError),
         ((vertices, -faces, loop), {}, gridmesh.GridMeshError),
         ((vertices, faces, loop), {"smooth": "round"}, gridmesh.GridMeshError),

@@ -310,6 +310,7 @@ def test_a_forked_process_works_after_use():
 
 INTERRUPTED = """
 import os, signal, threading
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell that runs this in the background has it ignored
 import gridmesh, numpy as np
 P = [[0, 0], [3, 0], [3, 1], [1, 2], [0, 1]]
 gridmesh.mesh_sketch(P)
