@@ -181,7 +181,7 @@ def test_two_loops_are_joined_by_a_tube():
 
 
 def test_loops_of_hundreds_of_vertices():
-    vertices, faces = ball(160, 300)
+    vertices, faces = ball(80, 150)
     caps = faces[(np.abs(vertices[faces].mean(axis=1)) > 0.9).any(axis=1)]
     loops = boundary_loops(caps)
     fill = gridmesh.fill_hole(vertices, caps, loops)
