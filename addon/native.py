@@ -12,7 +12,6 @@ import importlib
 import platform
 import sys
 import tomllib
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -88,6 +87,9 @@ def _unfit(version: str) -> str:
 
 def _installed() -> str | None:
     """Version of the module in the files, which after an update is not the one that is loaded."""
+    # Slow to import, and needed only to explain what is wrong.
+    from importlib import metadata
+
     importlib.invalidate_caches()
     try:
         return metadata.version("gridmesh")

@@ -12,7 +12,8 @@
 
 uv run tests/peers/idle.py [--objects 10000] [--updates 2000]
 
-Processor time of the main thread. Without a live body, and with one that is not touched.
+Processor time of the main thread, without a live body, and with one that is not touched. Registration counts from the
+second run on: the first one compiles the sources, unless Python is told not to keep that (PYTHONDONTWRITEBYTECODE).
 """
 
 from __future__ import annotations
