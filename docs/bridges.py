@@ -20,14 +20,10 @@ from __future__ import annotations
 
 import argparse
 import math
-import os
-import sys
 from pathlib import Path
 
 import fills
-import gallery
-
-from addon.text.messages import counted
+import studio
 
 # isort: split
 import bmesh
@@ -35,7 +31,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-import addon
+from addon.text.messages import counted
 
 STEP, RISE = 3.1, 3.3
 """From one mesh to the next, and from the lower row to the upper one."""
@@ -144,10 +140,8 @@ def main() -> None:
     default = Path(__file__).parent / "pictures" / "bridges.png"
     parser.add_argument("picture", nargs="?", type=Path, default=default)
     picture = parser.parse_args().picture.resolve()
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    addon.register()
-    plain = gallery.body_material("Mesh", "#9AA3AE", 0.4)
-    tube = gallery.body_material("Tube", "#E8963A", 0.4)
+    plain = studio.body_material("Mesh", "#9AA3AE", 0.4)
+    tube = studio.body_material("Tube", "#E8963A", 0.4)
     for k, make in enumerate((of_sizes, tilted, spheres)):
         for row in (0, 1):
             ob = joined(make, ours=row == 0)
@@ -156,14 +150,9 @@ def main() -> None:
             ob.rotation_euler = (0.35, 0, 0)
             ob.location = ((k - 1) * STEP, 0, (row - 0.5) * RISE)
     fills.stage(3 * STEP, 2 * RISE + 0.1, 1000, 12)
-    bpy.context.scene.render.filepath = str(picture)
-    with gallery.quiet():
-        bpy.ops.render.render(write_still=True)
+    studio.render(picture)
     print(f"wrote {picture}")
 
 
 if __name__ == "__main__":
-    main()
-    # Blender 4.5 as a module may crash or hang while it cleans up after Python.
-    sys.stdout.flush()
-    os._exit(0)
+    studio.run(main)

@@ -19,19 +19,18 @@ Each is one grease-pencil drawing. *Strokes to Mesh* with *Join Overlapping Stro
 from __future__ import annotations
 
 import argparse
-import contextlib
 import math
-import os
-import sys
-import tempfile
 import time
-import traceback
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-import gallery
+import studio
+
+# isort: split
+import bpy
 import numpy as np
+from mathutils import Vector
 
 ROOT = Path(__file__).resolve().parent.parent
 CELL, ROW = 2.7, 3.3
@@ -339,7 +338,7 @@ def draw(character: Character, at: tuple[float, float]):
             ink = bpy.data.materials.new(f"{character.name} {len(inks)}")
             bpy.data.materials.create_gpencil_data(ink)
             ink.grease_pencil.show_fill, ink.grease_pencil.show_stroke = True, False
-            ink.grease_pencil.fill_color = gallery.linear(layer.colour)
+            ink.grease_pencil.fill_color = studio.linear(layer.colour)
             inks[layer.colour] = len(data.materials)
             data.materials.append(ink)
         drawing = data.layers.new(f"Layer {number}", set_active=True).frames.new(1).drawing
@@ -411,10 +410,8 @@ def build(chosen: list[Character], pixels: int, samples: int, wires: bool) -> li
             for slot, material in enumerate(body.data.materials):
                 colour = material.diffuse_color[:]
                 body.data.materials[slot] = clay(f"{material.name} clay", colour, 0.4 if wires else 0.0)
-    gallery.set_stage(CELL * columns, ROW * rows + 0.3, pixels, samples)
+    studio.set_stage(CELL * columns, ROW * rows + 0.3, pixels, samples)
     bpy.context.scene.cycles.max_bounces = 2
-    bpy.context.scene.render.image_settings.color_mode = "RGB"
-    bpy.context.scene.render.image_settings.compression = 100
     return table
 
 
@@ -425,12 +422,12 @@ def centre(made: list, at: tuple[float, float]) -> None:
     x, y, _ = (corners.min(axis=0) + corners.max(axis=0)) / 2
     for body in made:
         body.location.x += at[0] - x
-        body.location.y += at[1] - y - 0.9 * math.tan(gallery.TILT)
+        body.location.y += at[1] - y - 0.9 * math.tan(studio.TILT)
 
 
 def clay(name: str, colour: tuple[float, ...], wire: float):
     """Clay of a colour, with thin lines along the edges."""
-    material = gallery.body_material(name, "#808080", wire)
+    material = studio.body_material(name, "#808080", wire)
     tree = material.node_tree
     for node in tree.nodes:
         if node.type == "BSDF_PRINCIPLED":
@@ -465,30 +462,8 @@ def main() -> None:
     show(table)
     (ROOT / "out").mkdir(exist_ok=True)
     bpy.ops.wm.save_as_mainfile(filepath=str(ROOT / "out" / "characters.blend"))
-    bpy.context.scene.render.filepath = str(choice.out)
-    bpy.ops.render.render(write_still=True)
+    studio.render(choice.out)
 
 
 if __name__ == "__main__":
-    os.environ.setdefault("BLENDER_USER_RESOURCES", tempfile.mkdtemp(prefix="gridmesh-blender-"))
-    sys.path.insert(0, str(ROOT))
-    import bpy
-    from mathutils import Vector
-
-    import addon
-
-    gallery.bpy = bpy
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    addon.register()
-    code = 0
-    try:
-        main()
-    except BaseException:
-        traceback.print_exc()
-        code = 1
-    finally:
-        with contextlib.suppress(Exception):
-            addon.unregister()
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(code)
+    studio.run(main)

@@ -20,31 +20,15 @@ from __future__ import annotations
 
 import argparse
 import math
-import os
-import sys
-import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-os.environ["BLENDER_USER_RESOURCES"] = tempfile.mkdtemp(prefix="gridmesh-")
-sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
-
-import system_libraries  # noqa: E402
-
-system_libraries.ensure()
-
-import bpy  # noqa: E402
+import studio
 
 # isort: split
-import bmesh  # noqa: E402  (there once bpy is)
-import gallery  # noqa: E402
-import numpy as np  # noqa: E402
-from mathutils import Vector  # noqa: E402
-
-import addon  # noqa: E402
-
-# It leaves it to those who run it to load Blender.
-gallery.bpy = bpy
+import bmesh
+import bpy
+import numpy as np
+from mathutils import Vector
 
 STEP, RISE = 2.9, 2.7
 """From one mesh to the next, and from a row to the one above."""
@@ -153,7 +137,7 @@ def stage(width: float, height: float, pixels: int, samples: int) -> None:
     world = bpy.data.worlds.new("Sky")
     world.use_nodes = True
     sky = world.node_tree.nodes["Background"]
-    sky.inputs["Color"].default_value = gallery.linear("#E9EDF2")
+    sky.inputs["Color"].default_value = studio.linear("#E9EDF2")
     sky.inputs["Strength"].default_value = 0.7
     scene.world = world
     lens = bpy.data.cameras.new("Camera")
@@ -176,12 +160,10 @@ def main() -> None:
     default = Path(__file__).parent / "pictures" / "fills.png"
     parser.add_argument("picture", nargs="?", type=Path, default=default)
     picture = parser.parse_args().picture.resolve()
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    addon.register()
     pixels = 1000
-    plain = gallery.body_material("Mesh", "#9AA3AE", 0.4)
-    line = gallery.body_material("Edges", "#3A3F47", 0.4)
-    patch = gallery.body_material("Patch", "#E8963A", 0.4)
+    plain = studio.body_material("Mesh", "#9AA3AE", 0.4)
+    line = studio.body_material("Edges", "#3A3F47", 0.4)
+    patch = studio.body_material("Patch", "#E8963A", 0.4)
     makers = (suzanne, cylinder, sphere, bent_sphere)
     tilts = ((0, 0, 0.25), (0.75, 0.2, 0), (0, 0, 0), (0, 0, 0))
     for k, (make, tilt) in enumerate(zip(makers, tilts, strict=True)):
@@ -197,14 +179,9 @@ def main() -> None:
             ob.location = ((k - 1.5) * STEP, 0, (row - 1) * RISE)
             wires(ob, line)
     stage(4 * STEP, 3 * RISE + 0.1, pixels, 24)
-    bpy.context.scene.render.filepath = str(picture)
-    with gallery.quiet():
-        bpy.ops.render.render(write_still=True)
+    studio.render(picture)
     print(f"wrote {picture}")
 
 
 if __name__ == "__main__":
-    main()
-    # Blender 4.5 as a module may crash or hang while it cleans up after Python.
-    sys.stdout.flush()
-    os._exit(0)
+    studio.run(main)

@@ -19,16 +19,15 @@ Each sketch is drawn as a grease-pencil stroke, and `object.gridmesh_from_stroke
 from __future__ import annotations
 
 import argparse
-import contextlib
 import json
 import math
-import os
-import sys
-import tempfile
 import time
-import traceback
 from pathlib import Path
 
+import studio
+
+# isort: split
+import bpy
 import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -48,10 +47,7 @@ DRAWINGS = [
 COLUMN, ROW, SIZE = 1.24, 2.62, 1.0
 """Width and height of a cell, and the size of a drawing in it."""
 
-TILT = math.radians(20)
-"""How far the camera leans back from looking straight down."""
-
-PAPER, INK, WIRE = "#F3EFE6", "#20242C", "#1B2030"
+INK = "#20242C"
 COLOURS = [
     "#5AA9C9",
     "#E0873A",
@@ -74,12 +70,6 @@ def read_sketch(path: Path) -> tuple[str, np.ndarray]:
     return sketch["name"], (points - (low + high) / 2) * (SIZE / (high - low).max())
 
 
-def linear(colour: str, alpha: float = 1.0) -> tuple[float, float, float, float]:
-    """A web colour as Blender's linear one."""
-    channels = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
-    return (*(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels), alpha)
-
-
 # --------------------------------------------------------------------------------------- strokes and bodies
 
 
@@ -98,7 +88,7 @@ def draw_stroke(name: str, points: np.ndarray, at: tuple[float, float]):
     drawing.tag_positions_changed()
     ink = bpy.data.materials.new(f"{name} ink")
     bpy.data.materials.create_gpencil_data(ink)
-    ink.grease_pencil.color = linear(INK)
+    ink.grease_pencil.color = studio.linear(INK)
     data.materials.append(ink)
     stroke.location = (*at, 0.0)
     return stroke
@@ -165,48 +155,6 @@ def farthest(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
 # --------------------------------------------------------------------------------------------- the picture
 
 
-def node_material(name: str, colour: str):
-    """An empty node tree and the output's surface socket."""
-    material = bpy.data.materials.new(name)
-    material.diffuse_color = linear(colour)
-    material.use_nodes = True
-    tree = material.node_tree
-    tree.nodes.clear()
-    return material, tree, tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
-
-
-def body_material(name: str, colour: str, pixels: float):
-    """Clay of a colour, with the edges of the triangles as thin lines."""
-    material, tree, surface = node_material(name, colour)
-    clay = tree.nodes.new("ShaderNodeBsdfPrincipled")
-    clay.inputs["Base Color"].default_value = linear(colour)
-    clay.inputs["Roughness"].default_value = 0.42
-    lines = tree.nodes.new("ShaderNodeBsdfDiffuse")
-    lines.inputs["Color"].default_value = linear(WIRE)
-    wire = tree.nodes.new("ShaderNodeWireframe")
-    wire.use_pixel_size = True
-    wire.inputs["Size"].default_value = pixels
-    soft = tree.nodes.new("ShaderNodeMath")
-    soft.operation = "MULTIPLY"
-    soft.inputs[1].default_value = 0.8
-    mix = tree.nodes.new("ShaderNodeMixShader")
-    tree.links.new(wire.outputs["Fac"], soft.inputs[0])
-    tree.links.new(soft.outputs["Value"], mix.inputs["Fac"])
-    tree.links.new(clay.outputs["BSDF"], mix.inputs[1])
-    tree.links.new(lines.outputs["BSDF"], mix.inputs[2])
-    tree.links.new(mix.outputs["Shader"], surface)
-    return material
-
-
-def plain_material(name: str, colour: str):
-    """One matt colour."""
-    material, tree, surface = node_material(name, colour)
-    matt = tree.nodes.new("ShaderNodeBsdfDiffuse")
-    matt.inputs["Color"].default_value = linear(colour)
-    tree.links.new(matt.outputs["BSDF"], surface)
-    return material
-
-
 def ink_line(stroke, points: np.ndarray, material):
     """The stroke as a thin tube for the picture: Cycles cannot draw grease pencil without a GPU."""
     curve = bpy.data.curves.new(f"{stroke.name} ink", "CURVE")
@@ -227,66 +175,6 @@ def ink_line(stroke, points: np.ndarray, material):
     return line
 
 
-def label(text: str, at: tuple[float, float], size: float, material) -> None:
-    """A line of text on the paper, centred."""
-    curve = bpy.data.curves.new(text, "FONT")
-    curve.body = text
-    curve.align_x = "CENTER"
-    curve.size = size
-    curve.materials.append(material)
-    line = bpy.data.objects.new(text, curve)
-    bpy.context.scene.collection.objects.link(line)
-    line.location = (*at, 0.001)
-
-
-def set_stage(width: float, height: float, pixels: int, samples: int) -> None:
-    """Paper, light, camera and render settings for a page of this size around the origin, so many pixels wide."""
-    scene = bpy.context.scene
-    paper = bpy.data.meshes.new("Paper")
-    far = 20 * max(width, height)
-    paper.from_pydata([(-far, -far, 0), (far, -far, 0), (far, far, 0), (-far, far, 0)], [], [(0, 1, 2, 3)])
-    paper.materials.append(plain_material("Paper", PAPER))
-    ground = bpy.data.objects.new("Paper", paper)
-    ground.hide_select = True
-    scene.collection.objects.link(ground)
-
-    sun = bpy.data.lights.new("Sun", "SUN")
-    sun.energy, sun.angle, sun.color = 2.6, 0.35, (1.0, 0.96, 0.9)
-    light = bpy.data.objects.new("Sun", sun)
-    light.rotation_euler = (math.radians(38), math.radians(-30), 0)
-    scene.collection.objects.link(light)
-    world = bpy.data.worlds.new("Sky")
-    world.use_nodes = True
-    sky = world.node_tree.nodes["Background"]
-    sky.inputs["Color"].default_value = linear("#DCE6F2")
-    sky.inputs["Strength"].default_value = 0.62
-    scene.world = world
-
-    lens = bpy.data.cameras.new("Camera")
-    lens.type = "ORTHO"
-    seen_height = height * math.cos(TILT)
-    # Blender fits the longer side of the picture.
-    lens.ortho_scale = max(width, seen_height)
-    camera = bpy.data.objects.new("Camera", lens)
-    distance = 3 * lens.ortho_scale
-    lens.clip_end = 100 * distance
-    camera.location = (0, -distance * math.sin(TILT), distance * math.cos(TILT))
-    camera.rotation_euler = (TILT, 0, 0)
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-
-    render = scene.render
-    render.engine = "CYCLES"
-    render.resolution_x, render.resolution_y = pixels, round(pixels * seen_height / width)
-    render.image_settings.file_format = "PNG"
-    scene.cycles.samples = samples
-    scene.cycles.use_denoising = True
-    scene.cycles.denoising_prefilter = "FAST"
-    scene.cycles.max_bounces = 1
-    scene.cycles.pixel_filter_type = "BLACKMAN_HARRIS"
-    scene.view_settings.view_transform = "Standard"
-
-
 # ------------------------------------------------------------------------------------------------ the job
 
 
@@ -295,7 +183,7 @@ def build(paths: list[Path], triangles: int, pixels: int, samples: int) -> list[
     columns = min(5, len(paths))
     rows = math.ceil(len(paths) / columns)
     width, height = COLUMN * columns + 0.25, ROW * rows + 0.2
-    ink, grey = plain_material("Ink", INK), plain_material("Label", "#6B6A66")
+    ink, grey = studio.plain_material("Ink", INK), studio.plain_material("Label", "#6B6A66")
     table = []
     for k, path in enumerate(paths):
         name, points = read_sketch(path)
@@ -308,14 +196,16 @@ def build(paths: list[Path], triangles: int, pixels: int, samples: int) -> list[
         # It lies on the paper; the lean of the camera shows it higher up than it is.
         rise = -min(corner[2] for corner in body.bound_box)
         body.location.z += rise
-        body.location.y -= 1.16 + rise * math.tan(TILT)
+        body.location.y -= 1.16 + rise * math.tan(studio.TILT)
         body.data.materials.clear()
-        body.data.materials.append(body_material(name, COLOURS[k % len(COLOURS)], 0.55 * pixels / 2000))
+        body.data.materials.append(
+            studio.body_material(name, COLOURS[k % len(COLOURS)], 0.55 * pixels / 2000)
+        )
         ink_line(stroke, points, ink)
         text = f"{numbers['triangles']} triangles, {numbers['irregular']} irregular vertices"
-        label(text, (x, y - 1.16), 0.06, grey)
+        studio.label(text, (x, y - 1.16), 0.06, grey)
         table.append({"name": name, **numbers, "ms": 1000 * seconds})
-    set_stage(width, height, pixels, samples)
+    studio.set_stage(width, height, pixels, samples)
     return table
 
 
@@ -335,25 +225,6 @@ def show(table: list[dict]) -> None:
     )
 
 
-@contextlib.contextmanager
-def quiet():
-    """Keep Blender's own messages, written by C code line by line, off the screen."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    kept = os.dup(1), os.dup(2)
-    with Path(os.devnull).open("wb") as nowhere:
-        os.dup2(nowhere.fileno(), 1)
-        os.dup2(nowhere.fileno(), 2)
-    try:
-        yield
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        for number, kept_one in enumerate(kept, 1):
-            os.dup2(kept_one, number)
-            os.close(kept_one)
-
-
 def main() -> None:
     """Run the job that the module's text describes."""
     parser = argparse.ArgumentParser(
@@ -366,41 +237,17 @@ def main() -> None:
     parser.add_argument("--samples", type=int, default=6, help="render samples for each pixel")
     choice = parser.parse_args()
     paths = choice.sketch or [ROOT / "tests/sketches/drawings" / f"{name}.json" for name in DRAWINGS]
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    addon.register()
     table = build(paths, choice.triangles, choice.width, choice.samples)
 
     choice.out.mkdir(parents=True, exist_ok=True)
     blend, picture = choice.out / "gridmesh.blend", choice.out / "gridmesh.png"
-    bpy.context.scene.render.filepath = str(picture.resolve())
     print("Rendering ...", flush=True)
-    with quiet():
+    with studio.quiet():
         bpy.ops.wm.save_as_mainfile(filepath=str(blend.resolve()), check_existing=False)
-        bpy.ops.render.render(write_still=True)
-    addon.unregister()
+    studio.render(picture)
     show(table)
     print(f"{blend}\n{picture}")
 
 
 if __name__ == "__main__":
-    sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
-    import system_libraries
-
-    system_libraries.ensure()
-    # Before Blender is imported: the user's own settings and add-ons stay out of it.
-    os.environ["BLENDER_USER_RESOURCES"] = tempfile.mkdtemp(prefix="gridmesh-")
-    import bpy
-
-    import addon
-
-    status = 1
-    try:
-        main()
-        status = 0
-    except Exception:
-        traceback.print_exc()
-    finally:
-        # Blender 4.5 as a module may crash or hang while it cleans up after Python.
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(status)
+    studio.run(main)

@@ -18,12 +18,14 @@ Dots are poles, vertices with other than four edges.
 from __future__ import annotations
 
 import argparse
-import os
-import sys
-import tempfile
-import traceback
 from pathlib import Path
 
+import gallery
+import studio
+
+# isort: split
+import bmesh
+import bpy
 import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -49,9 +51,9 @@ def made(points: np.ndarray, at: tuple[float, float], **options):
 
 def clay(name: str, colour: str):
     """A matt material without lines."""
-    material, tree, surface = gallery.node_material(name, colour)
+    material, tree, surface = studio.node_material(name, colour)
     shader = tree.nodes.new("ShaderNodeBsdfPrincipled")
-    shader.inputs["Base Color"].default_value = gallery.linear(colour)
+    shader.inputs["Base Color"].default_value = studio.linear(colour)
     shader.inputs["Roughness"].default_value = 0.45
     tree.links.new(shader.outputs["BSDF"], surface)
     return material
@@ -73,8 +75,6 @@ def dots(body, material) -> int:
     edges = np.array([edge.vertices[:] for edge in body.data.edges])
     poles = np.flatnonzero(np.bincount(edges.ravel()) != 4)
     ball = bpy.data.meshes.new("Dot")
-    import bmesh
-
     bm = bmesh.new()
     bmesh.ops.create_icosphere(bm, subdivisions=2, radius=0.012)
     bm.to_mesh(ball)
@@ -94,8 +94,8 @@ def build(paths: list[Path], pixels: int, samples: int) -> None:
     columns = 4
     width, height = COLUMN * columns + 0.1, ROW * len(paths) + 0.15
     line, ink, red = (
-        clay("Wire", gallery.WIRE),
-        gallery.plain_material("Label", "#6B6A66"),
+        clay("Wire", studio.WIRE),
+        studio.plain_material("Label", "#6B6A66"),
         clay("Pole", "#D1352B"),
     )
     for row, path in enumerate(paths):
@@ -121,8 +121,8 @@ def build(paths: list[Path], pixels: int, samples: int) -> None:
                     text = f"{text or str(len(body.data.polygons)) + ' quads'}, {poles} poles"
                     if column == 2:
                         text = f"{len(body.data.polygons)} quads, {poles} poles"
-            gallery.label(text, (x, y - 0.6), 0.055, ink)
-    gallery.set_stage(width, height, pixels, samples)
+            studio.label(text, (x, y - 0.6), 0.055, ink)
+    studio.set_stage(width, height, pixels, samples)
 
 
 def quadriflow(body) -> str:
@@ -143,39 +143,11 @@ def main() -> None:
     parser.add_argument("--width", type=int, default=1200)
     parser.add_argument("--samples", type=int, default=12)
     choice = parser.parse_args()
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    addon.register()
     paths = choice.sketch or [ROOT / "tests/sketches/drawings" / f"{name}.json" for name in NAMES]
     build(paths, choice.width, choice.samples)
-    settings = bpy.context.scene.render.image_settings
-    settings.color_mode, settings.compression = "RGB", 100
-    bpy.context.scene.render.filepath = str(choice.out.resolve())
-    with gallery.quiet():
-        bpy.ops.render.render(write_still=True)
-    addon.unregister()
+    studio.render(choice.out)
     print(choice.out)
 
 
 if __name__ == "__main__":
-    sys.path[:0] = [str(ROOT), str(ROOT / "docs"), str(ROOT / "tests")]
-    import system_libraries
-
-    system_libraries.ensure()
-    os.environ["BLENDER_USER_RESOURCES"] = tempfile.mkdtemp(prefix="gridmesh-")
-    import bpy
-    import gallery
-
-    gallery.bpy = bpy
-    import addon
-
-    status = 1
-    try:
-        main()
-        status = 0
-    except Exception:
-        traceback.print_exc()
-    finally:
-        # Blender 4.5 as a module may crash or hang while it cleans up after Python.
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(status)
+    studio.run(main)

@@ -17,17 +17,17 @@ The photograph is drawn here: felt pen and crayon on paper, with a shadow from o
 
 from __future__ import annotations
 
-import os
-import sys
 import tempfile
 from pathlib import Path
 
+import studio
+
+# isort: split
 import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
 WIDTH, HEIGHT = 420, 560
 LIMBS = {
     "body": ((210, 250), (210, 350), 62),
@@ -224,17 +224,11 @@ def render(path: Path, panels: int, step: float) -> None:
     scene.world.use_nodes = True
     scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.82, 0.84, 0.87, 1)
     scene.render.resolution_x, scene.render.resolution_y = 1500, round(1500 * 1.08 / (panels * step))
-    scene.render.image_settings.color_mode = "RGB"
-    scene.render.filepath = str(path)
-    bpy.ops.render.render(write_still=True)
+    studio.render(path)
 
 
 def main() -> None:
     """Make the figure wave, and the picture of it."""
-    import addon
-
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    addon.register()
     step = 0.82
     with tempfile.TemporaryDirectory() as folder:
         figure = sprite(Path(folder, "photograph.png"))
@@ -258,10 +252,7 @@ def main() -> None:
         render(ROOT / "docs" / "pictures" / "sprites.png", 5, step)
         (ROOT / "out").mkdir(exist_ok=True)
         bpy.ops.wm.save_as_mainfile(filepath=str(ROOT / "out" / "sprites.blend"), copy=True)
-    addon.unregister()
-    sys.stdout.flush()
-    os._exit(0)  # Blender 4.5 can crash in its own clean-up
 
 
 if __name__ == "__main__":
-    main()
+    studio.run(main)

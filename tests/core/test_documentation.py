@@ -66,3 +66,15 @@ def test_the_stub_file_is_true():
     command = [sys.executable, "-m", "mypy.stubtest", "gridmesh"]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout + result.stderr
+
+
+@pytest.mark.parametrize("picture", sorted((README.parent / "docs").rglob("*.png")), ids=lambda path: path.name)
+def test_pictures_hold_nothing_but_the_picture(picture):
+    """Blender writes the path of the scene, the date and its settings into what it renders."""
+    png, at, kinds = picture.read_bytes(), 8, []
+    while at < len(png):
+        kinds.append(png[at + 4 : at + 8])
+        at += 12 + int.from_bytes(png[at : at + 4], "big")
+    assert kinds[0] == b"IHDR"
+    assert kinds[-1] == b"IEND"
+    assert not {b"tEXt", b"zTXt", b"iTXt", b"eXIf"} & set(kinds)

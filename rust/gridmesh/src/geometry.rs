@@ -4,6 +4,7 @@ pub mod bones;
 pub(crate) mod cholesky;
 pub(crate) mod disjoint;
 pub mod embed;
+pub(crate) mod facet;
 pub mod harmonic;
 pub(crate) mod laplace;
 pub(crate) mod march;

@@ -19,8 +19,6 @@ mod strips;
 mod take;
 mod union;
 
-use std::time::Instant;
-
 pub use self::assemble::Joined;
 use self::collar::{Curves, Left};
 pub use self::options::{JoinOptions, JoinReport};
@@ -34,7 +32,7 @@ use self::union::Union;
 use crate::error::{Error, Result};
 use crate::fill::parallel::{in_parallel, steady};
 use crate::geometry::disjoint::Disjoint;
-use crate::progress::Progress;
+use crate::progress::{Clock, Progress};
 
 /// Times that the blend of curves in one collar is halved, until each has its own.
 const HALVED: usize = 2;
@@ -226,21 +224,4 @@ fn apart(parts: &Parts, union: &Union, seams: &[([u32; 2], [u32; 2])]) -> (usize
     (0..parts.len() as u32).for_each(|p| sizes[sets.root(p) as usize] += 1);
     let alone = (0..parts.len() as u32).filter(|&p| left[p as usize] && sizes[sets.root(p) as usize] == 1);
     (alone.count(), left.iter().filter(|l| !**l).count())
-}
-
-/// Seconds per stage.
-struct Clock {
-    since: Instant,
-    seconds: Vec<(&'static str, f64)>,
-}
-
-impl Clock {
-    fn new() -> Self {
-        Clock { since: Instant::now(), seconds: vec![] }
-    }
-
-    fn stage(&mut self, name: &'static str) {
-        self.seconds.push((name, self.since.elapsed().as_secs_f64()));
-        self.since = Instant::now();
-    }
 }

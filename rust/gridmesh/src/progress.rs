@@ -1,10 +1,10 @@
-//! Progress reports and cancelling.
+//! Progress reports, cancelling, and the time of stages.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
 
@@ -151,6 +151,30 @@ impl<'a> Rising<'a> {
         state.0 = state.0.max(fraction.min(1.0));
         state.1 = state.1 || self.progress.report(state.0).is_err();
         !state.1
+    }
+}
+
+/// Seconds per stage, for reports.
+pub(crate) struct Clock {
+    since: Instant,
+    /// Name and seconds of each stage, in the order of their first ends.
+    pub(crate) seconds: Vec<(&'static str, f64)>,
+}
+
+impl Clock {
+    /// Starts now.
+    pub(crate) fn new() -> Self {
+        Clock { since: Instant::now(), seconds: vec![] }
+    }
+
+    /// Ends a stage; one that is repeated counts whole.
+    pub(crate) fn stage(&mut self, name: &'static str) {
+        let elapsed = self.since.elapsed().as_secs_f64();
+        match self.seconds.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, seconds)) => *seconds += elapsed,
+            None => self.seconds.push((name, elapsed)),
+        }
+        self.since = Instant::now();
     }
 }
 

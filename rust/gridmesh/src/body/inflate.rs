@@ -12,8 +12,6 @@ mod side;
 mod spread;
 mod twins;
 
-use std::time::Instant;
-
 use glam::DVec2;
 
 use crate::body::inflate::front::{Front, Guide};
@@ -26,7 +24,7 @@ use crate::geometry::laplace::Pattern;
 use crate::geometry::topology::Topology;
 use crate::options::CellShape;
 use crate::patch::Patch;
-use crate::progress::{Progress, Rising};
+use crate::progress::{Clock, Progress, Rising};
 use field::Field;
 use height::{Flat, bends, squared_height};
 use inlets::Inlets;
@@ -67,7 +65,7 @@ use twins::Twins;
 /// equation), and only its sampling is optimised, under an invariant that excludes
 /// self-intersections.
 pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) -> Result<Surface> {
-    let mut clock = Stages::new();
+    let mut clock = Clock::new();
     options.check()?;
     let rising = Rising::new(progress);
     let callback = |fraction: f64| rising.report(fraction);
@@ -171,21 +169,4 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
     surface.report.seconds = clock.seconds;
     progress.report(1.0)?;
     Ok(surface)
-}
-
-/// Seconds per stage.
-struct Stages {
-    since: Instant,
-    seconds: Vec<(&'static str, f64)>,
-}
-
-impl Stages {
-    fn new() -> Self {
-        Stages { since: Instant::now(), seconds: vec![] }
-    }
-
-    fn stage(&mut self, name: &'static str) {
-        self.seconds.push((name, self.since.elapsed().as_secs_f64()));
-        self.since = Instant::now();
-    }
 }

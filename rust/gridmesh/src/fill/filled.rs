@@ -1,7 +1,6 @@
 //! A filled hole, what is kept to solve it again, and the loop being worked on.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use glam::DVec3;
 
@@ -152,26 +151,5 @@ impl PartialEq for Fill {
             && self.triangles == other.triangles
             && self.quads == other.quads
             && self.loop_ == other.loop_
-    }
-}
-
-/// Seconds per stage.
-pub(crate) struct Clock {
-    pub(crate) since: Instant,
-    pub(crate) seconds: Vec<(&'static str, f64)>,
-}
-
-impl Clock {
-    pub(crate) fn new() -> Self {
-        Clock { since: Instant::now(), seconds: vec![] }
-    }
-
-    pub(crate) fn stage(&mut self, name: &'static str) {
-        let elapsed = self.since.elapsed().as_secs_f64();
-        match self.seconds.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, seconds)) => *seconds += elapsed,
-            None => self.seconds.push((name, elapsed)),
-        }
-        self.since = Instant::now();
     }
 }

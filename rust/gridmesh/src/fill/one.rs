@@ -4,7 +4,7 @@ use glam::DVec3;
 use rustc_hash::FxHashSet;
 
 use crate::error::{Error, Result};
-use crate::fill::filled::{Clock, Fill, Shape};
+use crate::fill::filled::{Fill, Shape};
 use crate::fill::job::Job;
 use crate::fill::layout::unroll::{Unrolled, unroll, unroll_least_bent};
 use crate::fill::loops::check::Checked;
@@ -17,7 +17,7 @@ use crate::fill::report::{FillReport, Grid};
 use crate::fill::surface::fit::{Faults, Solved};
 use crate::fill::surface::patchwork::Patchwork;
 use crate::options::CellShape;
-use crate::progress::Progress;
+use crate::progress::{Clock, Progress};
 
 /// A patch in space.
 pub(super) struct Attempt {

@@ -9,6 +9,7 @@ pub(crate) mod mean_value;
 pub(crate) mod place;
 pub(crate) mod quads;
 pub(crate) mod quality;
+mod scaled;
 pub(crate) mod settle;
 pub(crate) mod small;
 pub(crate) mod stars;

@@ -2,7 +2,10 @@
 
 use glam::{DVec2, DVec3};
 use rstar::primitives::CachedEnvelope;
+
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
+
+use crate::geometry::facet::Facet;
 
 use super::parallel::steady;
 use crate::error::{Error, Result};
@@ -243,78 +246,44 @@ fn through_the_plane(
 
 /// The region as a set of triangles to project to.
 struct Surface {
-    tree: RTree<CachedEnvelope<Facet>>,
+    tree: RTree<CachedEnvelope<Face>>,
 }
 
-struct Facet {
-    face: u32,
-    corners: [DVec3; 3],
+struct Face {
+    number: u32,
+    facet: Facet,
 }
 
 impl Surface {
     fn new(vertices: &[DVec3], numbers: &[u32], region: &[[u32; 3]]) -> Self {
         // Their boxes are asked for again and again while the tree is made.
-        let facet = |(&face, t): (&u32, &[u32; 3])| {
-            CachedEnvelope::new(Facet { face, corners: t.map(|v| vertices[v as usize]) })
+        let face = |(&number, t): (&u32, &[u32; 3])| {
+            let facet = Facet::new(t.map(|v| vertices[v as usize]));
+            CachedEnvelope::new(Face { number, facet })
         };
-        Surface { tree: RTree::bulk_load(numbers.iter().zip(region).map(facet).collect()) }
+        Surface { tree: RTree::bulk_load(numbers.iter().zip(region).map(face).collect()) }
     }
 
     /// The nearest face, weights of its corners, and the point itself.
     fn nearest(&self, p: DVec3) -> (u32, [f64; 3], DVec3) {
         match self.tree.nearest_neighbor(p.to_array()) {
-            Some(facet) => {
-                let weights = facet.closest(p);
-                (facet.face, weights, (0..3).map(|k| weights[k] * facet.corners[k]).sum())
-            }
+            Some(face) => (face.number, face.facet.closest(p).1, face.facet.place(p)),
             None => (0, [1.0, 0.0, 0.0], p),
         }
     }
 }
 
-impl Facet {
-    /// Weights of the corners of the point nearest to `p`.
-    fn closest(&self, p: DVec3) -> [f64; 3] {
-        let [a, b, c] = self.corners;
-        let normal = (b - a).cross(c - a);
-        let squared = normal.length_squared();
-        if squared > 0.0 {
-            let inside = [
-                (c - b).cross(p - b).dot(normal),
-                (a - c).cross(p - c).dot(normal),
-                (b - a).cross(p - a).dot(normal),
-            ];
-            if inside.iter().all(|&x| x >= 0.0) {
-                return inside.map(|x| x / squared);
-            }
-        }
-        let side = |k: usize| {
-            let (from, to) = (self.corners[k], self.corners[(k + 1) % 3]);
-            let along = to - from;
-            let t = ((p - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            let mut weights = [0.0; 3];
-            (weights[k], weights[(k + 1) % 3]) = (1.0 - t, t);
-            ((from + t * along).distance_squared(p), weights)
-        };
-        let sides = [side(0), side(1), side(2)];
-        sides.into_iter().min_by(|x, y| x.0.total_cmp(&y.0)).map_or([1.0, 0.0, 0.0], |side| side.1)
-    }
-}
-
-impl RTreeObject for Facet {
+impl RTreeObject for Face {
     type Envelope = AABB<[f64; 3]>;
 
     fn envelope(&self) -> Self::Envelope {
-        let [a, b, c] = self.corners;
-        AABB::from_corners(a.min(b).min(c).to_array(), a.max(b).max(c).to_array())
+        self.facet.bounds()
     }
 }
 
-impl PointDistance for Facet {
+impl PointDistance for Face {
     fn distance_2(&self, point: &[f64; 3]) -> f64 {
-        let p = DVec3::from_array(*point);
-        let weights = self.closest(p);
-        (0..3).map(|k| weights[k] * self.corners[k]).sum::<DVec3>().distance_squared(p)
+        self.facet.closest(DVec3::from_array(*point)).0.powi(2)
     }
 }
 

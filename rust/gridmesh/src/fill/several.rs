@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::fill::even::fair::{Beyond, fair};
 use crate::fill::even::local::{Local, edge};
 use crate::fill::even::remesh::{Ground, adapt, flip_valences, mend_thin, refine, remesh};
-use crate::fill::filled::{Bridged, Clock, Fill, Shape};
+use crate::fill::filled::{Bridged, Fill, Shape};
 use crate::fill::job::{Job, SOUND_RINGS};
 use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::check::{Checked, check_loop, check_near};
@@ -29,7 +29,7 @@ use crate::fill::surface::fit::{Faults, LEAST_WEIGHT, folds, rim_angle};
 use crate::fill::surface::patchwork::Patchwork;
 use crate::geometry::metrics::min_angle;
 use crate::options::CellShape;
-use crate::progress::Progress;
+use crate::progress::{Clock, Progress};
 
 /// Rounds of fairing and flips.
 const ROUNDS: usize = 3;

@@ -9,7 +9,7 @@ use super::loft::{Edge, Loft};
 use super::options::BridgeOptions;
 use super::settle::settle;
 use crate::error::{Error, Result};
-use crate::fill::filled::{Bridged, Clock, Fill, Shape};
+use crate::fill::filled::{Bridged, Fill, Shape};
 use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::check::Checked;
 use crate::fill::loops::mesh::Rim;
@@ -21,7 +21,7 @@ use crate::fill::surface::fair::Membrane;
 use crate::fill::surface::fit::{SEAM_OF_CURVATURE, curvature_target, folds, rim_angle};
 use crate::fill::surface::patchwork::Patchwork;
 use crate::geometry::metrics::min_angle;
-use crate::progress::Progress;
+use crate::progress::{Clock, Progress};
 
 /// Sweeps within the surface at most.
 const SWEEPS: usize = 10;

@@ -3,10 +3,12 @@
 use glam::DVec3;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
-/// Triangles to lay points on.
-pub(crate) struct Facets(RTree<Facet>);
+use crate::geometry::facet::Facet;
 
-struct Facet([DVec3; 3]);
+/// Triangles to lay points on.
+pub(crate) struct Facets(RTree<Face>);
+
+struct Face(Facet);
 
 /// Line segments to lay points on, each with a number.
 pub(crate) struct Lines(RTree<Line>);
@@ -18,12 +20,12 @@ struct Line {
 
 impl Facets {
     pub fn new(corners: Vec<[DVec3; 3]>) -> Facets {
-        Facets(RTree::bulk_load(corners.into_iter().map(Facet).collect()))
+        Facets(RTree::bulk_load(corners.into_iter().map(|t| Face(Facet::new(t))).collect()))
     }
 
     /// The nearest point of them all.
     pub fn nearest(&self, p: DVec3) -> DVec3 {
-        self.0.nearest_neighbor(p.to_array()).map_or(p, |facet| facet.closest(p))
+        self.0.nearest_neighbor(p.to_array()).map_or(p, |face| face.0.place(p))
     }
 }
 
@@ -47,26 +49,6 @@ impl Lines {
     }
 }
 
-impl Facet {
-    fn closest(&self, p: DVec3) -> DVec3 {
-        let [a, b, c] = self.0;
-        let normal = (b - a).cross(c - a);
-        let squared = normal.length_squared();
-        if squared > 0.0 {
-            let inside = [
-                (c - b).cross(p - b).dot(normal),
-                (a - c).cross(p - c).dot(normal),
-                (b - a).cross(p - a).dot(normal),
-            ];
-            if inside.iter().all(|&x| x >= 0.0) {
-                return (a * inside[0] + b * inside[1] + c * inside[2]) / squared;
-            }
-        }
-        let sides = [[a, b], [b, c], [c, a]].map(|ends| closest(ends, p));
-        sides.into_iter().min_by(|x, y| x.distance_squared(p).total_cmp(&y.distance_squared(p))).unwrap_or(a)
-    }
-}
-
 impl Line {
     fn closest(&self, p: DVec3) -> DVec3 {
         closest(self.ends, p)
@@ -86,11 +68,11 @@ fn envelope(points: &[DVec3]) -> AABB<[f64; 3]> {
     AABB::from_corners(low.to_array(), high.to_array())
 }
 
-impl RTreeObject for Facet {
+impl RTreeObject for Face {
     type Envelope = AABB<[f64; 3]>;
 
     fn envelope(&self) -> Self::Envelope {
-        envelope(&self.0)
+        self.0.bounds()
     }
 }
 
@@ -102,10 +84,9 @@ impl RTreeObject for Line {
     }
 }
 
-impl PointDistance for Facet {
+impl PointDistance for Face {
     fn distance_2(&self, point: &[f64; 3]) -> f64 {
-        let p = DVec3::from_array(*point);
-        self.closest(p).distance_squared(p)
+        self.0.closest(DVec3::from_array(*point)).0.powi(2)
     }
 }
 

@@ -15,6 +15,7 @@ use super::graded::graded;
 use super::grown::grown;
 use super::place;
 use super::quality::{Quality, measure};
+use super::scaled::Scaled;
 use super::small::{SMALL, around_centre, without_interior};
 use crate::error::{Error, Result};
 use crate::fill::layout::develop::Loop;
@@ -121,31 +122,16 @@ pub(crate) fn fill_flat(
     options: &FlatOptions,
     progress: Progress<'_>,
 ) -> Result<FlatFill> {
-    let n = polygon.len();
-    if n < 3 || wanted.len() != n {
-        return Err(Error::TooFewPoints { what: "loop".into(), distinct: n });
-    }
-    if let Some(point) = polygon.iter().position(|p| !p.is_finite()) {
-        return Err(Error::NotFinite { what: "flattened loop".into(), point });
-    }
-    let centre = polygon.iter().sum::<DVec2>() / n as f64;
-    let length: f64 = (0..n).map(|k| polygon[k].distance(polygon[(k + 1) % n])).sum();
-    let scale = if length > 0.0 { length / n as f64 } else { 1.0 };
-    let points: Vec<DVec2> = polygon.iter().map(|&p| (p - centre) / scale).collect();
+    let Scaled { points, restore } = Scaled::new(polygon, wanted.len())?;
+    let n = points.len();
     let lengths = (0..n).map(|k| points[k].distance(points[(k + 1) % n]));
     let (least, most) = lengths.fold((f64::INFINITY, 0.0f64), |(a, b), l| (a.min(l), b.max(l)));
     let even = most <= 1.5 * least;
     let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0, even };
     contest.run(options, progress)?;
-    let candidates = contest.candidates;
-    let Some((_, mut fill)) = contest.best else {
-        return Err(Error::NoPatch {
-            reason: "no patch without an edge that the mesh has already".into(),
-            at: centre.to_array(),
-        });
-    };
-    fill.interior.iter_mut().for_each(|p| *p = *p * scale + centre);
-    fill.candidates = candidates;
+    let (_, mut fill) = contest.best.ok_or_else(|| restore.nothing())?;
+    restore.apply(&mut fill.interior);
+    fill.candidates = contest.candidates;
     Ok(fill)
 }
 

@@ -17,9 +17,10 @@ use self::measure::measure;
 use self::paths::Search;
 use super::flat::{FlatFill, Method};
 use super::place::{self, Similarity};
+use super::scaled::Scaled;
 use super::settle::extend;
 use super::stars::{CornerStars, Stars};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::progress::Progress;
 
 /// Badness below which no further way is tried.
@@ -49,28 +50,12 @@ pub(crate) fn fill_flat_quads(
     single: bool,
     progress: Progress<'_>,
 ) -> Result<FlatFill> {
-    let n = polygon.len();
-    if n < 3 || wanted.len() != n {
-        return Err(Error::TooFewPoints { what: "loop".into(), distinct: n });
-    }
-    if let Some(point) = polygon.iter().position(|p| !p.is_finite()) {
-        return Err(Error::NotFinite { what: "flattened loop".into(), point });
-    }
-    let centre = polygon.iter().sum::<DVec2>() / n as f64;
-    let length: f64 = (0..n).map(|k| polygon[k].distance(polygon[(k + 1) % n])).sum();
-    let scale = if length > 0.0 { length / n as f64 } else { 1.0 };
-    let points: Vec<DVec2> = polygon.iter().map(|&p| (p - centre) / scale).collect();
+    let Scaled { points, restore } = Scaled::new(polygon, wanted.len())?;
     let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0 };
     contest.run(single, progress)?;
-    let candidates = contest.candidates;
-    let Some((_, mut fill)) = contest.best else {
-        return Err(Error::NoPatch {
-            reason: "no patch without an edge that the mesh has already".into(),
-            at: centre.to_array(),
-        });
-    };
-    fill.interior.iter_mut().for_each(|p| *p = *p * scale + centre);
-    fill.candidates = candidates;
+    let (_, mut fill) = contest.best.ok_or_else(|| restore.nothing())?;
+    restore.apply(&mut fill.interior);
+    fill.candidates = contest.candidates;
     Ok(fill)
 }
 

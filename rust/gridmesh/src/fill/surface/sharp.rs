@@ -10,14 +10,14 @@ use rustc_hash::FxHashSet;
 use super::fit::{Faults, Solved, rim_angle};
 use super::patchwork::Patchwork;
 use crate::error::{Error, Result};
-use crate::fill::filled::{Clock, Shape};
+use crate::fill::filled::Shape;
 use crate::fill::layout::unroll::{Unrolled, Unrolling, area_vector, is_simple};
 use crate::fill::loops::reserve::{room, wanted};
 use crate::fill::one::{Attempt, Task};
 use crate::fill::planar::flat::{FlatFill, FlatOptions, fill_flat};
 use crate::fill::planar::quads::fill_flat_quads;
 use crate::options::CellShape;
-use crate::progress::Progress;
+use crate::progress::{Clock, Progress};
 
 /// How far points may be off a plane or a line, in sizes of the loop.
 const OFF: f64 = 0.02;
