@@ -68,7 +68,9 @@ def test_the_stub_file_is_true():
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-@pytest.mark.parametrize("picture", sorted((README.parent / "docs").rglob("*.png")), ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "picture", sorted((README.parent / "docs").rglob("*.png")), ids=lambda path: path.name
+)
 def test_pictures_hold_nothing_but_the_picture(picture):
     """Blender writes the path of the scene, the date and its settings into what it renders."""
     png, at, kinds = picture.read_bytes(), 8, []
