@@ -11,7 +11,8 @@
 
 Parts (all but `window` without a name): fmt clippy cargo doc ruff core core313 blender45 blender52 blender50 zip installed45 installed52
 installed50 real window. The module is built once, as the wheel that is shipped; every Python environment lives in `.venv/` and is
-made when it is missing. `zip` builds the extension; the parts after it install that zip, in the `bpy` modules and in a
+made when it is missing. Two parts run at a time where there are two processors; each line of output begins with the name of its
+part. `zip` builds the extension; the parts after it install that zip, in the `bpy` modules and in a
 real Blender, in the background and in a window. Blender 5.2 needs Python 3.13, and a real Blender has to be found
 (see real_blender.py): what cannot be tested counts as skipped, never as passed.
 """
@@ -23,9 +24,11 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -54,6 +57,19 @@ REAL_PARTS = {
     "real": ["tests/installed/real.py"],
     "window": ["tests/window/run.py"],
 }
+AT_ONCE = 2
+"""So many parts run side by side."""
+SLOWEST_FIRST = (
+    "ruff",
+    "blender52",
+    "blender45",
+    "core",
+    "core313",
+    *INSTALLED_PARTS,
+    "blender50",
+    *REAL_PARTS,
+)
+"""The order in which parts in Python begin, so that none is left alone at the end for long."""
 BY_NAME = {"window"}
 """Run only when they are named: simulated events need a machine that answers in time."""
 SKIPPED = 77
@@ -112,25 +128,36 @@ def main() -> int:
         for name, (version, group) in groups.items()
         if pythons[version]
     }
-    results = [run_rust(part) for part in RUST_PARTS if part in wanted]
-    wheel = extension = None
+    return report(run_all(wanted, environments))
+
+
+def run_all(wanted: list[str], environments: dict[str, Environment]) -> list[Result]:
+    """Run the parts, those that need nothing built first; their results and those of what was built."""
+    if {"fmt", "clippy"} & set(wanted) and shutil.which("rustup"):
+        # A minimal toolchain has neither.
+        subprocess.run(["rustup", "component", "add", "rustfmt", "clippy"], check=False, capture_output=True)
     needing_zip = {"zip", *INSTALLED_PARTS, *REAL_PARTS} & set(wanted)
-    if PYTHON_PARTS.keys() & set(wanted) or needing_zip:
-        built, wheel = build_wheel()
-        results.append(built)
-    if needing_zip:
-        built, extension = build_zip(wheel)
-        results.append(built)
-    for part in wanted:
-        if part == "ruff":
-            results.append(run_ruff(environments.get("core")))
-        elif part in PYTHON_PARTS:
-            results.append(run_pytest(part, environments, wheel))
-        elif part in INSTALLED_PARTS:
-            results.append(run_installed(part, environments, extension))
-        elif part in REAL_PARTS:
-            results.append(run_real(part, extension))
-    return report(results)
+    jobs: list[Future[Result]] = []
+    # A part waits only for what was begun before it, so that it always comes.
+    with ThreadPoolExecutor(max_workers=min(AT_ONCE, os.cpu_count() or 1)) as pool:
+        wheel = extension = None
+        if PYTHON_PARTS.keys() & set(wanted) or needing_zip:
+            wheel = Built("wheel", lambda: package.build_wheel(emptied("wheel")))
+            jobs.append(pool.submit(wheel.make))
+        jobs += [pool.submit(run_rust, part) for part in RUST_PARTS if part in wanted]
+        if needing_zip:
+            extension = Built("zip", lambda: build_zip(wheel.wait()))
+            jobs.append(pool.submit(extension.make))
+        for part in (part for part in SLOWEST_FIRST if part in wanted):
+            if part == "ruff":
+                jobs.append(pool.submit(run_ruff, environments.get("core")))
+            elif part in PYTHON_PARTS:
+                jobs.append(pool.submit(run_pytest, part, environments, wheel))
+            elif part in INSTALLED_PARTS:
+                jobs.append(pool.submit(run_installed, part, environments, extension))
+            elif part in REAL_PARTS:
+                jobs.append(pool.submit(run_real, part, extension))
+    return [job.result() for job in jobs]
 
 
 # -------------------------------------------------------------------------------------------------- parts
@@ -138,10 +165,6 @@ def main() -> int:
 
 def run_rust(part: str) -> Result:
     """One cargo command."""
-    if part in {"fmt", "clippy"} and shutil.which("rustup"):
-        # A minimal toolchain has neither.
-        component = "rustfmt" if part == "fmt" else part
-        subprocess.run(["rustup", "component", "add", component], check=False, capture_output=True)
     environment = {**os.environ, "RUSTDOCFLAGS": "-D warnings"} if part == "doc" else None
     result, output = run(part, RUST_PARTS[part], environment)
     for passed, failed, ignored in re.findall(r"(\d+) passed; (\d+) failed; (\d+) ignored", output):
@@ -162,16 +185,16 @@ def run_ruff(environment: Environment | None) -> Result:
     return result
 
 
-def run_pytest(part: str, environments: dict[str, Environment], wheel: Path | None) -> Result:
+def run_pytest(part: str, environments: dict[str, Environment], wheel: Built) -> Result:
     """pytest in the environment of a part."""
     version, group, arguments = PYTHON_PARTS[part]
     if group not in environments:
         missing = f"PYTHON {version} IS MISSING, so {part} was not tested"
         return Result(part, "skipped" if version == "3.13" else "failed", note=missing)
-    if wheel is None:
+    if (path := wheel.wait()) is None:
         return Result(part, "failed", note="the wheel was not built")
     environment = environments[group]
-    if note := environment.wait() or environment.install(wheel):
+    if note := environment.wait() or environment.install(path):
         return Result(part, "failed", note=note)
     record = OUT / f"{part}.xml"
     record.unlink(missing_ok=True)
@@ -189,54 +212,66 @@ def run_pytest(part: str, environments: dict[str, Environment], wheel: Path | No
     return result
 
 
-def build_wheel() -> tuple[Result, Path | None]:
-    """The wheel, built as it is shipped: one for every Python from 3.11 on."""
-    folder = OUT / "wheel"
-    shutil.rmtree(folder, ignore_errors=True)
-    return built("wheel", lambda: package.build_wheel(folder))
+class Built:
+    """Something that is built once, and that other parts wait for."""
+
+    def __init__(self, part: str, build: Callable[[], Path]) -> None:
+        self.part, self.build = part, build
+        self.path: Path | None = None
+        self.ended = threading.Event()
+
+    def make(self) -> Result:
+        """Build it, or say why not."""
+        say(self.part, "building")
+        started = time.monotonic()
+        try:
+            self.path = self.build()
+        except (package.PackageError, subprocess.CalledProcessError) as error:
+            note = f"{error}\n{getattr(error, 'output', None) or ''}"
+            return Result(self.part, "failed", time.monotonic() - started, note=note)
+        finally:
+            self.ended.set()
+        return Result(self.part, "passed", time.monotonic() - started)
+
+    def wait(self) -> Path | None:
+        """Where it is, once it is built; None if it could not be."""
+        self.ended.wait()
+        return self.path
 
 
-def build_zip(wheel: Path | None) -> tuple[Result, Path | None]:
+def build_zip(wheel: Path | None) -> Path:
     """The extension's zip, built and validated by Blender's builder."""
     if wheel is None:
-        return Result("zip", "failed", note="the wheel was not built"), None
-    folder = OUT / "zip"
-    shutil.rmtree(folder, ignore_errors=True)
-    return built("zip", lambda: package.build_zips([wheel], folder, package.builder())[0])
+        raise package.PackageError("the wheel was not built")
+    return package.build_zips([wheel], emptied("zip"), package.builder())[0]
 
 
-def built(part: str, build: Callable[[], Path]) -> tuple[Result, Path | None]:
-    """What was built, or why not."""
-    print(f"\n=== {part}", flush=True)
-    started = time.monotonic()
-    try:
-        path = build()
-    except (package.PackageError, subprocess.CalledProcessError) as error:
-        note = f"{error}\n{getattr(error, 'output', None) or ''}"
-        return Result(part, "failed", time.monotonic() - started, note=note), None
-    return Result(part, "passed", time.monotonic() - started), path
+def emptied(name: str) -> Path:
+    """A folder for what is built, with nothing of before in it."""
+    shutil.rmtree(OUT / name, ignore_errors=True)
+    return OUT / name
 
 
-def run_installed(part: str, environments: dict[str, Environment], extension: Path | None) -> Result:
+def run_installed(part: str, environments: dict[str, Environment], extension: Built) -> Result:
     """The zip in a `bpy` module."""
     if part not in environments:
         version = INSTALLED_PARTS[part][0]
         missing = f"PYTHON {version} IS MISSING, so {part} was not tested"
         return Result(part, "skipped" if version == "3.13" else "failed", note=missing)
-    if extension is None:
+    if (path := extension.wait()) is None:
         return Result(part, "failed", note="the zip was not built")
     environment = environments[part]
     if note := environment.wait():
         return Result(part, "failed", note=note)
-    command = [environment.script("python"), "tests/installed/scenario.py", str(extension)]
+    command = [environment.script("python"), "tests/installed/scenario.py", str(path)]
     return count_steps(*run(part, command))
 
 
-def run_real(part: str, extension: Path | None) -> Result:
+def run_real(part: str, extension: Built) -> Result:
     """The zip in a real Blender."""
-    if extension is None:
+    if (path := extension.wait()) is None:
         return Result(part, "failed", note="the zip was not built")
-    command = [sys.executable, *REAL_PARTS[part], str(extension)]
+    command = [sys.executable, *REAL_PARTS[part], str(path)]
     result, output = run(part, command)
     if result.code == SKIPPED:
         result.status, result.note = "skipped", output
@@ -263,6 +298,8 @@ class Environment:
     def __init__(self, name: str, group: str, python: str) -> None:
         self.path = ROOT / ".venv" / name
         self.log = OUT / f"{name}.log"
+        self.lock = threading.Lock()
+        self.installed: str | None = None
         create = '"$0" venv --quiet --allow-existing --python "$1" "$2"'
         command = f'{create} && "$0" pip install --quiet --python "$2" --group "$3"'
         with self.log.open("w") as log:
@@ -279,7 +316,7 @@ class Environment:
         return f"installation failed:\n{self.log.read_text()}" if self.process.wait() else ""
 
     def install(self, wheel: Path) -> str:
-        """Put the wheel in; what went wrong, or nothing."""
+        """Put the wheel in, once; what went wrong, or nothing."""
         command = [
             UV,
             "pip",
@@ -291,8 +328,11 @@ class Environment:
             str(self.path),
             str(wheel),
         ]
-        result = subprocess.run(command, capture_output=True, text=True, check=False)
-        return result.stderr if result.returncode else ""
+        with self.lock:
+            if self.installed is None:
+                result = subprocess.run(command, capture_output=True, text=True, check=False)
+                self.installed = result.stderr if result.returncode else ""
+            return self.installed
 
 
 def find_python(version: str) -> str | None:
@@ -330,7 +370,7 @@ def runs(python: str, version: str) -> bool:
 
 def run(part: str, command: list[str], environment: dict[str, str] | None = None) -> tuple[Result, str]:
     """Run a command, showing its output; the result and the output."""
-    print(f"\n=== {part}: {' '.join(str(word) for word in command)}", flush=True)
+    say(part, " ".join(str(word) for word in command))
     started = time.monotonic()
     lines = []
     with subprocess.Popen(
@@ -343,10 +383,15 @@ def run(part: str, command: list[str], environment: dict[str, str] | None = None
     ) as process:
         for line in process.stdout:
             lines.append(line)
-            print(line, end="", flush=True)
+            say(part, line.rstrip("\n"))
     status = "failed" if process.returncode else "passed"
     seconds = time.monotonic() - started
     return Result(part, status, seconds, code=process.returncode), "".join(lines)
+
+
+def say(part: str, line: str) -> None:
+    """Print a line of a part."""
+    print(f"{part:<11} | {line}", flush=True)
 
 
 def count(result: Result, **counts: int) -> None:
