@@ -1,7 +1,7 @@
 //! The Python module `gridmesh._native`: conversions only, no algorithm.
 //!
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `process` finds threads after a fork, `arrays`
-//! and `reports` hand results back, `patch`, `surface`, `fill`, `cut` and `join` are the classes, `bridge`, `sketch`, `body` and `map` make them
+//! and `reports` hand results back, `patch`, `surface`, `fill`, `cut`, `piece` and `join` are the classes, `bridge`, `sketch`, `body` and `map` make them
 //! of drawings, `batch` is the parallel map, `combine` unites drawings, `thickness` measures them, `picture`
 //! traces them, `decode` reads their files, `harmonic` carries values on, `bones` weighs bones.
 #![forbid(unsafe_code)]
@@ -24,6 +24,7 @@ mod mesh;
 mod options;
 mod patch;
 mod picture;
+mod piece;
 mod process;
 mod regrid;
 mod reports;
@@ -67,7 +68,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<regrid::Regrid>()?;
     module.add_function(wrap_pyfunction!(regrid::regrid, module)?)?;
     module.add_class::<cut::Cut>()?;
-    module.add_class::<cut::Piece>()?;
+    module.add_class::<piece::Piece>()?;
     module.add_function(wrap_pyfunction!(cut::cut, module)?)?;
     module.add_function(wrap_pyfunction!(cut::cut_reach, module)?)?;
     module.add_class::<join::Joined>()?;
@@ -78,6 +79,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fill::_fill, module)?)?;
     module.add_function(wrap_pyfunction!(regrid::_regrid, module)?)?;
     module.add_function(wrap_pyfunction!(cut::_cut, module)?)?;
-    module.add_function(wrap_pyfunction!(cut::_piece, module)?)?;
+    module.add_function(wrap_pyfunction!(piece::_piece, module)?)?;
     Ok(())
 }

@@ -140,10 +140,7 @@ pub fn mesh_sketch(
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Patch> {
     let drawing = drawing(outline, holes)?;
-    let mut chosen = SketchOptions::default();
-    let mut shape = Shape::default();
-    options::read("mesh_sketch", options, |name, value| shape.set(&mut chosen, name, value))?;
-    shape.settle(py, &mut chosen)?;
+    let chosen = chosen(py, "mesh_sketch", options)?;
     let kept = keep.filter(|keep| !keep.is_none()).map(kept).transpose()?;
     let sketch = Watch::new(progress)?.run(py, |progress| {
         let (outline, holes) = (&drawing.outline, &drawing.holes);
@@ -207,16 +204,22 @@ pub fn cover_sketch(
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Patch> {
     let drawing = drawing(outline, holes)?;
-    let mut chosen = SketchOptions::default();
-    let mut shape = Shape::default();
-    options::read("cover_sketch", options, |name, value| shape.set(&mut chosen, name, value))?;
-    shape.settle(py, &mut chosen)?;
+    let chosen = chosen(py, "cover_sketch", options)?;
     let covering = Watch::new(progress)?.run(py, |progress| {
         gridmesh::cover::cover_sketch(&drawing.outline, &drawing.holes, slack, &chosen, progress)
     })?;
     let report = reports::sketch(py, &covering.sketch.report)?;
     report.bind(py).set_item("outside", covering.outside)?;
     Ok(Patch::new(covering.sketch.patch, report, covering.sketch.kept))
+}
+
+/// The options of a function that meshes drawings.
+fn chosen(py: Python<'_>, function: &str, options: Option<&Bound<'_, PyDict>>) -> PyResult<SketchOptions> {
+    let mut chosen = SketchOptions::default();
+    let mut shape = Shape::default();
+    options::read(function, options, |name, value| shape.set(&mut chosen, name, value))?;
+    shape.settle(py, &mut chosen)?;
+    Ok(chosen)
 }
 
 /// The lattice of a patch.
