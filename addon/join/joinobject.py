@@ -143,11 +143,7 @@ class Target:
     ) -> bpy.types.Object:
         """Make an object like the first one of the mesh; the parts stay, hidden."""
         first = self.objects[0]
-        ob = transaction.remember(bpy.data.objects, first.copy())
-        ob.property_unset("gridmesh_joined")
-        _give(ob, mesh)
-        for collection in first.users_collection:
-            collection.objects.link(ob)
+        ob = transaction.remember(bpy.data.objects, beside(first, mesh))
         for part in self.objects:
             part.hide_set(True)
             part.hide_render = True
@@ -220,6 +216,17 @@ def _is_there(ob: bpy.types.Object) -> bool:
         return bool(ob.name)
     except ReferenceError:  # the operator has removed it
         return False
+
+
+def beside(first: bpy.types.Object, mesh: bpy.types.Mesh) -> bpy.types.Object:
+    """Make an object like another one, where that is, with another mesh; it follows nothing."""
+    ob = first.copy()
+    ob.property_unset("gridmesh_joined")
+    ob.property_unset("gridmesh_part")
+    _give(ob, mesh)
+    for collection in first.users_collection:
+        collection.objects.link(ob)
+    return ob
 
 
 def _give(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
