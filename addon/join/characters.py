@@ -13,7 +13,7 @@ from mathutils import Vector
 
 from ..data import frames
 from ..live import engine, family
-from . import following, joining, parts
+from . import deleted, following, joining, parts
 from .joinobject import beside
 
 NAME = "Character"
@@ -53,6 +53,7 @@ def add(owner: bpy.types.Object, part: bpy.types.Object, lies: Lies) -> str:
     new = whole is None
     if new:
         whole = _begun(owner)
+    deleted.let_go(whole)
     parts.note(part, whole, depth=lies.depth, reach=lies.reach, twin=lies.twin)
     following.attach(whole, part)
     following.reveal(part, seen=False)
@@ -105,6 +106,7 @@ def split(part: bpy.types.Object) -> list[bpy.types.Object]:
     A whole of which one part is left is that part again.
     """
     whole = following.whole_of(part)
+    deleted.let_go(whole)
     _let_go(whole, part)
     twin = _own_twin(whole, part) if part.gridmesh_part.twin else None
     following.hang(part, whole.parent)

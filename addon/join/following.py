@@ -18,8 +18,8 @@ from bpy.props import BoolProperty, CollectionProperty, FloatProperty, PointerPr
 
 from .. import api
 from ..data import defaults, frames, written
-from ..live import engine, family
-from . import drafts, joining, parts
+from ..live import engine
+from . import deleted, drafts, joining, parts
 from .uniting import JoinError
 
 BY_HAND = "its mesh was changed by hand; undo that, or apply the join"
@@ -74,6 +74,8 @@ class GridMeshJoined(bpy.types.PropertyGroup):
     quiet: BoolProperty(options={"HIDDEN"})
     digest: StringProperty(options={"HIDDEN"})
     """Fingerprint of what it was made of."""
+    made: StringProperty(options={"HIDDEN"})
+    """Fingerprint of the mesh that was made. Undo may bring one of the two back without the other."""
     problem: StringProperty(options={"HIDDEN"})
     """Why it does not follow now."""
 
@@ -114,6 +116,7 @@ def remember(ob: bpy.types.Object, objects: Sequence[bpy.types.Object], options:
     bpy.context.view_layer.update()
     joined.digest = fingerprint(ob)
     written.sign(ob.data)
+    joined.made = ob.data.gridmesh_made
     _known = True
 
 
@@ -260,7 +263,7 @@ def update(ob: bpy.types.Object) -> bool:
     """Join a whole anew if its parts or options have changed; say whether that was done."""
     joined = ob.gridmesh_joined
     found, now = placed(ob), fingerprint(ob)
-    if not found or now == joined.digest:
+    if not found or (now == joined.digest and joined.made in ("", ob.data.gridmesh_made)):
         return False
     if ob.mode != "OBJECT" or not ob.is_editable:
         return False
@@ -268,7 +271,7 @@ def update(ob: bpy.types.Object) -> bool:
         joined.problem = BY_HAND
         return False
     options = joining.Options(joined.blend, joined.edge_length or None, joined.strict)
-    joined.digest = now
+    joined.digest, joined.made = now, ob.data.gridmesh_made
     try:
         joining.again(bpy.context, ob, found, options)
     except (JoinError, api.NativeError) as error:
@@ -277,6 +280,7 @@ def update(ob: bpy.types.Object) -> bool:
     joined.problem = ""
     drafts.forget(ob)
     written.sign(ob.data)
+    joined.made = ob.data.gridmesh_made
     return True
 
 
@@ -284,25 +288,10 @@ def refresh() -> int:
     """Join every whole anew whose parts have changed; return how many were."""
     if not engine.awake() or not any_there():
         return 0
-    if any([_forget_deleted(ob) for ob in wholes()]):
-        family.mend()
+    for ob in wholes():
+        deleted.put_aside(ob)
     bpy.context.view_layer.update()
     return sum(update(ob) for ob in wholes())
-
-
-def _forget_deleted(ob: bpy.types.Object) -> bool:
-    """Let go of parts that were deleted: as long as a whole points to them they are not gone. Say whether there were any."""
-    entries = ob.gridmesh_joined.parts
-    gone = [at for at, entry in enumerate(entries) if entry.ob is None or not entry.ob.users_scene]
-    for at in reversed(gone):
-        part = entries[at].ob
-        entries.remove(at)
-        if part is not None and part.library is None:
-            mesh = part.data
-            bpy.data.objects.remove(part)
-            if mesh is not None and not mesh.users:
-                bpy.data.batch_remove([mesh])
-    return bool(gone)
 
 
 def any_there() -> bool:
@@ -329,6 +318,13 @@ def _on_other_time(*_: Any) -> None:
     drafts.forget()
     if any_there() and not bpy.app.background:
         _soon()
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_: Any) -> None:
+    _on_other_time()
+    for ob in wholes():
+        deleted.let_go(ob)
 
 
 @bpy.app.handlers.persistent
@@ -373,7 +369,7 @@ def _handlers() -> list[tuple[list[Any], Any]]:
         (on.depsgraph_update_post, _on_change),
         (on.undo_post, _on_other_time),
         (on.redo_post, _on_other_time),
-        (on.load_post, _on_other_time),
+        (on.load_post, _on_load),
         (on.blend_import_post, _on_other_time),
         (on.save_pre, _on_save),
     ]
