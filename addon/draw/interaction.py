@@ -181,7 +181,9 @@ class Interaction:
 
     def click(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Select what is under the mouse, with Shift too; an outline stands for its body."""
-        before, was_active = set(selected(context)), context.view_layer.objects.active
+        before, chosen = set(selected(context)), context.view_layer.objects.active
+        if chosen not in before:
+            chosen = None
         x, y = _pixel(context, event)
         bpy.ops.view3d.select(
             "EXEC_DEFAULT", False, toggle=event.shift, deselect_all=not event.shift, location=(int(x), int(y))
@@ -199,7 +201,7 @@ class Interaction:
         if active is not None and not event.shift:
             owned = [body for body in engine.bodies(active) if body.select_get()]
             layer.objects.active = owned[0] if owned else active
-            self._pick(context, event, was_active)
+            self._pick(context, event, chosen)
         characters.put_away()
         bpy.ops.ed.undo_push(message="Select")
         return {"FINISHED"}
@@ -207,7 +209,7 @@ class Interaction:
     def _pick(
         self, context: bpy.types.Context, event: bpy.types.Event, before: bpy.types.Object | None
     ) -> None:
-        """Pick the part under the mouse where a joined body is clicked that was active already, or a part of it."""
+        """Pick the part under the mouse where a joined body is clicked that was selected and active already, or a part of it."""
         active = context.view_layer.objects.active
         if before is None or not following.is_whole(active) or following.whole_of(before) != active:
             return

@@ -1,0 +1,166 @@
+"""Characters by mouse: parts drawn over a body, in front and behind, with twins; picked, moved, split off, deleted, dragged."""
+
+from time import perf_counter
+
+import bpy
+import numpy as np
+from draw_scenes import euler, words
+from live_scenes import click, edited
+from setting import begin, bodies, limb, modules, outlines, ring, stage, stroke, tool, turn_view
+
+
+def wholes():
+    return modules("join.following").wholes()
+
+
+def parts():
+    return modules("join.following").parts_of(wholes()[0])
+
+
+def character(triangles=None):
+    """A body with a head, an arm and its twin, and a belly: four strokes."""
+    yield from begin()
+    if triangles is not None:
+        with stage.override():
+            found = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT")
+            options = found.operator_properties("object.gridmesh_draw")
+        options.resolution, options.triangles = "TRIANGLES", triangles
+    x, y = stage.middle()
+    x -= 60
+    yield from stroke(ring((x, y - 60), 130, 48))
+    yield from stroke(ring((x, y + 110), 90, 40, start=-np.pi / 2), keys=("P",))
+    yield from stroke(limb(np.array([x + 80, y - 30]), 0.5, 150, 34), keys=("P", "T"))
+    yield from stroke(ring((x, y - 90), 60, 30), keys=("P",))
+    return x, y
+
+
+def part_character():
+    """Strokes with P become parts of one closed body; T gives one a twin; the word says where it lies."""
+    yield from begin()
+    x, y = stage.middle()
+    x -= 60
+    yield from stroke(ring((x, y - 60), 130, 48))
+    body = bodies()[0].name
+    said = words()
+    yield from stroke(
+        ring((x, y + 110), 90, 40, start=-np.pi / 2), keys=("P",), picture="part_1_head", at=0.85
+    )
+    assert said[-1][0] == f"Part of '{body}', Middle", said[-1]
+    assert len(wholes()) == 1
+    assert [ob for ob in bpy.context.view_layer.objects if ob.visible_get()] == wholes()
+    said.clear()
+    yield from stroke(
+        limb(np.array([x + 80, y - 30]), 0.5, 150, 34), keys=("P", "T"), picture="part_2_arm", at=0.85
+    )
+    yield from stroke(ring((x, y - 90), 60, 30), keys=("P",), picture="part_3_belly", at=0.85)
+    assert said[-1][0] == f"Part of '{body}', In Front", said[-1]
+    said.clear()
+    yield from stroke(ring((x + 70, y - 190), 50, 30), keys=("P", "D", "D", "D"))
+    assert said[-1][0] == f"Part of '{body}', Behind", said[-1]
+    assert len(parts()) == 5
+    assert len(bodies()) == len(outlines()) == 5
+    (whole,) = wholes()
+    assert euler(whole) == 2
+    yield from stage.picture("part_4_character")
+    turn_view()
+    yield from stage.picture("part_5_turned")
+    turn_view(np.pi / 2, 0, 0)
+    yield from stage.key("Z", ctrl=True)
+    yield 1.0
+    assert len(parts()) == 4, "more or less than one step"
+    yield from stage.key("Z", ctrl=True, shift=True)
+    yield 1.0
+    assert len(parts()) == 5
+    assert euler(wholes()[0]) == 2
+
+
+def part_moved():
+    """A click on the whole selects it, another one the part; G moves that, X deletes it, the button splits it off."""
+    x, y = yield from character()
+    yield from stage.open_sidebar()
+    yield from stage.click(x - 200, y + 250)
+    yield from stage.click(x + 150, y + 10)
+    assert bpy.context.view_layer.objects.active == wholes()[0]
+    yield from stage.click(x + 190, y + 40)
+    arm = bpy.context.view_layer.objects.active
+    assert arm == parts()[2], arm
+    assert wholes()[0].visible_get()
+    yield 0.6
+    yield from stage.picture("part_6_picked")
+    wide = np.ptp([corner[0] for corner in wholes()[0].bound_box])
+    yield from stage.move(*stage.middle())
+    for key in ("G", "X"):
+        yield from stage.key(key)
+    yield from stage.write("0.3")
+    yield from stage.key("RET")
+    yield 1.5
+    assert np.ptp([corner[0] for corner in wholes()[0].bound_box]) > wide + 0.5, "both arms move"
+    assert euler(wholes()[0]) == 2
+    yield from stage.picture("part_7_moved")
+    yield from stage.key("Z", ctrl=True)
+    yield 1.5
+    assert abs(np.ptp([corner[0] for corner in wholes()[0].bound_box]) - wide) < 0.01, "not undone"
+    yield from stage.press_button("UI", "gridmesh_split_part")
+    yield 0.5
+    assert len(parts()) == 3
+    assert len(bodies()) == len(outlines()) == 5, "the arm, and its twin"
+    yield from stage.picture("part_8_split")
+    yield from stage.move(*stage.middle())
+    yield from stage.key("Z", ctrl=True)
+    yield 1.5
+    assert len(parts()) == 4
+    assert euler(wholes()[0]) == 2
+    yield from stage.move(*stage.middle())
+    yield from stage.key("X")
+    yield 0.5
+    yield from stage.key("RET")
+    yield 1.5
+    assert len(parts()) == 3
+    assert euler(wholes()[0]) == 2
+    seen = [ob for ob in bpy.context.scene.objects if ob.type == "GREASEPENCIL"]
+    assert len(seen) == 3, "the outline stays"
+    yield from stage.picture("part_9_deleted")
+    yield from stage.key("Z", ctrl=True)
+    yield 1.5
+    assert len(parts()) == 4
+    assert abs(np.ptp([corner[0] for corner in wholes()[0].bound_box]) - wide) < 0.01, "not undone"
+
+
+def part_timing():
+    """The stroke of a joined character of five parts of 1000 triangles a side is dragged: how often the body follows."""
+    x, y = yield from character(1000)
+    yield from stroke(ring((x + 70, y - 190), 50, 30), keys=("P",))
+    yield 0.5
+    (whole,) = wholes()
+    faces = len(whole.data.polygons)
+    modules("join.characters").pick(parts()[1])
+    bpy.ops.ed.undo_push(message="Pick")
+    yield 1.0
+    yield from tool("builtin.select_box")
+    yield from edited(parts()[1].gridmesh_live.source, 10)
+    yield from stage.move(*stage.middle())
+    yield from stage.key("G")
+    drafts = modules("join.drafts").timing
+    bodies_alone = modules("live.engine").timing
+    drafts.clear()
+    bodies_alone.clear()
+    began = perf_counter()
+    at = stage.mouse
+    for k in range(90):
+        yield from stage.move(at[0] + 2 + k % 40, at[1] + k % 7)
+    seconds = perf_counter() - began
+    count = len(drafts)
+    own, body = 1000 * np.array(drafts), 1000 * np.array(bodies_alone)
+    yield from stage.picture("part_timing")
+    yield from click()
+    yield 2.0
+    assert euler(wholes()[0]) == 2
+    assert count > 10, "the body did not follow"
+    print(
+        f"NUMBERS parts: {faces} triangles of {len(parts())} parts; {count} drafts in {seconds:.2f} s of dragging, "
+        f"{count / seconds:.1f} a second; a draft takes {np.median(own):.1f} ms (median), {own.max():.1f} ms (most), "
+        f"its body before that {np.median(body):.1f} ms (median), {body.max():.1f} ms (most)"
+    )
+
+
+SCENES = (part_character, part_moved, part_timing)
