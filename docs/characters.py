@@ -495,7 +495,7 @@ def characters() -> list[Character]:
     fine = {"resolution": "EDGE_LENGTH", "edge_length": 0.035, "blend": 1.5, "layer_depth": 0.85}
     proud = {**fine, "layer_depth": 1.2}
     return [
-        Character("bear", bear, fine),
+        Character("bear", bear, proud),
         Character("bird", bird, fine),
         Character("robot", robot, {**fine, "profile": "FLAT", "depth": 0.8}),
         Character("hand", hand, fine),

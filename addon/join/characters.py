@@ -127,6 +127,19 @@ def split(part: bpy.types.Object) -> list[bpy.types.Object]:
     return made
 
 
+def apply(ob: bpy.types.Object, *, keep_parts: bool) -> None:
+    """Make a plain mesh of a joined body (or of that of a part). Its parts are removed, or bodies of their own, as twins are then."""
+    whole = following.whole_of(ob)
+    deleted.let_go(whole)
+    if keep_parts:
+        for part in following.parts_of(whole):
+            if part.parent == whole and part.gridmesh_part.twin:
+                twin = _own_twin(whole, part)
+                twin.property_unset("gridmesh_part")
+                following.reveal(twin, seen=True)
+    following.apply(ob, keep_parts=keep_parts)
+
+
 def pick(part: bpy.types.Object) -> None:
     """Show a part over its whole, to be moved, edited or deleted, and hide the others that were picked."""
     whole = following.whole_of(part)

@@ -15,6 +15,7 @@ from typing import Any
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, CollectionProperty, FloatProperty, PointerProperty, StringProperty
+from mathutils import Matrix
 
 from .. import api
 from ..data import defaults, frames, written
@@ -211,7 +212,7 @@ def reveal(ob: bpy.types.Object, *, seen: bool) -> None:
     """Show or hide an object, with the outline of its own if it has one."""
     ob.hide_set(not seen)
     ob.hide_render = not seen
-    if whole_of(ob) not in (None, ob):
+    if ob.display_type == "WIRE" and not is_whole(ob):  # it was picked
         ob.display_type = "TEXTURED"
     outline = frames.owned(ob) if frames.is_linked(ob) else None
     if outline is not None and outline.name in bpy.context.view_layer.objects:
@@ -241,10 +242,8 @@ def placed(ob: bpy.types.Object) -> list[parts.Placed]:
     for part in parts_of(ob):
         above = part.parent
         own = above is None or above == ob or not is_whole(above)
-        matrix = (
-            part.matrix_world if own else ob.matrix_world @ above.matrix_world.inverted() @ part.matrix_world
-        )
-        found.append((part, matrix))
+        to_own = Matrix.Identity(4) if own else ob.matrix_world @ above.matrix_world.inverted()
+        found.append((part, to_own @ part.matrix_world))
     return parts.with_twins(ob, found)
 
 

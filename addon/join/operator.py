@@ -127,7 +127,7 @@ class OBJECT_OT_gridmesh_apply_join(bpy.types.Operator):  # noqa: N801
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Forget the parts."""
-        following.apply(context.view_layer.objects.active, keep_parts=self.keep_parts)
+        characters.apply(context.view_layer.objects.active, keep_parts=self.keep_parts)
         return {"FINISHED"}
 
 

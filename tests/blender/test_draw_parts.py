@@ -223,6 +223,7 @@ def test_a_part_that_was_split_off_is_a_body_again(disk):
     free = [ob for ob in engine.bodies() if following.whole_of(ob) is None]
     assert len(free) == 2, "the arm and its twin"
     assert all(ob.visible_get() and ob.select_get() for ob in free)
+    assert all(ob.display_type == "TEXTURED" and not ob.hide_render for ob in free)
     left, right = sorted(free, key=lambda ob: middle(ob)[0])
     assert middle(left)[0] == pytest.approx(-middle(right)[0], abs=1e-4)
     assert left.gridmesh_live.source != right.gridmesh_live.source
@@ -235,6 +236,52 @@ def test_a_part_that_was_split_off_is_a_body_again(disk):
     assert disk.visible_get()
     assert disk.parent is None
     assert len(engine.bodies()) == 4
+
+
+def test_applied_with_its_parts_kept_a_twin_is_a_body_too(disk):
+    _, whole = add(ARM, use_twin=True)
+    bpy.ops.object.gridmesh_apply_join(keep_parts=True)
+    assert following.wholes() == []
+    assert len(engine.bodies()) == 3
+    assert sorted(round(middle(ob)[0], 1) for ob in engine.bodies()) == [-1.9, 0.0, 1.9]
+    assert all(ob.visible_get() for ob in [whole, *engine.bodies()])
+    settle()
+    assert all(ob.gridmesh_live.problem == "" for ob in engine.bodies())
+
+
+def test_applied_it_follows_an_armature_by_automatic_weights(disk):
+    add(circle(40, 0.8, (0, 2.4)))
+    _, whole = add(circle(40, 0.5, (2.2, 0.3), start=np.pi), use_twin=True)
+    bpy.ops.object.gridmesh_apply_join()
+    assert bpy.data.objects[:] == [whole], "it is a plain mesh"
+    data = bpy.data.armatures.new("Bones")
+    bones = bpy.data.objects.new("Bones", data)
+    bpy.context.scene.collection.objects.link(bones)
+    activate(bones)
+    bpy.ops.object.mode_set(mode="EDIT")
+    spots = {
+        "Body": [(0, -1, 0), (0, 1.2, 0)],
+        "Head": [(0, 1.7, 0), (0, 3, 0)],
+        "Arm": [(1.9, 0.3, 0), (2.6, 0.3, 0)],
+    }
+    for name, (start, end) in spots.items():
+        bone = data.edit_bones.new(name)
+        bone.head, bone.tail = start, end
+    bpy.ops.object.mode_set(mode="OBJECT")
+    activate(bones, whole)
+    bpy.context.view_layer.objects.active = bones
+    bpy.ops.object.parent_set(type="ARMATURE_AUTO")
+    weights = [sum(group.weight for group in vertex.groups) for vertex in whole.data.vertices]
+    assert min(weights) > 0.9, "bone heat found no way to some vertices"  # it leaves out the smallest weights
+    bones.pose.bones["Head"].rotation_mode = "XYZ"
+    bones.pose.bones["Head"].rotation_euler = (0, 0, 0.8)
+    bpy.context.view_layer.update()
+    before = world_vertices(whole)
+    seen = whole.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    after = np.array([whole.matrix_world @ vertex.co for vertex in seen.data.vertices])
+    moved = np.linalg.norm(after - before, axis=1)
+    assert moved[before[:, 1] > 2.6].min() > 0.2
+    assert moved[before[:, 1] < -1].max() < 0.1
 
 
 def test_a_picked_part_is_seen_over_the_whole_and_put_away(disk):

@@ -163,4 +163,65 @@ def part_timing():
     )
 
 
-SCENES = (part_character, part_moved, part_timing)
+def part_armature():
+    """From strokes to an armature with automatic weights: the join applied, bones, Ctrl-P, an arm and the head turned."""
+    yield from character()
+    spots = [np.array(part.matrix_world.translation) for part in parts()]
+    whole = wholes()[0]
+    yield from stage.open_sidebar()
+    yield from stage.press_button("UI", "gridmesh_apply_join")
+    yield 1.0
+    assert not wholes()
+    assert not bodies()
+    assert euler(whole) == 2
+    body, head, arm = spots[:3]
+    side = arm * [-1, 1, 1] + [2 * body[0], 0, 0]
+    bones = {
+        "Body": (body - [0, 0, 0.8], body + [0, 0, 0.6]),
+        "Head": (body + [0, 0, 0.9], head + [0, 0, 0.5]),
+        "Arm.L": (arm - (arm - body) * 0.3, arm + (arm - body) * 0.45),
+        "Arm.R": (side - (side - body) * 0.3, side + (side - body) * 0.45),
+    }
+    with stage.override():
+        bpy.ops.object.armature_add()
+        armature = bpy.context.view_layer.objects.active
+        armature.location = (0, 0, 0)
+        armature.show_in_front = True
+        bpy.ops.object.mode_set(mode="EDIT")
+        made = armature.data.edit_bones
+        for bone in list(made):
+            made.remove(bone)
+        for name, (start, end) in bones.items():
+            bone = made.new(name)
+            bone.head, bone.tail = start, end
+            if name != "Body":
+                bone.parent = made["Body"]
+        bpy.ops.object.mode_set(mode="OBJECT")
+        whole.select_set(True)
+    yield from stage.picture("part_10_bones")
+    with stage.override():
+        bpy.ops.object.parent_set(type="ARMATURE_AUTO")
+        bpy.ops.object.mode_set(mode="POSE")
+    assert min(sum(group.weight for group in vertex.groups) for vertex in whole.data.vertices) > 0.9
+    yield from tool("builtin.select_box")
+    for name, turn in (("Head", 25), ("Arm.L", 60)):
+        armature.data.bones.active = armature.data.bones[name]
+        for bone in armature.pose.bones:
+            chosen = bone if hasattr(bone, "select") else bone.bone
+            chosen.select = bone.name == name
+        yield 0.3
+        yield from stage.move(*stage.middle())
+        yield from stage.key("R")
+        yield from stage.write(str(turn))
+        yield from stage.key("RET")
+        yield 0.8
+    seen = whole.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    moved = [
+        np.linalg.norm(a.co - b.co) for a, b in zip(seen.data.vertices, whole.data.vertices, strict=True)
+    ]
+    assert max(moved) > 0.3, "the armature moves nothing"
+    assert sorted(moved)[len(moved) // 4] < 0.1, "all of it moves"
+    yield from stage.picture("part_11_posed")
+
+
+SCENES = (part_character, part_moved, part_armature, part_timing)
