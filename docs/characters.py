@@ -93,6 +93,181 @@ class Character:
     options: dict
 
 
+def rabbit() -> list[Layer]:
+    """From the front, sitting."""
+    fur, inner, ink = "#D9C7AE", "#E3A6A6", "#3B3036"
+    ear = smooth(
+        (0.08, 0.95),
+        (0.2, 1.4),
+        (0.3, 1.95),
+        (0.44, 2.08),
+        (0.55, 1.92),
+        (0.5, 1.5),
+        (0.4, 1.05),
+        (0.25, 0.8),
+    )
+    foot = oval(0.42, -0.92, 0.3, 0.19, 8)
+    return [
+        Layer(fur, both(ear)),
+        Layer(fur, [oval(0, -0.28, 0.62, 0.72), oval(0, 0.72, 0.56, 0.48)]),
+        Layer(fur, both(foot)),
+        Layer(inner, [oval(0, 0.58, 0.12, 0.09)]),
+        Layer(ink, both(oval(0.24, 0.8, 0.1, 0.12))),
+    ]
+
+
+def fish() -> list[Layer]:
+    """From the side."""
+    orange, white, ink = "#E4762B", "#F1EEE6", "#3B3036"
+    tail = smooth(
+        (0.6, 0.14),
+        (1.0, 0.5),
+        (1.22, 0.62),
+        (1.2, 0.3),
+        (1.12, 0.0),
+        (1.2, -0.3),
+        (1.22, -0.6),
+        (1.0, -0.48),
+        (0.6, -0.12),
+    )
+    fin = smooth((-0.5, 0.4), (-0.3, 0.95), (0.05, 1.08), (0.5, 0.85), (0.62, 0.4), (0.1, 0.4))
+    below = smooth((-0.1, -0.4), (0.05, -0.85), (0.35, -0.95), (0.45, -0.7), (0.4, -0.35))
+    side = smooth((-0.16, 0.1), (0.2, 0.26), (0.56, 0.2), (0.5, 0.0), (0.52, -0.24), (0.2, -0.26))
+    body = smooth(
+        (-1.15, 0.02),
+        (-0.95, 0.34),
+        (-0.5, 0.6),
+        (0.0, 0.66),
+        (0.5, 0.42),
+        (0.85, 0.14),
+        (0.85, -0.12),
+        (0.5, -0.4),
+        (0.0, -0.62),
+        (-0.5, -0.58),
+        (-0.95, -0.3),
+    )
+    return [
+        Layer(orange, [tail, fin, below]),
+        Layer(orange, [body]),
+        Layer(white, [side, oval(-0.64, 0.14, 0.2, 0.2)]),
+        Layer(ink, [oval(-0.68, 0.14, 0.12, 0.12)]),
+    ]
+
+
+def octopus() -> list[Layer]:
+    """From the front, with six arms."""
+    violet, ink = "#8E6BB0", "#2E2632"
+    outer = smooth(
+        (0.3, -0.02),
+        (0.62, -0.3),
+        (0.98, -0.36),
+        (1.22, -0.12),
+        (1.34, -0.02),
+        (1.4, -0.16),
+        (1.26, -0.48),
+        (0.98, -0.66),
+        (0.58, -0.6),
+        (0.2, -0.32),
+    )
+    middle = smooth(
+        (0.28, -0.15),
+        (0.56, -0.6),
+        (0.86, -0.88),
+        (1.12, -0.9),
+        (1.18, -1.04),
+        (1.04, -1.16),
+        (0.74, -1.12),
+        (0.42, -0.88),
+        (0.14, -0.4),
+    )
+    inner = smooth(
+        (0.06, -0.2),
+        (0.3, -0.25),
+        (0.36, -0.8),
+        (0.5, -1.14),
+        (0.52, -1.34),
+        (0.38, -1.4),
+        (0.2, -1.2),
+        (0.1, -0.8),
+    )
+    head = smooth(
+        (0, -0.38),
+        (0.42, -0.26),
+        (0.56, 0.12),
+        (0.76, 0.62),
+        (0.7, 1.1),
+        (0.36, 1.42),
+        (0, 1.5),
+        (-0.36, 1.42),
+        (-0.7, 1.1),
+        (-0.76, 0.62),
+        (-0.56, 0.12),
+        (-0.42, -0.26),
+    )
+    return [
+        Layer(violet, both(middle)),
+        Layer(violet, [*both(outer), head]),
+        Layer(violet, both(inner)),
+        Layer(ink, both(oval(0.28, 0.34, 0.13, 0.16))),
+    ]
+
+
+def dinosaur() -> list[Layer]:
+    """From the side: the whole back is one stroke."""
+    green, light, ink = "#5E8F7B", "#B9C98A", "#2E2632"
+    back = smooth(
+        (-1.14, 1.12),
+        (-0.92, 1.3),
+        (-0.64, 1.2),
+        (-0.52, 0.9),
+        (-0.44, 0.45),
+        (-0.1, 0.3),
+        (0.35, 0.28),
+        (0.72, 0.02),
+        (1.0, -0.3),
+        (1.4, -0.5),
+        (1.36, -0.6),
+        (0.95, -0.56),
+        (0.6, -0.52),
+        (0.1, -0.55),
+        (-0.4, -0.5),
+        (-0.72, -0.25),
+        (-0.8, 0.3),
+        (-0.84, 0.78),
+        (-1.1, 0.9),
+    )
+    far = [oval(-0.24, -0.68, 0.17, 0.4, 4), oval(0.62, -0.64, 0.17, 0.4, -4)]
+    near = [
+        smooth(
+            (-0.66, -0.3),
+            (-0.3, -0.25),
+            (-0.3, -0.7),
+            (-0.26, -1.06),
+            (-0.5, -1.12),
+            (-0.72, -1.06),
+            (-0.66, -0.7),
+        ),
+        smooth(
+            (0.14, -0.2),
+            (0.56, -0.2),
+            (0.56, -0.66),
+            (0.54, -1.06),
+            (0.3, -1.12),
+            (0.08, -1.06),
+            (0.16, -0.66),
+        ),
+    ]
+    return [
+        Layer(green, far),
+        Layer(green, [back]),
+        Layer(green, near),
+        Layer(
+            light, [oval(-0.1, 0.06, 0.15, 0.13), oval(0.3, 0.06, 0.12, 0.11), oval(-0.6, 0.5, 0.09, 0.12)]
+        ),
+        Layer(ink, [oval(-0.88, 1.1, 0.085, 0.09)]),
+    ]
+
+
 def characters() -> list[Character]:
     """All of them."""
     brown, cream, ink = "#B9773F", "#EBCFA2", "#3B3036"
@@ -317,13 +492,18 @@ def characters() -> list[Character]:
         Layer(ink, both(oval(0.14, 1.12, 0.1, 0.1))),
     ]
     fine = {"resolution": "EDGE_LENGTH", "edge_length": 0.035, "blend": 1.5, "layer_depth": 0.85}
+    proud = {**fine, "layer_depth": 1.2}
     return [
-        Character("bear", bear, fine),
+        Character("bear", bear, proud),
         Character("bird", bird, fine),
         Character("robot", robot, {**fine, "profile": "FLAT", "depth": 0.8}),
         Character("hand", hand, fine),
         Character("cat", cat, fine),
         Character("turtle", turtle, fine),
+        Character("rabbit", rabbit(), proud),
+        Character("fish", fish(), proud),
+        Character("octopus", octopus(), fine),
+        Character("dinosaur", dinosaur(), proud),
     ]
 
 
@@ -392,7 +572,7 @@ def numbers(body) -> dict[str, float]:
 
 def build(chosen: list[Character], pixels: int, samples: int, wires: bool) -> list[dict]:
     """Fill the scene; returns a row of numbers for each character."""
-    columns = min(3, len(chosen))
+    columns = min(3 if len(chosen) < 7 else 5, len(chosen))
     rows = math.ceil(len(chosen) / columns)
     table = []
     for k, character in enumerate(chosen):

@@ -14,10 +14,11 @@ import numpy as np
 
 from ..bodies.outlines import Plane, area
 from ..native import native
+from . import parts
+from .regions import Part, covered, inside, relation, united
 from .trace import Mirror, Trace, closed
 
-Part = tuple[np.ndarray, list[np.ndarray]]
-"""An outline and its holes, (n, 2) each."""
+__all__ = ["Decision", "DecisionError", "Part", "Shape", "Wanted", "decide", "inside", "relation", "united"]
 
 TURNED, APART = 0.94, 0.5
 """A stroke is in a body's plane if its own is turned by at most 20 degrees from it (here the cosine), and is at most
@@ -46,6 +47,8 @@ class Shape:
     """From its plane to where it ends, on the thicker side."""
     surface: np.ndarray | None = None
     """(k, 3) points of its surface, in the frame of its plane."""
+    across: Mirror | None = None
+    """Where twins of its parts are mirrored."""
     low: np.ndarray = field(init=False)
     high: np.ndarray = field(init=False)
 
@@ -57,6 +60,11 @@ class Shape:
     def part(self) -> Part:
         """Outline and holes."""
         return self.outline, self.holes
+
+    @property
+    def middle(self) -> np.ndarray:
+        """(3,) in the world."""
+        return self.plane.world(np.append((self.low + self.high) / 2, 0.0))
 
     @property
     def size(self) -> float:
@@ -88,6 +96,10 @@ class Wanted:
     action: str = "AUTO"
     subtract: bool = False
     part: bool = False
+    lies: str = "AUTO"
+    """Where a part lies: "FRONT", "MIDDLE" or "BEHIND"; "AUTO": in front where it lies inside the outline, else in the middle."""
+    twin: bool = False
+    """Whether a part has a mirror image."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +118,12 @@ class Decision:
     hint: str = ""
     """What else is worth saying."""
     symmetric: bool = False
+    depth: float = 0.0
+    """Of a part: how far it lies in front, 1 with its middle on the surface of the body, 0 in the middle, -1 behind."""
+    reach: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Of a part: from depth 0 to depth 1, in the world."""
+    twin: Mirror | None = None
+    """Where the mirror image of a part is."""
 
     def parts(self) -> list[Part]:
         """What the strokes cover, united where they meet."""
@@ -121,7 +139,7 @@ def decide(trace: Trace, shapes: list[Shape], wanted: Wanted, mirror: Mirror | N
         If it does nothing. What it would do if it were a little longer is not guessed.
     """
     first = _decided(trace, shapes, wanted)
-    if mirror is None:
+    if mirror is None or first.twin is not None:
         return [first]
     image = mirror.image(first.plane, first.strokes[0])
     if first.action in {"NEW", "PART"} and _meet((first.strokes[0], []), (image, [])):
@@ -172,7 +190,7 @@ def _decided(trace: Trace, shapes: list[Shape], wanted: Wanted) -> Decision:
             raise DecisionError("there is no body under the stroke to take away from")
         return _taken(met[0])
     if action == "PART" or (action == "AUTO" and wanted.part):
-        return _part(trace, own, met, shapes)
+        return _part(trace, own, met, shapes, wanted)
     across = [one for one in met if one.how == "across"]
     if action == "EXTEND":
         across += [one for one in met if one.how == "around"]
@@ -207,26 +225,60 @@ def _extended(met: _Met, shapes: list[Shape]) -> Decision:
     return Decision("EXTEND", plane, [met.stroke], met.shape.name, tuple(joined))
 
 
-def _part(trace: Trace, own: np.ndarray, met: list[_Met], shapes: list[Shape]) -> Decision:
+def _part(trace: Trace, own: np.ndarray, met: list[_Met], shapes: list[Shape], wanted: Wanted) -> Decision:
     if met:
-        return Decision("PART", met[0].shape.plane, [met[0].stroke], met[0].shape.name)
+        return _laid(trace, met[0].shape, wanted)
     under = []
     for shape in shapes:
         points = trace.on(shape.plane)
         if trace.seen and points is not None and inside(shape.part, points[:1])[0]:
-            under.append((trace.depth(shape.plane), shape.name))
+            under.append((trace.depth(shape.plane), shape.name, shape))
     if under:
-        return Decision("PART", trace.plane, [own], min(under)[1])
+        return _laid(trace, min(under, key=lambda one: one[:2])[2], wanted)
     return Decision("NEW", trace.plane, [own], hint="there is no body that it could be a part of")
 
 
-def _hidden(trace: Trace, own: np.ndarray, shapes: list[Shape]) -> str:
-    """Say so if a new body would not be seen, or would hide another."""
-    world = trace.plane.world(np.column_stack([own, np.zeros(len(own))]))
+def _laid(trace: Trace, shape: Shape, wanted: Wanted) -> Decision:
+    """Lay a part before, behind or into the middle of a body."""
+    turned = abs(float(trace.plane.axes[2] @ shape.plane.axes[2]))
+    base = parts.base(
+        trace, shape.plane, shape.middle, near=turned > (TURNED if trace.free else CHOSEN_TURNED)
+    )
+    points, on_body = trace.on(base), trace.on(shape.plane)
+    if points is None:
+        raise DecisionError("the stroke leaves the plane; turn the view or choose another plane")
+    depth = parts.DEPTHS.get(wanted.lies)
+    if depth is None:
+        depth = float(on_body is not None and bool(inside(shape.part, on_body).all()))
+    world = shape.plane.world(shape.surface) if shape.surface is not None else np.zeros((0, 3))
+    front = parts.toward(trace, base)
+    length = parts.reach(base, closed(points), world, toward=-front if depth < 0 else front)
+    reach = (length or max(shape.thickness, 0.1 * shape.size)) * front
+    plane = Plane(base.origin + depth * reach, base.axes)
+    stroke = trace.on(plane)
+    if stroke is None:
+        raise DecisionError("the stroke leaves the plane; turn the view or choose another plane")
+    stroke = closed(stroke)
+    return Decision(
+        "PART",
+        plane,
+        [stroke],
+        shape.name,
+        hint=_hidden(trace, stroke, [shape], plane),
+        depth=depth,
+        reach=tuple(reach.tolist()),
+        twin=shape.across if wanted.twin else None,
+    )
+
+
+def _hidden(trace: Trace, own: np.ndarray, shapes: list[Shape], plane: Plane | None = None) -> str:
+    """Say so if a new body would not be seen, or would hide another. plane : that of the stroke, unless the trace's."""
+    plane = plane or trace.plane
+    world = plane.world(np.column_stack([own, np.zeros(len(own))]))
     for shape in shapes:
         place = shape.plane.local(world)
         middle = place.mean(axis=0)
-        turned = abs(trace.plane.axes[2] @ shape.plane.axes[2]) < TURNED
+        turned = abs(plane.axes[2] @ shape.plane.axes[2]) < TURNED
         if turned or abs(middle[2]) > shape.thickness:
             continue
         how = _lies(shape, place[:, :2])
@@ -295,65 +347,9 @@ def _lies(shape: Shape, points: np.ndarray) -> str:
     return "inside" if within.all() else "across" if within.any() else "apart"
 
 
-def relation(outline: np.ndarray, holes: list[np.ndarray], stroke: np.ndarray) -> str:
-    """How a stroke (n, 2) lies to a drawing: "apart", "inside", "around" or "across".
-
-    Holes count as outside. Raises what `gridmesh.combine` raises for strokes that enclose nothing.
-    """
-    gridmesh = native("combine")
-    own = area(outline) - sum(area(hole) for hole in holes)
-    rest = sum(_area(part) for part in gridmesh.combine(outline, stroke, holes, how="difference"))
-    both = sum(_area(part) for part in gridmesh.combine(outline, stroke, holes, how="union"))
-    drawn, taken = both - rest, own - rest
-    least = 1e-6 * max(own, drawn)
-    if taken <= least:
-        return "apart"
-    if rest <= least:
-        return "around"
-    return "inside" if drawn - taken <= least else "across"
-
-
-def _area(part: Part) -> float:
-    outline, holes = part
-    return area(outline) - sum(area(hole) for hole in holes)
-
-
 def _meet(one: Part, other: Part) -> bool:
     # Each outline filled against the other with its holes: one may lie in a hole of the other.
     try:
         return relation(*one, other[0]) != "apart" and relation(*other, one[0]) != "apart"
     except native("combine").GridMeshError:
         return False  # one encloses nothing yet
-
-
-def united(one: Part, other: Part) -> list[Part]:
-    """What is in either of two parts, the largest first."""
-    gridmesh = native("combine")
-    parts = gridmesh.combine(one[0], other[0], one[1], how="union")
-    for hole in other[1]:
-        # What of the other's hole is not covered stays open.
-        for open_part, _ in gridmesh.combine(hole, one[0], [], how="difference"):
-            outline, holes = parts[0]
-            parts = gridmesh.combine(outline, open_part, holes, how="difference") + parts[1:]
-    return parts
-
-
-def covered(strokes: list[np.ndarray]) -> list[Part]:
-    """What strokes (n, 2) cover: their outer outlines, united where they meet."""
-    gridmesh = native("combine")
-    parts = gridmesh.combine(strokes[0], strokes[0], [], how="union")[:1]
-    for stroke in strokes[1:]:
-        parts = united(parts[0], (stroke, []))
-    return parts
-
-
-def inside(part: Part, points: np.ndarray) -> np.ndarray:
-    """Whether points (n, 2) lie inside an outline with holes, by the parity of crossings."""
-    odd = np.zeros(len(points), bool)
-    for ring in (part[0], *part[1]):
-        a, b = ring, np.roll(ring, -1, axis=0)
-        spans = (a[None, :, 1] > points[:, 1, None]) != (b[None, :, 1] > points[:, 1, None])
-        rise = np.where(spans, b[None, :, 1] - a[None, :, 1], 1.0)
-        x = a[None, :, 0] + (points[:, 1, None] - a[None, :, 1]) * (b - a)[None, :, 0] / rise
-        odd ^= (np.count_nonzero(spans & (x > points[:, 0, None]), axis=1) % 2).astype(bool)
-    return odd

@@ -14,6 +14,7 @@ from .. import api
 from ..bodies import profilecurve, strokes
 from ..bodies.outlines import Plane, Stroke, StrokeError, prepare
 from ..data import frames, meshes, written
+from ..join import characters, following
 from ..live import engine, outlined
 from ..live.linework import nearest
 from ..live.outlined import OutlineError, radii
@@ -58,8 +59,8 @@ def carry_out(
     options: Any,
     *,
     apply_options: bool,
-) -> list[bpy.types.Object]:
-    """Make what was decided; return the bodies that are new or changed, the first decision's first.
+) -> tuple[list[bpy.types.Object], list[str]]:
+    """Make what was decided; return the bodies that are new or changed, the first decision's first, and what could not be joined.
 
     bodies : as they were read for the decisions. options : for new bodies and, with `apply_options`, for those that
     are changed; otherwise these keep their own.
@@ -76,21 +77,29 @@ def carry_out(
     except native("combine").GridMeshError as error:
         raise _refused(error) from error
     made: list[bpy.types.Object] = []
+    problems: list[str] = []
     survivors: dict[str, str] = {}
     for number, plan in enumerate(plans):
         ink = _ink(memory, plan.decision)
         if plan.decision.action in {"NEW", "PART"}:
             for part in plan.parts:
-                made.append(_new(context, plan.decision, part, ink, options, plan.decision.body))
+                made.append(_new(context, plan.decision, part, ink, options))
+                problems.append(_belong(context, plan.decision, made[-1], options))
             continue
         if number:
             bodies = shapes.read(context)
             plan = _again(plan, bodies, survivors)
-        made += _changed(context, plan, bodies, ink, options if apply_options else None)
+        changed = _changed(context, plan, bodies, ink, options if apply_options else None)
+        characters.add_like(changed[0], changed[1:])
+        made += changed
         survivors.update(dict.fromkeys(plan.decision.joined, plan.decision.body))
     made = list(dict.fromkeys(made))
-    _select(context, made)
-    return made
+    for whole in dict.fromkeys(filter(None, map(following.whole_of, made))):
+        context.view_layer.update()
+        following.update(whole)
+        problems.append(whole.gridmesh_joined.problem)
+    _select(context, [characters.seen(ob) for ob in made])
+    return made, [problem for problem in problems if problem]
 
 
 def _refused(error: Any, sketch_options: dict[str, Any] | None = None) -> DrawError:
@@ -176,7 +185,7 @@ def refuse(parts: list[Part], options: Any) -> None:
 
 
 def _new(
-    context: bpy.types.Context, decision: Decision, part: Part, ink: _Ink, options: Any, parent: str
+    context: bpy.types.Context, decision: Decision, part: Part, ink: _Ink, options: Any
 ) -> bpy.types.Object:
     """Make a body of a part, with its outline."""
     outline, holes = part
@@ -196,25 +205,22 @@ def _new(
         raise DrawError(_of_stroke(str(error))) from error
     finally:
         options.mirror = mirror
-    owner = bpy.data.objects.get(parent) if parent else None
-    if owner is not None:
-        _hang(context, body, owner)
     return body
 
 
-def _hang(
-    context: bpy.types.Context,
-    body: bpy.types.Object,
-    parent: bpy.types.Object,
-    kind: str = "OBJECT",
-    bone: str = "",
-) -> None:
-    """Make a body the child of another object; it stays where it is."""
-    place = body.matrix_world.copy()
-    body.parent, body.parent_type, body.parent_bone = parent, kind, bone
-    context.view_layer.update()
-    body.matrix_world = place
-    context.view_layer.update()
+def _belong(context: bpy.types.Context, decision: Decision, body: bpy.types.Object, options: Any) -> str:
+    """Join a part to the body that it was drawn over, or make it a child of that; return why it could not be joined."""
+    owner = bpy.data.objects.get(decision.body) if decision.body else None
+    if owner is None:
+        return ""
+    if not options.use_join or "SHEET" in (options.shape, owner.gridmesh_live.shape):
+        following.hang(body, owner)
+        context.view_layer.update()
+        return ""
+    problem = characters.add(
+        owner, body, characters.Lies(decision.depth, decision.reach, decision.twin is not None)
+    )
+    return f"'{body.name}' stays apart: {problem}" if problem else ""
 
 
 def _world(plane: Plane, points: np.ndarray) -> np.ndarray:

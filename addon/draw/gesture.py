@@ -12,7 +12,7 @@ from ..api import FACE_AREA, faces_of
 from ..bodies.density import automatic
 from ..bodies.outlines import Plane, area
 from ..native import native
-from .decision import Part
+from .regions import Part
 from .trace import Trace, pack, unpack  # noqa: F401 (scripts take them from here)
 
 FEWEST = 8

@@ -8,12 +8,13 @@ from typing import Any
 import bpy
 import numpy as np
 from bpy.app.translations import pgettext_iface
+from mathutils import Vector
 
 from ..bodies.strokes import selected
-from ..data import frames
+from ..join import characters, following
 from ..live import engine
 from ..text.telling import told
-from . import planes, shapes
+from . import parts, planes, shapes
 from .decision import Decision, DecisionError, Shape, Wanted, decide
 from .gesture import Gesture
 from .memory import Memory
@@ -39,7 +40,7 @@ def _words() -> dict[str, str]:
 def mirror_place(context: bpy.types.Context) -> np.ndarray:
     """Point (3,) that the mirror goes through: the origin of the active live body, else the 3D cursor."""
     active = context.view_layer.objects.active
-    if active is not None and active.type == "MESH" and frames.is_linked(active):
+    if active is not None and active.type == "MESH" and following.changes(active):
         return np.array(active.matrix_world.translation, float)
     return np.array(context.scene.cursor.location, float)
 
@@ -55,7 +56,8 @@ class Interaction:
         self.button = event.type
         self.options = options
         self.mirrored = options.use_mirror
-        self._part = options.action == "PART"
+        self.lies, self.twin = options.part_lies, options.use_twin
+        self._part = options.use_part or options.action == "PART"
         self._problem = ""
         self._view = context.region_data
         pixel = _pixel(context, event)
@@ -96,6 +98,13 @@ class Interaction:
         if event.value == "PRESS" and event.type == "P":
             self._part = not self._part
             return True
+        if event.value == "PRESS" and event.type == "D":
+            at = parts.NEXT.index(self.lies) + 1 if self.lies in parts.NEXT else 0
+            self.lies = parts.NEXT[at % len(parts.NEXT)]
+            return True
+        if event.value == "PRESS" and event.type == "T":
+            self.twin = not self.twin
+            return True
         if event.value == "PRESS" and event.type == "X":
             self.mirrored = not self.mirrored
             return True
@@ -110,7 +119,8 @@ class Interaction:
         """Return what is asked for by the header and the keys."""
         if self.options.action not in {"AUTO", "PART"}:
             return Wanted(self.options.action)
-        return Wanted("AUTO", subtract=event.shift or event.ctrl, part=self._part)
+        taken = event.shift or event.ctrl
+        return Wanted("AUTO", subtract=taken, part=self._part, lies=self.lies, twin=self.twin)
 
     def decided(self, event: bpy.types.Event) -> list[Decision]:
         """Decide what the stroke does now.
@@ -145,6 +155,8 @@ class Interaction:
         else:
             word, hint = _word(decisions[0]), told(decisions[0].hint, "interface")
         plane = decisions[0].plane if decisions else self._plane
+        if decisions and decisions[0].twin is not None:
+            mirror = decisions[0].twin
         mouse = _pixel(context, event)
         self._preview.show(self.trace(), plane, decisions, self._gesture, mirror)
         self._preview.say(word, hint, mouse)
@@ -154,6 +166,7 @@ class Interaction:
         keys = (
             pgettext_iface("Shift, Ctrl: Take Away"),
             pgettext_iface("P: Part"),
+            *((pgettext_iface("D: Part Lies"), pgettext_iface("T: Twin")) if self._part else ()),
             pgettext_iface("X: Mirror"),
             pgettext_iface("Esc, Right Click: Leave"),
         )
@@ -168,7 +181,9 @@ class Interaction:
 
     def click(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Select what is under the mouse, with Shift too; an outline stands for its body."""
-        before = set(selected(context))
+        before, chosen = set(selected(context)), context.view_layer.objects.active
+        if chosen not in before:
+            chosen = None
         x, y = _pixel(context, event)
         bpy.ops.view3d.select(
             "EXEC_DEFAULT", False, toggle=event.shift, deselect_all=not event.shift, location=(int(x), int(y))
@@ -186,8 +201,24 @@ class Interaction:
         if active is not None and not event.shift:
             owned = [body for body in engine.bodies(active) if body.select_get()]
             layer.objects.active = owned[0] if owned else active
+            self._pick(context, event, chosen)
+        characters.put_away()
         bpy.ops.ed.undo_push(message="Select")
         return {"FINISHED"}
+
+    def _pick(
+        self, context: bpy.types.Context, event: bpy.types.Event, before: bpy.types.Object | None
+    ) -> None:
+        """Pick the part under the mouse where a joined body is clicked that was selected and active already, or a part of it."""
+        active = context.view_layer.objects.active
+        if before is None or not following.is_whole(active) or following.whole_of(before) != active:
+            return
+        origin, direction = planes.ray(context, _pixel(context, event))
+        depsgraph = context.evaluated_depsgraph_get()
+        hit, place, *_ = context.scene.ray_cast(depsgraph, Vector(origin), Vector(direction))
+        part = characters.nearest(active, place) if hit else None
+        if part is not None:
+            characters.pick(part)
 
     def end(self, context: bpy.types.Context) -> None:
         """Take the preview away."""
@@ -201,7 +232,19 @@ class Interaction:
 def _word(decision: Decision) -> str:
     """Say what would be done, and to which body."""
     names = " + ".join(f"'{name}'" for name in (decision.body, *decision.joined) if name)
-    return f"{_words()[decision.action]} {names}".strip()
+    said = f"{_words()[decision.action]} {names}".strip()
+    if decision.action == "PART":
+        return f"{said}, {_depths()[np.sign(decision.depth)]}"
+    return said
+
+
+def _depths() -> dict[float, str]:
+    """Where a part lies, in the user's language."""
+    return {
+        1.0: pgettext_iface("In Front"),
+        0.0: pgettext_iface("Middle"),
+        -1.0: pgettext_iface("Behind"),
+    }
 
 
 def _pixel(context: bpy.types.Context, event: bpy.types.Event) -> tuple[float, float]:

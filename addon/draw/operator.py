@@ -7,6 +7,7 @@ undo step of its own; the operator that it calls has one, and the redo panel.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from time import perf_counter
 from typing import Any
 
@@ -74,16 +75,17 @@ class _Action(options.StrokeOptions):
         bodies = shapes.read(context)
         # What was decided while it was drawn is decided again; what is asked for in the panel is done as asked.
         wanted = remembered.wanted if self.action == remembered.action else Wanted(self.action)
+        wanted = replace(wanted, lies=self.part_lies, twin=self.use_twin)
         mirror = remembered.mirror if self.use_mirror else None
         decisions = decide(remembered.trace, [drawn.shape for drawn in bodies.values()], wanted, mirror)
         first = decisions[0]
         again = self._options_of(first, bodies, remembered)
         self.resolve_curve(context)
-        made = drawing.carry_out(context, remembered, decisions, bodies, self, apply_options=again)
+        made, problems = drawing.carry_out(context, remembered, decisions, bodies, self, apply_options=again)
         remembered.action = remembered.action or first.action
         self.action, self.body = first.action, first.body if first.action != "PART" else made[0].name
         self.done = f"{first.action} {first.body}"
-        return made, first.hint
+        return made, "\n".join(filter(None, [first.hint, *problems]))
 
     def _options_of(
         self, first: Decision, bodies: dict[str, shapes.Drawn], remembered: memory.Memory
@@ -112,6 +114,8 @@ class _Action(options.StrokeOptions):
         layout.use_property_decorate = False
         layout.prop(self, "action")
         layout.prop(self, "use_mirror")
+        if self.action == "PART":
+            options.draw_part(layout, self)
         if self.body:
             layout.label(text=self.body, icon="OUTLINER_OB_MESH", translate=False)
         self.draw_shape_options(layout)
@@ -176,6 +180,11 @@ class OBJECT_OT_gridmesh_draw(options.StrokeOptions, bpy.types.Operator):  # noq
         description="Where the stroke lies; facing the view, it takes the plane of the body that it meets",
         items=planes.CHOICES,
         default="VIEW",
+    )
+    use_part: BoolProperty(
+        name="Part",
+        description="A stroke over a body becomes a part of it, a stroke of its own that the body is joined with",
+        default=False,
     )
     use_stabilizer: BoolProperty(
         name="Stabilize Stroke",
@@ -258,6 +267,7 @@ class OBJECT_OT_gridmesh_draw(options.StrokeOptions, bpy.types.Operator):  # noq
         except DecisionError as error:
             return self._told("WARNING", str(error), {"CANCELLED"})
         self.use_mirror = interaction.mirrored
+        self.part_lies, self.use_twin = interaction.lies, interaction.twin
         return self._call(interaction.memory(event, options.of_operator(self)), decisions[0].action)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -272,7 +282,8 @@ class OBJECT_OT_gridmesh_draw(options.StrokeOptions, bpy.types.Operator):  # noq
             bodies = shapes.read(context)
             mirror = remembered.mirror if self.use_mirror else None
             found = [drawn.shape for drawn in bodies.values()]
-            decisions = decide(remembered.trace, found, remembered.wanted, mirror)
+            wanted = replace(remembered.wanted, lies=self.part_lies, twin=self.use_twin)
+            decisions = decide(remembered.trace, found, wanted, mirror)
         except (DecisionError, memory.ForgottenError, NativeError) as error:
             return self._told("WARNING", str(error), {"CANCELLED"})
         return self._call(remembered, decisions[0].action)
@@ -316,7 +327,11 @@ def _remembered(operator: Any, context: bpy.types.Context) -> memory.Memory:
     known = memory.recall(operator.stroke)
     if known is not None:
         return known
-    wanted = Wanted(operator.action, subtract=getattr(operator, "subtract", False))
+    wanted = Wanted(
+        operator.action,
+        subtract=getattr(operator, "subtract", False),
+        part=getattr(operator, "use_part", False),
+    )
     free = getattr(operator, "plane", "VIEW") == "VIEW"
     place = mirror_place(context)
     return memory.given(operator.stroke, list(operator.matrix), wanted, free=free, place=place)

@@ -23,7 +23,14 @@ ACTIONS = [
     ),
     ("TRIM", "Trim", "Take away from the body that the stroke meets"),
     ("HOLE", "Hole", "Make a hole in the body that the stroke lies in"),
-    ("PART", "Part", "A body of its own though it meets another one, whose child it becomes"),
+    ("PART", "Part", "A stroke of its own over a body, which it is joined to"),
+]
+
+LIES = [
+    ("AUTO", "Automatic", "In front where the stroke lies inside the body, else in the middle"),
+    ("FRONT", "In Front", "The middle of the part is on the side of the body that is seen"),
+    ("MIDDLE", "Middle", "The part goes through the middle of the body"),
+    ("BEHIND", "Behind", "The middle of the part is on the far side of the body"),
 ]
 
 
@@ -42,6 +49,22 @@ class StrokeOptions(SketchOptions, CurveOption):
         description="Draw the mirror image too, across an upright line through the active live body or the 3D cursor",
         default=False,
     )
+    part_lies: EnumProperty(
+        name="Part Lies",
+        description="Where a part lies, seen from the view; its depth can be changed later in the sidebar",
+        items=LIES,
+        default="AUTO",
+    )
+    use_twin: BoolProperty(
+        name="Twin",
+        description="Give a part a mirror image, across the X axis of the body, that follows the same stroke",
+        default=False,
+    )
+    use_join: BoolProperty(
+        name="Join Part",
+        description="Make one closed body of the part and what it is drawn over; without, it is a body of its own and a child of that",
+        default=True,
+    )
     pen: FloatProperty(
         name="Pen Width",
         description="How much the pressure of the pen drives the depth of the body",
@@ -58,10 +81,21 @@ SHAPING = (*SketchOptions.__annotations__, *ShapeOptions.__annotations__, "pen")
 """Names of the options that a live body has too."""
 
 
+PART = ("part_lies", "use_twin", "use_join")
+"""Names of the options that only parts have."""
+
+
 def of_operator(operator: Any) -> dict[str, Any]:
     """Options as they are set, by name."""
     operator.settle_resolution()
-    return {name: getattr(operator, name) for name in (*SHAPING, "curve")}
+    return {name: getattr(operator, name) for name in (*SHAPING, *PART, "curve")}
+
+
+def draw_part(layout: Any, operator: Any) -> None:
+    """Draw the options that only parts have."""
+    layout.prop(operator, "part_lies")
+    layout.prop(operator, "use_twin")
+    layout.prop(operator, "use_join")
 
 
 def put(operator: Any, values: dict[str, Any]) -> None:

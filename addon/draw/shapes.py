@@ -10,9 +10,11 @@ import numpy as np
 
 from ..bodies.outlines import Plane, Sketch, project
 from ..data import frames
+from ..join import characters, following
 from ..live import engine
 from ..live.reading import LostError, sketch_of
 from .decision import Shape
+from .trace import Mirror
 
 SAMPLES = 2000
 """About how many points of a body's surface are looked at."""
@@ -40,12 +42,12 @@ class Drawn:
 
 
 def read(context: bpy.types.Context) -> dict[str, Drawn]:
-    """Bodies that strokes may change, by name: those that are seen and follow a grease pencil drawing."""
+    """Bodies that strokes may change, by name: those that are seen, if only joined, and follow a grease pencil drawing."""
     depsgraph = context.evaluated_depsgraph_get()
     found = {}
     for ob in engine.bodies():
         source = ob.gridmesh_live.source
-        if source is None or source.type != "GREASEPENCIL" or not ob.visible_get():
+        if source is None or source.type != "GREASEPENCIL" or not characters.shown(ob):
             continue
         try:
             sketch = sketch_of(ob, depsgraph)
@@ -76,5 +78,13 @@ def _drawn(ob: bpy.types.Object, sketch: Sketch) -> Drawn | None:
     some = points.reshape(-1, 3)[:: max(1, len(ob.data.vertices) // SAMPLES)]
     surface = plane.local(frames.moved(some, np.array(ob.matrix_world)))
     thickness = float(np.abs(surface[:, 2]).max(initial=0.0))
-    shape = Shape(ob.name, plane, sketch.outline @ to_world.T, holes, thickness, surface)
+    outline = sketch.outline @ to_world.T
+    shape = Shape(ob.name, plane, outline, holes, thickness, surface, _across(ob))
     return Drawn(ob, sketch, shape, np.linalg.inv(to_world), matrix)
+
+
+def _across(ob: bpy.types.Object) -> Mirror:
+    """Where twins of parts are mirrored: across the X axis of the whole, which the body is or will be."""
+    place = np.array((following.whole_of(ob) or ob).matrix_world, float)
+    normal = np.cross(place[:3, 1], place[:3, 2])
+    return Mirror(place[:3, 3], normal / max(float(np.linalg.norm(normal)), 1e-30))

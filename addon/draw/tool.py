@@ -45,6 +45,12 @@ class GridMeshDrawTool(bpy.types.WorkSpaceTool):
         options = tool.operator_properties(OBJECT_OT_gridmesh_draw.bl_idname)
         layout.prop(options, "plane")
         layout.prop(options, "action")
+        row = layout.row(align=True)
+        row.prop(options, "use_part", icon="OUTLINER_OB_META")
+        if options.use_part or options.action == "PART":
+            row.prop(options, "part_lies", text="")
+            row.prop(options, "use_twin", icon="MOD_MIRROR", text="")
+            row.prop(options, "use_join", icon="AUTOMERGE_ON", text="")
         layout.prop(options, "use_mirror", text="", icon="MOD_MIRROR")
         row = layout.row(align=True)
         row.prop(options, "use_stabilizer", text="", icon="SMOOTHCURVE")

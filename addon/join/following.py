@@ -9,20 +9,25 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Sequence
+from time import perf_counter
 from typing import Any
 
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, CollectionProperty, FloatProperty, PointerProperty, StringProperty
+from mathutils import Matrix
 
 from .. import api
 from ..data import defaults, frames, written
 from ..live import engine
-from . import joining
+from . import deleted, drafts, joining, parts
 from .uniting import JoinError
 
 BY_HAND = "its mesh was changed by hand; undo that, or apply the join"
 """Why a whole does not follow whose mesh is not what was made of its parts."""
+
+_since = 0.0
+"""When something was seen to change last; 0 while nobody looks."""
 
 _known: bool | None = None
 """Whether there are any in the file; None: to be looked for."""
@@ -70,6 +75,8 @@ class GridMeshJoined(bpy.types.PropertyGroup):
     quiet: BoolProperty(options={"HIDDEN"})
     digest: StringProperty(options={"HIDDEN"})
     """Fingerprint of what it was made of."""
+    made: StringProperty(options={"HIDDEN"})
+    """Fingerprint of the mesh that was made. Undo may bring one of the two back without the other."""
     problem: StringProperty(options={"HIDDEN"})
     """Why it does not follow now."""
 
@@ -92,7 +99,7 @@ def parts_of(ob: bpy.types.Object) -> list[bpy.types.Object]:
     return [part for part in found if part is not None and part.type == "MESH" and part.users_scene]
 
 
-def remember(ob: bpy.types.Object, parts: Sequence[bpy.types.Object], options: joining.Options) -> None:
+def remember(ob: bpy.types.Object, objects: Sequence[bpy.types.Object], options: joining.Options) -> None:
     """Let a joined body follow its parts from now on."""
     global _known
     joined = ob.gridmesh_joined
@@ -105,18 +112,30 @@ def remember(ob: bpy.types.Object, parts: Sequence[bpy.types.Object], options: j
     joined.quiet = False
     joined.parts.clear()
     bpy.context.view_layer.update()
-    for part in parts:
-        joined.parts.add().ob = part
-        drawing = part.gridmesh_live.source if frames.is_linked(part) else None
-        if part.parent is None or part.parent == drawing:
-            place = part.matrix_world.copy()
-            part.parent, part.parent_type = ob, "OBJECT"
-            part.matrix_parent_inverse = ob.matrix_world.inverted()
-            part.matrix_world = place
+    for part in objects:
+        attach(ob, part)
     bpy.context.view_layer.update()
     joined.digest = fingerprint(ob)
     written.sign(ob.data)
+    joined.made = ob.data.gridmesh_made
     _known = True
+
+
+def attach(ob: bpy.types.Object, part: bpy.types.Object) -> None:
+    """Make an object a part of a whole, and a child of it unless it hangs on something else; it stays where it is."""
+    ob.gridmesh_joined.parts.add().ob = part
+    drawing = part.gridmesh_live.source if frames.is_linked(part) else None
+    if part.parent is None or part.parent == drawing:
+        hang(part, ob)
+
+
+def hang(part: bpy.types.Object, above: bpy.types.Object | None) -> None:
+    """Give an object another parent, or none; it stays where it is."""
+    place = part.matrix_world.copy()
+    part.parent, part.parent_type = above, "OBJECT"
+    if above is not None:
+        part.matrix_parent_inverse = above.matrix_world.inverted()
+    part.matrix_world = place
 
 
 def changes(ob: bpy.types.Object) -> bool:
@@ -137,8 +156,8 @@ def whole_of(ob: bpy.types.Object) -> bpy.types.Object | None:
 def apply(ob: bpy.types.Object, *, keep_parts: bool) -> None:
     """Make a plain mesh of a joined body (or of that of a part). Its parts are removed, or shown again and on their own."""
     whole = whole_of(ob)
-    parts = [part for part in parts_of(whole) if whole_of(part) in (whole, part)]
-    own = [part for part in parts if part.parent == whole]
+    found = [part for part in parts_of(whole) if whole_of(part) in (whole, part)]
+    own = [part for part in found if part.parent == whole]
     show(whole)
     whole.property_unset("gridmesh_joined")
     whole.data.property_unset("gridmesh_made")
@@ -150,7 +169,7 @@ def apply(ob: bpy.types.Object, *, keep_parts: bool) -> None:
             place = part.matrix_world.copy()
             part.parent = None
             part.matrix_world = place
-            _reveal(part, seen=True)
+            reveal(part, seen=True)
 
 
 def hidden_parts(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
@@ -159,10 +178,10 @@ def hidden_parts(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
     return [part for part in own if part not in objects and not part.visible_get()]
 
 
-def discard(parts: Sequence[bpy.types.Object]) -> None:
+def discard(objects: Sequence[bpy.types.Object]) -> None:
     """Remove parts whose whole has become something else."""
     with engine.resting():
-        for part in parts:
+        for part in objects:
             _remove(part)
 
 
@@ -173,28 +192,35 @@ def swap(ob: bpy.types.Object) -> None:
         show(whole)
         refresh()
         return
-    parts = parts_of(whole)
-    for part in parts:
-        _reveal(part, seen=True)
-    _reveal(whole, seen=False)
-    if parts:
-        _choose(parts[0])
+    found = parts_of(whole)
+    for part in found:
+        reveal(part, seen=True)
+    reveal(whole, seen=False)
+    if found:
+        choose(found[0])
 
 
 def show(whole: bpy.types.Object) -> None:
     """Show a joined body and hide its parts."""
-    _reveal(whole, seen=True)
+    reveal(whole, seen=True)
     for part in parts_of(whole):
-        _reveal(part, seen=False)
-    _choose(whole)
+        reveal(part, seen=False)
+    choose(whole)
 
 
-def _reveal(ob: bpy.types.Object, *, seen: bool) -> None:
+def reveal(ob: bpy.types.Object, *, seen: bool) -> None:
+    """Show or hide an object, with the outline of its own if it has one."""
     ob.hide_set(not seen)
     ob.hide_render = not seen
+    if ob.display_type == "WIRE" and not is_whole(ob):  # it was picked
+        ob.display_type = "TEXTURED"
+    outline = frames.owned(ob) if frames.is_linked(ob) else None
+    if outline is not None and outline.name in bpy.context.view_layer.objects:
+        outline.hide_set(not seen)
 
 
-def _choose(ob: bpy.types.Object) -> None:
+def choose(ob: bpy.types.Object) -> None:
+    """Make an object the only one that is selected, and the active one."""
     layer = bpy.context.view_layer
     for other in filter(None, list(layer.objects.selected)):
         other.select_set(False)
@@ -210,16 +236,15 @@ def _remove(part: bpy.types.Object) -> None:
         bpy.data.meshes.remove(mesh)
 
 
-def placed(ob: bpy.types.Object) -> list[Any]:
-    """Where the parts of a whole lie in the world; those of a copy as they lie to the body that it is a copy of."""
+def placed(ob: bpy.types.Object) -> list[parts.Placed]:
+    """Parts of a whole, with twins, and where they lie in the world; those of a copy as they lie to the body that it is a copy of."""
     found = []
     for part in parts_of(ob):
         above = part.parent
         own = above is None or above == ob or not is_whole(above)
-        found.append(
-            part.matrix_world if own else ob.matrix_world @ above.matrix_world.inverted() @ part.matrix_world
-        )
-    return found
+        to_own = Matrix.Identity(4) if own else ob.matrix_world @ above.matrix_world.inverted()
+        found.append((part, to_own @ part.matrix_world))
+    return parts.with_twins(ob, found)
 
 
 def fingerprint(ob: bpy.types.Object) -> str:
@@ -227,7 +252,7 @@ def fingerprint(ob: bpy.types.Object) -> str:
     joined = ob.gridmesh_joined
     texts = [f"{joined.blend:.6g} {joined.edge_length:.6g} {joined.strict}"]
     own = np.array(ob.matrix_world, float)
-    for part, matrix in zip(parts_of(ob), placed(ob), strict=True):
+    for part, matrix in placed(ob):
         lies = np.linalg.solve(own, np.array(matrix, float)) if abs(np.linalg.det(own)) > 0 else own
         texts.append(f"{written.digest(part.data)} {(lies + 0.0).round(5).tolist()}")
     return f"{zlib.crc32(' '.join(texts).encode()):08x}"
@@ -236,8 +261,8 @@ def fingerprint(ob: bpy.types.Object) -> str:
 def update(ob: bpy.types.Object) -> bool:
     """Join a whole anew if its parts or options have changed; say whether that was done."""
     joined = ob.gridmesh_joined
-    parts, now = parts_of(ob), fingerprint(ob)
-    if not parts or now == joined.digest:
+    found, now = placed(ob), fingerprint(ob)
+    if not found or (now == joined.digest and joined.made in ("", ob.data.gridmesh_made)):
         return False
     if ob.mode != "OBJECT" or not ob.is_editable:
         return False
@@ -245,14 +270,16 @@ def update(ob: bpy.types.Object) -> bool:
         joined.problem = BY_HAND
         return False
     options = joining.Options(joined.blend, joined.edge_length or None, joined.strict)
-    joined.digest = now
+    joined.digest, joined.made = now, ob.data.gridmesh_made
     try:
-        joining.again(bpy.context, ob, parts, placed(ob), options)
+        joining.again(bpy.context, ob, found, options)
     except (JoinError, api.NativeError) as error:
         joined.problem = str(error)
         return False
     joined.problem = ""
+    drafts.forget(ob)
     written.sign(ob.data)
+    joined.made = ob.data.gridmesh_made
     return True
 
 
@@ -260,6 +287,8 @@ def refresh() -> int:
     """Join every whole anew whose parts have changed; return how many were."""
     if not engine.awake() or not any_there():
         return 0
+    for ob in wholes():
+        deleted.put_aside(ob)
     bpy.context.view_layer.update()
     return sum(update(ob) for ob in wholes())
 
@@ -283,10 +312,18 @@ def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
 @bpy.app.handlers.persistent
 def _on_other_time(*_: Any) -> None:
     """After undo, redo and opening a file."""
-    global _known
-    _known = None
+    global _known, _since
+    _known, _since = None, 0.0
+    drafts.forget()
     if any_there() and not bpy.app.background:
         _soon()
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_: Any) -> None:
+    _on_other_time()
+    for ob in wholes():
+        deleted.let_go(ob)
 
 
 @bpy.app.handlers.persistent
@@ -295,18 +332,34 @@ def _on_save(*_: Any) -> None:
 
 
 def _soon() -> None:
-    """Look again when nothing has changed for a moment."""
-    if bpy.app.timers.is_registered(_look):
-        bpy.app.timers.unregister(_look)
-    bpy.app.timers.register(_look, first_interval=engine.PAUSE)
+    """Look at the wholes from now on, until nothing has changed for a moment."""
+    if not bpy.app.timers.is_registered(_look):
+        bpy.app.timers.register(_look, first_interval=0.0)
 
 
 def _look() -> float | None:
-    """Timer: join anew, once bodies are made in full and no tool is running."""
-    if not engine.awake() or engine.tool_runs() or engine.unsettled():
+    """Timer: show changes as drafts; join anew once they have ended, bodies are made in full and no tool is running."""
+    global _since
+    if not engine.awake():
         return 0.1
+    drawn = [draft(ob) for ob in wholes()]
+    if any(drawn) or not _since:
+        _since = perf_counter()
+    if perf_counter() - _since < engine.PAUSE or engine.tool_runs() or engine.unsettled():
+        return drafts.OFTEN
+    _since = 0.0
     refresh()
     return None
+
+
+def draft(ob: bpy.types.Object) -> bool:
+    """Show a whole whose parts have changed as these together, which is quick; say whether there was anything new."""
+    if ob.mode != "OBJECT" or not ob.is_editable or not ob.visible_get():
+        return False
+    now = fingerprint(ob)
+    if now == ob.gridmesh_joined.digest or drafts.shown(ob) == now or written.by_hand(ob.data):
+        return False
+    return drafts.show(ob, placed(ob), now)
 
 
 def _handlers() -> list[tuple[list[Any], Any]]:
@@ -315,19 +368,20 @@ def _handlers() -> list[tuple[list[Any], Any]]:
         (on.depsgraph_update_post, _on_change),
         (on.undo_post, _on_other_time),
         (on.redo_post, _on_other_time),
-        (on.load_post, _on_other_time),
+        (on.load_post, _on_load),
         (on.blend_import_post, _on_other_time),
         (on.save_pre, _on_save),
     ]
 
 
-classes = (GridMeshPart, GridMeshJoined)
+classes = (GridMeshPart, GridMeshJoined, *parts.classes)
 
 
 def register() -> None:
     """Give objects what they remember, and start to listen."""
     global _known
     _known = None
+    parts.register()
     bpy.types.Object.gridmesh_joined = PointerProperty(type=GridMeshJoined)
     for handlers, function in _handlers():
         if function not in handlers:
@@ -343,3 +397,4 @@ def unregister() -> None:
         bpy.app.timers.unregister(_look)
     if hasattr(bpy.types.Object, "gridmesh_joined"):
         del bpy.types.Object.gridmesh_joined
+    parts.unregister()

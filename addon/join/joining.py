@@ -15,6 +15,7 @@ from ..data.placing import Transaction
 from ..text.messages import counted
 from . import uniting
 from .joinobject import Target
+from .parts import Placed
 
 
 @dataclass(frozen=True)
@@ -71,14 +72,14 @@ def join(
 def again(
     context: bpy.types.Context,
     ob: bpy.types.Object,
-    parts: Sequence[bpy.types.Object],
-    placed: Sequence[Any],
+    placed: Sequence[Placed],
     options: Options,
 ) -> None:
-    """Give an object the mesh that is joined of other objects, taken to be at `placed` in the world; these stay. Raises as `join`."""
+    """Give an object the mesh that is joined of other objects, each taken to be somewhere; these stay. Raises as `join`."""
     api.native("join")
+    objects, places = zip(*placed, strict=True)
     with Transaction() as transaction:
-        target = Target(parts, transaction, ob.matrix_world, placed)
+        target = Target(objects, transaction, ob.matrix_world, places)
         made = _united(target, options, None)
         target.replace(context, made, ob, crease=options.blend == 0)
 

@@ -117,7 +117,10 @@ class Target:
         with engine.resting():
             mesh = self._united(context, made, crease=crease)
             self._use_up()
-            _give(ob, mesh)
+            if mesh.shape_keys is not None or ob.data.shape_keys is not None:
+                _give(ob, mesh)
+            else:
+                _rewrite(ob, mesh)
 
     def _use_up(self) -> None:
         """Remove the copies that are in the joined mesh, which is the first of them."""
@@ -143,11 +146,7 @@ class Target:
     ) -> bpy.types.Object:
         """Make an object like the first one of the mesh; the parts stay, hidden."""
         first = self.objects[0]
-        ob = transaction.remember(bpy.data.objects, first.copy())
-        ob.property_unset("gridmesh_joined")
-        _give(ob, mesh)
-        for collection in first.users_collection:
-            collection.objects.link(ob)
+        ob = transaction.remember(bpy.data.objects, beside(first, mesh))
         for part in self.objects:
             part.hide_set(True)
             part.hide_render = True
@@ -222,6 +221,17 @@ def _is_there(ob: bpy.types.Object) -> bool:
         return False
 
 
+def beside(first: bpy.types.Object, mesh: bpy.types.Mesh) -> bpy.types.Object:
+    """Make an object like another one, where that is, with another mesh; it follows nothing."""
+    ob = first.copy()
+    ob.property_unset("gridmesh_joined")
+    ob.property_unset("gridmesh_part")
+    _give(ob, mesh)
+    for collection in first.users_collection:
+        collection.objects.link(ob)
+    return ob
+
+
 def _give(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
     """Make a mesh that of an object, which is a plain one from then on."""
     before, name = ob.data, ob.data.name
@@ -232,6 +242,38 @@ def _give(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
     if not before.users:
         bpy.data.meshes.remove(before)
         mesh.name = name
+
+
+def _rewrite(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
+    """Give the mesh of an object the contents of another one, which is removed.
+
+    Not the other mesh itself: between two undo steps that would leave the object with a mesh that is freed.
+    """
+    own = ob.data
+    holder = bpy.data.objects.new(mesh.name, mesh)
+    groups = [group.name for group in holder.vertex_groups]
+    bpy.data.objects.remove(holder)
+    own.clear_geometry()
+    ob.vertex_groups.clear()
+    own.materials.clear()
+    for material in mesh.materials:
+        own.materials.append(material)
+    for name in groups:
+        ob.vertex_groups.new(name=name)
+    bm = bmesh.new(use_operators=False)
+    try:
+        bm.from_mesh(mesh, face_normals=False, vertex_normals=False)
+        bm.to_mesh(own)
+    finally:
+        bm.free()
+    for name in ("active_color_index", "render_color_index"):
+        at = getattr(mesh.color_attributes, name)
+        if at >= 0:
+            setattr(own.color_attributes, name, at)
+    for slot in ob.material_slots:
+        slot.link = "DATA"
+    own.update()
+    bpy.data.meshes.remove(mesh)
 
 
 def _take_away(ob: bpy.types.Object, into: bpy.types.Object) -> None:

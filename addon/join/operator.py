@@ -6,7 +6,7 @@ from __future__ import annotations
 from time import perf_counter
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty
+from bpy.props import BoolProperty, FloatProperty, StringProperty
 
 from .. import api
 from ..data import defaults
@@ -15,7 +15,7 @@ from ..text.telling import told
 from ..ui import wrapping
 from ..ui.patching import ResultShown
 from ..ui.progress import Pointer
-from . import following, joining
+from . import characters, following, joining, parts
 from .uniting import JoinError
 
 
@@ -127,7 +127,7 @@ class OBJECT_OT_gridmesh_apply_join(bpy.types.Operator):  # noqa: N801
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Forget the parts."""
-        following.apply(context.view_layer.objects.active, keep_parts=self.keep_parts)
+        characters.apply(context.view_layer.objects.active, keep_parts=self.keep_parts)
         return {"FINISHED"}
 
 
@@ -146,6 +146,55 @@ class OBJECT_OT_gridmesh_show_parts(bpy.types.Operator):  # noqa: N801
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Swap what is to be seen."""
         following.swap(context.view_layer.objects.active)
+        return {"FINISHED"}
+
+
+class OBJECT_OT_gridmesh_pick_part(bpy.types.Operator):  # noqa: N801
+    """Show a part of the joined body over it and select it, to be moved, edited or deleted; the body follows"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_pick_part"
+    bl_label = "Pick Part"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    name: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    """Name of the part."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Ask for a joined body."""
+        return _asks_for_whole(cls, context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Pick it."""
+        whole = following.whole_of(context.view_layer.objects.active)
+        part = next((part for part in following.parts_of(whole) if part.name == self.name), None)
+        if part is None:
+            self.report({"ERROR"}, told(f"'{whole.name}' has no part '{self.name}'"))
+            return {"CANCELLED"}
+        characters.pick(part)
+        return {"FINISHED"}
+
+
+class OBJECT_OT_gridmesh_split_part(bpy.types.Operator):  # noqa: N801
+    """Take the active part out of the joined body; it is a body of its own again, and so is its twin"""  # noqa: D400
+
+    bl_idname = "object.gridmesh_split_part"
+    bl_label = "Split Off Part"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Ask for a part."""
+        active = context.view_layer.objects.active
+        whole = None if active is None else following.whole_of(active)
+        if context.mode == "OBJECT" and whole not in (None, active):
+            return True
+        cls.poll_message_set(told("Make a part of a joined body the active object", "tooltips"))
+        return False
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Split it off."""
+        characters.split(context.view_layer.objects.active)
         return {"FINISHED"}
 
 
@@ -185,10 +234,32 @@ class VIEW3D_PT_gridmesh_joined(bpy.types.Panel):  # noqa: N801
         layout.prop(joined, "blend")
         layout.prop(joined, "edge_length")
         layout.prop(joined, "strict")
+        self._draw_parts(layout, context, whole)
         hidden = not whole.visible_get()
         text = "Hide Parts" if hidden else "Show Parts"
         layout.operator(OBJECT_OT_gridmesh_show_parts.bl_idname, text=text, icon="HIDE_OFF")
         layout.operator(OBJECT_OT_gridmesh_apply_join.bl_idname, icon="FREEZE")
+
+    @staticmethod
+    def _draw_parts(layout: bpy.types.UILayout, context: bpy.types.Context, whole: bpy.types.Object) -> None:
+        """Draw a button for each part; below the one that is active, how it lies."""
+        column = layout.column(align=True)
+        column.label(text="Parts")
+        for part in following.parts_of(whole):
+            active = part == context.view_layer.objects.active
+            entry = column.operator(
+                OBJECT_OT_gridmesh_pick_part.bl_idname,
+                text=part.name,
+                translate=False,
+                icon="RADIOBUT_ON" if active else "RADIOBUT_OFF",
+            )
+            entry.name = part.name
+            if active and part != whole:
+                box = column.box().column()
+                if parts.has_depth(part):
+                    box.prop(part.gridmesh_part, "depth")
+                box.prop(part.gridmesh_part, "twin")
+                box.operator(OBJECT_OT_gridmesh_split_part.bl_idname, icon="UNLINKED")
 
 
 def join_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -204,5 +275,7 @@ classes = (
     OBJECT_OT_gridmesh_join,
     OBJECT_OT_gridmesh_apply_join,
     OBJECT_OT_gridmesh_show_parts,
+    OBJECT_OT_gridmesh_pick_part,
+    OBJECT_OT_gridmesh_split_part,
     VIEW3D_PT_gridmesh_joined,
 )

@@ -511,6 +511,9 @@ _JOINS = {
         "Die Übergänge treffen die Teile oder sich selbst; schmaler verbinden, einen Teil verschieben oder „Streng“ "
         "einschalten, um das abzulehnen"
     ),
+    "'{}' has no part '{}'": "{0} hat keinen Teil {1}",
+    "'{}' stays apart: {}": "{0} bleibt für sich: {1}",
+    "Make a part of a joined body the active object": "Einen Teil eines zusammengeführten Körpers zum aktiven Objekt machen",
     "Make a joined body, or one of its parts, the active object": (
         "Einen zusammengeführten Körper oder einen seiner Teile zum aktiven Objekt machen"
     ),

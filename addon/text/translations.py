@@ -351,8 +351,39 @@ GERMAN = {
     "Y Axis": "Y-Achse",
     "Z Axis": "Z-Achse",
     # What a stroke does
-    "A body of its own though it meets another one, whose child it becomes": (
-        "Ein eigener Körper, obwohl er einen anderen berührt, dessen Kind er wird"
+    "A stroke of its own over a body, which it is joined to": (
+        "Ein eigener Strich über einem Körper, mit dem er zusammengeführt wird"
+    ),
+    "A stroke over a body becomes a part of it, a stroke of its own that the body is joined with": (
+        "Ein Strich über einem Körper wird ein Teil von ihm, ein eigener Strich, mit dem der Körper zusammengeführt wird"
+    ),
+    "Behind": ("Dahinter"),
+    "D: Part Lies": ("D: Lage des Teils"),
+    "Give a part a mirror image, across the X axis of the body, that follows the same stroke": (
+        "Einem Teil ein Spiegelbild geben, über die X-Achse des Körpers, das demselben Strich folgt"
+    ),
+    "In Front": ("Davor"),
+    "In front where the stroke lies inside the body, else in the middle": (
+        "Davor, wo der Strich innerhalb des Körpers liegt, sonst in der Mitte"
+    ),
+    "Join Part": ("Teil zusammenführen"),
+    "Make one closed body of the part and what it is drawn over; without, it is a body of its own and a child of that": (
+        "Aus dem Teil und dem, worüber er gezeichnet ist, einen geschlossenen Körper machen; ohne dies ist er ein eigener Körper "
+        "und dessen Kind"
+    ),
+    "Middle": ("Mitte"),
+    "Part Lies": ("Lage des Teils"),
+    "T: Twin": ("T: Zwilling"),
+    "The middle of the part is on the far side of the body": (
+        "Die Mitte des Teils ist auf der abgewandten Seite des Körpers"
+    ),
+    "The middle of the part is on the side of the body that is seen": (
+        "Die Mitte des Teils ist auf der Seite des Körpers, die man sieht"
+    ),
+    "The part goes through the middle of the body": "Der Teil geht durch die Mitte des Körpers",
+    "Twin": ("Zwilling"),
+    "Where a part lies, seen from the view; its depth can be changed later in the sidebar": (
+        "Wo ein Teil liegt, von der Ansicht aus gesehen; seine Tiefe lässt sich später in der Seitenleiste ändern"
     ),
     "A new body, whatever the stroke meets": ("Ein neuer Körper, was immer der Strich berührt"),
     "Action": ("Aktion"),
@@ -595,6 +626,25 @@ GERMAN = {
     "Show the parts again instead of removing them": "Die Teile wieder zeigen, statt sie zu entfernen",
     "Show the parts of the active joined body to be edited and hide the body, or the other way round": (
         "Die Teile des aktiven zusammengeführten Körpers zum Bearbeiten zeigen und den Körper verbergen, oder umgekehrt"
+    ),
+    "1: the middle of the part is on the surface of the body, as the view saw it that it was drawn in; 0: it goes through the "
+    "middle of the body; -1: it is behind": (
+        "1: die Mitte des Teils ist auf der Oberfläche des Körpers, wie ihn die Ansicht sah, in der er gezeichnet wurde; 0: er "
+        "geht durch die Mitte des Körpers; -1: er ist dahinter"
+    ),
+    "Join the mirror image of the part, too, across the X axis of the joined body; it follows the same stroke": (
+        "Auch das Spiegelbild des Teils zusammenführen, über die X-Achse des zusammengeführten Körpers; es folgt demselben Strich"
+    ),
+    "Part Depth": "Tiefe des Teils",
+    "Parts": "Teile",
+    "Pick Part": "Teil wählen",
+    "Show a part of the joined body over it and select it, to be moved, edited or deleted; the body follows": (
+        "Einen Teil des zusammengeführten Körpers über ihm zeigen und auswählen, um ihn zu verschieben, zu bearbeiten oder zu "
+        "löschen; der Körper folgt"
+    ),
+    "Split Off Part": "Teil abtrennen",
+    "Take the active part out of the joined body; it is a body of its own again, and so is its twin": (
+        "Den aktiven Teil aus dem zusammengeführten Körper nehmen; er ist wieder ein eigener Körper, ebenso sein Zwilling"
     ),
     "Keep Parts": "Teile behalten",
     "Keep the selected objects, hidden, and make the body a new object; without, they become it": (

@@ -9,6 +9,7 @@ from mathutils import Matrix
 from addon.draw import memory
 from addon.draw.operator import OPERATORS
 from addon.draw.trace import pack
+from addon.join import following
 from addon.live import engine
 
 pytestmark = pytest.mark.usefixtures("awake", "history")
@@ -88,7 +89,9 @@ def test_each_action(action):
     assert len(outlines) == len(engine.bodies())
     if action == "PART":
         (part,) = (ob for ob in engine.bodies() if ob != body)
-        assert part.parent == body
+        whole = following.whole_of(part)
+        assert part.parent == body.parent == whole
+        assert following.parts_of(whole) == [body, part]
 
 
 @pytest.mark.parametrize("action", ACTIONS)
@@ -276,7 +279,7 @@ def test_a_moved_turned_and_scaled_body_is_extended_where_it_is():
 
 def test_a_part_follows_its_body_and_stays_when_that_is_extended():
     body = disk()
-    draw(circle(40, 0.6, (0, 1.9)), action="PART")
+    draw(circle(40, 0.6, (0, 1.9)), action="PART", use_join=False)
     part = next(ob for ob in engine.bodies() if ob != body)
     before = world_vertices(part)
     draw(ACTIONS["EXTEND"])

@@ -53,6 +53,8 @@ WITHOUT_BLENDER = {
     "draw/trace",
     "draw/decision",
     "draw/memory",
+    "draw/parts",
+    "draw/regions",
     "draw/fewer",
     "live/solve",
     "overlay/quality",

@@ -13,6 +13,7 @@ import draw_scenes
 import first_scenes
 import live_scenes
 import mesh_scenes
+import part_scenes
 import together_scenes
 from stage import perform
 
@@ -21,6 +22,7 @@ SCENES = (
     *mesh_scenes.SCENES,
     *cut_scenes.SCENES,
     *draw_scenes.SCENES,
+    *part_scenes.SCENES,
     *live_scenes.SCENES,
     *together_scenes.SCENES,
 )
