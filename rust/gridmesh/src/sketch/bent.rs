@@ -108,9 +108,9 @@ impl Job<'_> {
         let ahead = self.symmetry.as_ref().map_or(self.farthest(), |symmetry| symmetry.axis.direction);
         let frame = Lattice { angle: ahead.to_angle(), origin: self.centre, edge_length };
         let density = self.options.density.as_ref();
-        let Some(ground) =
-            Ground::new(&self.contours, frame, density, self.symmetry.is_some(), self.options.cells)
-        else {
+        let is_symmetric = self.symmetry.is_some();
+        let ground = Ground::new(&self.contours, frame, density, is_symmetric, self.options.cells, progress)?;
+        let Some(ground) = ground else {
             return Ok(Vec::new());
         };
         let mut found = Vec::new();
