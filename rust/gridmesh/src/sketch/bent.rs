@@ -148,7 +148,7 @@ impl Job<'_> {
         let along = symmetry.is_some().then_some(0.0);
         let options = SketchOptions { edge_length: None, triangles: None, angle: along, ..self.of_bent() };
         let job = self.in_bent_plane(&bent, &options, symmetry);
-        let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick).first() else {
+        let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick(0)).first() else {
             return Ok(None);
         };
         let Ok((lattice, outline)) = job.outline(asked, Effort::Full, angle, shift, progress)? else {
