@@ -68,7 +68,7 @@ def fill(
                 cells=cells,
                 progress=progress,
             )
-            return [_filled(gridmesh, fill, vertices, poses) for fill in fills]
+            return [_filled(gridmesh, fill, vertices, poses, progress) for fill in fills]
     except gridmesh.GridMeshError as error:
         return [str(error)] * len(indices)
 
@@ -167,17 +167,30 @@ def bridge(
                 polygons=polygons,
                 progress=progress,
             )
-            return _filled(gridmesh, made, vertices, poses)
+            return _filled(gridmesh, made, vertices, poses, progress)
     except gridmesh.GridMeshError as error:
         return str(error)
 
 
-def _filled(gridmesh: Any, fill: Any, vertices: np.ndarray, poses: Sequence[np.ndarray]) -> Filled | str:
+def _filled(
+    gridmesh: Any,
+    fill: Any,
+    vertices: np.ndarray,
+    poses: Sequence[np.ndarray],
+    progress: Progress | None,
+) -> Filled | str:
     if isinstance(fill, gridmesh.GridMeshError):
         return str(fill)
+
+    def go_on(_: float) -> object:
+        # The fill itself has reported the whole.
+        return None if progress is None else progress(1.0)
+
     try:
-        solved = [fill.vertices if pose is vertices else fill.refit(pose) for pose in poses]
+        solved = [fill.vertices if pose is vertices else fill.refit(pose, progress=go_on) for pose in poses]
     except gridmesh.GridMeshError as error:
+        if error.kind == "cancelled":
+            raise
         return f"in another shape key {error}"
     return Filled(
         fill.vertices, fill.triangles, fill.quads, fill.creases, solved, dict(fill.report), fill.extend

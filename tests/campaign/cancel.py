@@ -183,9 +183,15 @@ def calls(scale: float) -> dict[str, Callable[[Clock], Any]]:
         "cut_reach 100,000": lambda: mesh_call(
             "cut_reach", ball(int(224 * scale)), [[-0.5, 0, 0.0], [0.5, 0.1, 0]], direction=(0, 0, 1)
         ),
-        "Fill.refit": lambda: (lambda fill: lambda _: fill.refit(sheet(300)[0]))(fill_of(int(120 * scale))),
+        "Fill.refit": lambda: (lambda fill: lambda clock: fill.refit(sheet(300)[0], progress=clock))(
+            fill_of(int(120 * scale))
+        ),
         "Fill.extend": lambda: (
-            lambda fill: lambda _: fill.extend(np.random.default_rng(0).normal(size=(len(fill.loop), 3)))
+            lambda fill: (
+                lambda clock: fill.extend(
+                    np.random.default_rng(0).normal(size=(len(fill.loop), 3)), progress=clock
+                )
+            )
         )(fill_of(int(120 * scale))),
         "combine 20,000 points": lambda: (
             lambda _: gridmesh.combine(wave(20_000, 200), wave(20_000, 151) + [0.3, 0.1])

@@ -133,6 +133,10 @@ class TestProgress:
         yield lambda **o: gridmesh.regrid(
             vertices, faces, np.flatnonzero(np.isin(faces, 60).any(axis=1)), **o
         )
+        for smooth in ("tangent", "curvature"):
+            for fill in gridmesh.fill_holes(vertices, faces, smooth=smooth)[1:3]:
+                yield lambda fill=fill, **o: fill.refit(1.5 * vertices, **o)
+                yield lambda fill=fill, **o: fill.extend(vertices[fill.loop], **o)
 
     def test_it_never_falls(self):
         for run in self.runs():

@@ -89,6 +89,18 @@ def test_a_refusal_takes_a_bounded_amount_of_work(seed):
     assert len(questions) < 5000
 
 
+@pytest.mark.parametrize(("seed", "most"), [(3_001_128, 900), (3_001_503, 1600), (3_002_039, 1200)])
+def test_the_search_for_a_number_does_not_dwell_on_those_that_fail(seed, most):
+    """It asked 1533, 2324 and 1702 times: millions of states to show of each small number that it fails."""
+    case = drawings.case(seed)
+    questions = []
+    error = refused(case.outline, progress=questions.append, **case.options)
+    assert error.kind == "too_coarse"
+    assert len(questions) < most
+    case.options["triangles"] = int(str(error).split("; ")[1].split()[0])
+    check_patch(gridmesh.mesh_sketch(case.outline, **case.options), [case.outline])
+
+
 def test_without_least_nothing_is_searched_for():
     error = refused(spiral(8, 0.2), triangles=500, least=False)
     assert error.kind == "too_coarse"
@@ -257,6 +269,29 @@ def test_a_body_is_cancelled_at_every_question():
 
         with pytest.raises(gridmesh.GridMeshError, match="cancelled"):
             gridmesh.inflate(patch, progress=until)
+
+
+def test_bends_of_long_outlines_ask_whether_to_go_on():
+    """34,000 edges of boundary: widths are measured and maps are solved for seconds, before anything is traced."""
+    points, asked = spiral(20, 0.2), []
+
+    def until_traced(fraction):
+        asked.append(fraction)
+        return fraction <= 0.06
+
+    error = refused(points, triangles=100_000, progress=until_traced)
+    assert error.kind == "cancelled"
+    # Once it was asked three times until there were maps, and twenty times while they were chosen.
+    assert sum(fraction < 0.03 for fraction in asked) > 200
+    for stop in (2, 150, len(asked) // 2, len(asked) - 1):
+        left = [stop]
+
+        def until(_, left=left):
+            left[0] -= 1
+            return left[0] > 0
+
+        assert refused(points, triangles=100_000, progress=until).kind == "cancelled"
+        assert left[0] == 0, "asked again after no"
 
 
 def test_many_points_and_corners_are_meshed():

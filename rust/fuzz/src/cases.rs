@@ -22,8 +22,13 @@ impl<'a> Case<'a> {
         self.bytes.arbitrary().unwrap_or(0)
     }
 
-    fn below(&mut self, n: usize) -> usize {
+    pub fn below(&mut self, n: usize) -> usize {
         usize::from(self.byte()) % n.max(1)
+    }
+
+    /// From 0 to 1.
+    pub fn share(&mut self) -> f64 {
+        f64::from(self.byte()) / 255.0
     }
 
     pub fn chance(&mut self) -> bool {
@@ -130,6 +135,50 @@ impl<'a> Case<'a> {
                 }
                 triangles.push([quad[0], quad[1], quad[2]]);
                 triangles.push([quad[0], quad[2], quad[3]]);
+            }
+        }
+        (vertices, triangles)
+    }
+
+    /// A closed mesh that others of its kind often meet: a ball or a torus, sometimes rough.
+    pub fn closed(&mut self) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let (rows, columns) = (3 + self.below(8), 3 + self.below(8));
+        let is_torus = self.chance();
+        let shift = 0.25 * DVec3::new(self.coordinate(), self.coordinate(), self.coordinate());
+        let rough = if self.chance() { 0.2 * self.share() } else { 0.0 };
+        let mut vertices = Vec::new();
+        let mut add = |case: &mut Self, point: DVec3| {
+            vertices.push(shift + point * (1.0 + rough * case.share()));
+        };
+        let at = |i: usize, j: usize| ((i % rows) * columns + j % columns) as u32;
+        for i in 0..rows {
+            for j in 0..columns {
+                let v = TAU * j as f64 / columns as f64;
+                let point = if is_torus {
+                    let u = TAU * i as f64 / rows as f64;
+                    let radius = 1.0 + 0.4 * v.cos();
+                    DVec3::new(radius * u.cos(), radius * u.sin(), 0.4 * v.sin())
+                } else {
+                    let u = 0.5 * TAU * (i + 1) as f64 / (rows + 1) as f64;
+                    DVec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos())
+                };
+                add(self, point);
+            }
+        }
+        let mut triangles = Vec::new();
+        for i in 0..if is_torus { rows } else { rows - 1 } {
+            for j in 0..columns {
+                triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+            }
+        }
+        if !is_torus {
+            add(self, DVec3::Z);
+            add(self, -DVec3::Z);
+            let north = (rows * columns) as u32;
+            for j in 0..columns {
+                triangles.push([north, at(0, j), at(0, j + 1)]);
+                triangles.push([north + 1, at(rows - 1, j + 1), at(rows - 1, j)]);
             }
         }
         (vertices, triangles)

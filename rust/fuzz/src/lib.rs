@@ -1,13 +1,14 @@
 //! What each fuzz target does with its bytes: reads a case from them, runs it, and checks every promise that holds for any input.
 //!
 //! ```sh
-//! cargo +nightly fuzz run --fuzz-dir rust/fuzz sketch     # fill, regrid, cut, combine
+//! cargo +nightly fuzz run --fuzz-dir rust/fuzz sketch     # bent, combine, cut, fill, join, picture, quads, regrid, several
 //! ```
 //!
 //! The library's tests run the same functions on a fixed number of pseudorandom inputs (`rust/gridmesh/tests/fuzz.rs`); what
 //! fuzzing found is kept there as named cases.
 
 mod cases;
+mod later;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -21,6 +22,7 @@ use gridmesh::progress::Progress;
 use gridmesh::sketch::mesh_sketch;
 
 use self::cases::Case;
+pub use self::later::{bent, join, picture, quads, several};
 
 /// Reports after which a case is given up: bounds its work.
 const REPORTS: usize = 20_000;

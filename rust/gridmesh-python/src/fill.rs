@@ -10,7 +10,7 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 
-use crate::error::{detached, error, from_core};
+use crate::error::{error, from_core};
 use crate::input::Argument;
 use crate::mesh::{Mesh, as_positions, indices, loop_argument, pairs, positions_argument, read_positions};
 use crate::watch::Watch;
@@ -297,6 +297,8 @@ impl Fill {
     /// ----------
     /// values : (k, c) or (k,) array of real numbers
     ///     Data of the loop's vertices, in the order of `loop`: texture coordinates, weights, colours.
+    /// progress : callable, optional
+    ///     As in `fill_hole`.
     ///
     /// Returns
     /// -------
@@ -306,9 +308,14 @@ impl Fill {
     /// Raises
     /// ------
     /// GridMeshError
-    ///     If there is not one row for each vertex of the loop, or a value is not finite.
-    #[pyo3(text_signature = "($self, values)")]
-    fn extend<'py>(&self, py: Python<'py>, values: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    ///     If there is not one row for each vertex of the loop, a value is not finite, or when cancelled.
+    #[pyo3(signature = (values, *, progress = None), text_signature = "($self, values, *, progress=None)")]
+    fn extend<'py>(
+        &self,
+        py: Python<'py>,
+        values: &Bound<'py, PyAny>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let allowed = "a (k, c) or (k,) array of real numbers, a row for each vertex of the loop";
         let it = Argument { name: "values", value: values, allowed };
         let array = it.array()?;
@@ -322,7 +329,7 @@ impl Fill {
         } else {
             array.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>()?.as_array().iter().copied().collect()
         };
-        let found = detached(py, || self.inner.extend(&flat, columns)).map_err(|err| err.into_py(py))?;
+        let found = Watch::new(progress)?.run(py, |progress| self.inner.extend(&flat, columns, progress))?;
         let found = PyArray1::from_vec(py, found);
         if array.ndim() == 1 {
             return Ok(found.into_any());
@@ -336,6 +343,8 @@ impl Fill {
     /// ----------
     /// vertices : (n, 3) array of real numbers
     ///     As many as the filled mesh has, in the same order.
+    /// progress : callable, optional
+    ///     As in `fill_hole`.
     ///
     /// Returns
     /// -------
@@ -346,12 +355,17 @@ impl Fill {
     /// Raises
     /// ------
     /// GridMeshError
-    ///     If the number of vertices differs, or one near the loop is not finite.
-    #[pyo3(text_signature = "($self, vertices)")]
-    fn refit(&self, py: Python<'_>, vertices: &Bound<'_, PyAny>) -> PyResult<Py<PyArray2<f64>>> {
+    ///     If the number of vertices differs, one near the loop is not finite, or when cancelled.
+    #[pyo3(signature = (vertices, *, progress = None), text_signature = "($self, vertices, *, progress=None)")]
+    fn refit(
+        &self,
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Py<PyArray2<f64>>> {
         let held = read_positions(&positions_argument(vertices))?;
         let positions = as_positions(&held)?.into_owned();
-        let found = detached(py, || self.inner.refit(&positions)).map_err(|err| err.into_py(py))?;
+        let found = Watch::new(progress)?.run(py, |progress| self.inner.refit(&positions, progress))?;
         arrays::space_points(py, &found)
     }
 

@@ -29,13 +29,15 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::drawing::curve::ClosedCurve;
+use crate::error::Result;
 use crate::lattice::axial::Axial;
 use crate::options::{CellShape, Density};
 use crate::path::outline::Outline;
 use crate::path::placement::{Laid, Lattice};
+use crate::progress::Progress;
 use carrier::{Carrier, Line};
 use image::{BentContours, Image, WayBack};
-use width::Wish;
+use width::{Wish, log_widths};
 
 /// Coordinates in a drawing's own frame are multiples of this, in edges.
 const GRAIN: f64 = 1.0 / 1_048_576.0;
@@ -46,6 +48,8 @@ pub(crate) struct Ground {
     frame: Lattice,
     lines: Vec<Line>,
     carrier: Carrier,
+    /// Logarithm of the drawing's width at the carrier's boundary vertices.
+    widths: Vec<f64>,
     /// Wishes for the number of triangles at the carrier's boundary vertices.
     densities: Option<Vec<f64>>,
     /// How much finer narrow parts are wished for.
@@ -59,24 +63,32 @@ pub(crate) struct Ground {
 impl Ground {
     /// `frame`: a point and a direction that move with the drawing, and the edge length. The lattice of
     /// the bent plane will be one of `shape`. None where the contours are too near to each other.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled).
     pub(crate) fn new(
         contours: &[ClosedCurve],
         frame: Lattice,
         density: Option<&Density>,
         is_symmetric: bool,
         shape: CellShape,
-    ) -> Option<Self> {
+        progress: Progress<'_>,
+    ) -> Result<Option<Self>> {
         let lines: Vec<Line> = contours.iter().map(|contour| in_frame(contour, &frame)).collect();
-        let carrier = Carrier::new(&lines, shape)?;
+        let Some(carrier) = Carrier::new(&lines, shape, progress)? else { return Ok(None) };
         let densities = match density {
-            Some(Density::PerPoint(given)) => Some(densities(contours, &carrier, given)?),
+            Some(Density::PerPoint(given)) => match densities(contours, &carrier, given) {
+                None => return Ok(None),
+                found => found,
+            },
             _ => None,
         };
         let narrow = match density {
             Some(&Density::Width(share)) => Some(share),
             _ => None,
         };
-        Some(Self { frame, lines, carrier, densities, narrow, is_symmetric, shape })
+        let widths = log_widths(&carrier, progress)?;
+        Ok(Some(Self { frame, lines, carrier, widths, densities, narrow, is_symmetric, shape }))
     }
 
     /// True if sizes are asked for.
@@ -89,7 +101,7 @@ impl Ground {
         match &self.densities {
             Some(densities) => Some(Wish::of_densities(densities)),
             None if self.narrow.is_some() || self.shape == CellShape::Quad => {
-                Some(Wish::of_narrowness(&self.carrier, self.narrow.unwrap_or(1.0)))
+                Some(Wish::of_narrowness(&self.widths, self.narrow.unwrap_or(1.0)))
             }
             None => None,
         }
@@ -208,13 +220,11 @@ mod tests {
     use super::tangents::Tangents;
     use super::*;
     use crate::drawing::contours::read_contours;
-    use crate::error::Result;
-    use crate::progress::Progress;
 
     fn ground(outline: &[DVec2], holes: &[Vec<DVec2>]) -> Result<Arc<Ground>> {
         let contours = read_contours(outline, holes)?;
         let frame = Lattice { origin: DVec2::ZERO, angle: 0.0, edge_length: 1.0 };
-        let found = Ground::new(&contours, frame, None, false, CellShape::Triangle);
+        let found = Ground::new(&contours, frame, None, false, CellShape::Triangle, Progress::NONE)?;
         found
             .map(Arc::new)
             .ok_or(crate::error::Error::Solver { stage: "test", reason: "no carrier".to_owned() })
@@ -234,9 +244,10 @@ mod tests {
     fn rotation(ground: &Ground, start: f64, beta: f64) -> Result<(Vec<f64>, usize)> {
         let tangents: Vec<Tangents> =
             ground.lines.iter().map(|line| Tangents::new(&line.points, &line.arcs)).collect();
-        let operators = Operators::new(&ground.carrier, &tangents, ground.shape)?;
-        let robin = operators.robin(beta)?;
-        let mut found = operators.rotations(&[start], beta, &robin, 1.0)?;
+        let (carrier, widths) = (&ground.carrier, &ground.widths);
+        let operators = Operators::new(carrier, widths, &tangents, ground.shape, Progress::NONE)?;
+        let robin = operators.robin(beta, Progress::NONE)?;
+        let mut found = operators.rotations(&[start], (beta, &robin), 1.0, Progress::NONE)?;
         let found = found.remove(0);
         Ok((found.v, found.turns))
     }
@@ -247,10 +258,12 @@ mod tests {
         let carrier = &ground.carrier;
         let operators = Operators::new(
             carrier,
+            &ground.widths,
             &[Tangents::new(&ground.lines[0].points, &ground.lines[0].arcs)],
             ground.shape,
+            Progress::NONE,
         )?;
-        let solver = operators.solver()?;
+        let solver = operators.solver(Progress::NONE)?;
         let v = vec![0.4; carrier.vertices.len()];
         let mut u = solver.scale(&v)?;
         keep_area(carrier, &mut u);

@@ -56,3 +56,28 @@ fn cuts_keep_their_promises() {
 fn combined_drawings_keep_their_promises() {
     run(targets::combine, 3000);
 }
+
+#[test]
+fn bent_lattices_keep_their_promises() {
+    run(targets::bent, 300);
+}
+
+#[test]
+fn fills_of_several_loops_keep_their_promises() {
+    run(targets::several, 1500);
+}
+
+#[test]
+fn fills_with_quads_keep_their_promises() {
+    run(targets::quads, 600);
+}
+
+#[test]
+fn joins_keep_their_promises() {
+    run(targets::join, 300);
+}
+
+#[test]
+fn pictures_keep_their_promises() {
+    run(targets::picture, 1500);
+}

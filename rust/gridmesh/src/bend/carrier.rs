@@ -3,8 +3,10 @@
 use glam::DVec2;
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
+use crate::error::Result;
 use crate::geometry::segments::{SegmentGrid, nearest_on_segment, orientation, segments_meet};
 use crate::options::CellShape;
+use crate::progress::{Progress, aside};
 
 /// Least and greatest spacing of the samples along the contours, in edges, and how many of them there are
 /// between the two.
@@ -17,6 +19,8 @@ const AREA: f64 = 6.0;
 const QUAD_AREA: f64 = 8.0;
 /// Rounds of adding samples where chords cross.
 const ROUNDS: usize = 12;
+/// More boundary vertices are triangulated aside: spade does not ask whether to go on.
+const LARGE: usize = 2048;
 
 /// A drawn contour in edges.
 pub struct Line {
@@ -97,7 +101,10 @@ pub struct Carrier {
 impl Carrier {
     /// None where the contours are so near to each other that no coarse triangulation is found.
     /// `shape` is that of the lattice: squares want turns of the tangents more finely.
-    pub fn new(lines: &[Line], shape: CellShape) -> Option<Self> {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled).
+    pub fn new(lines: &[Line], shape: CellShape, progress: Progress<'_>) -> Result<Option<Self>> {
         let whole: f64 = lines.iter().map(Line::length).sum();
         let (spacing, largest) = match shape {
             CellShape::Triangle => {
@@ -106,48 +113,20 @@ impl Carrier {
             }
             CellShape::Quad => (SPACING.0, QUAD_AREA),
         };
-        let rims = samples(lines, spacing)?;
+        let Some(rims) = samples(lines, spacing, progress)? else { return Ok(None) };
         let mut points: Vec<Point2<f64>> = Vec::new();
         let mut edges = Vec::new();
         for (rim, line) in rims.iter().zip(lines) {
             points.extend(rim.arcs.iter().map(|&s| line.at(s)).map(|p| Point2::new(p.x, p.y)));
             edges.extend((0..rim.len()).map(|i| [rim.start + i, rim.next(i)]));
         }
-        let n_rim = points.len();
-        let mut is_sound = true;
-        let mut delaunay: ConstrainedDelaunayTriangulation<Point2<f64>> =
-            ConstrainedDelaunayTriangulation::try_bulk_load_cdt(points, edges, |_| is_sound = false).ok()?;
-        if !is_sound || delaunay.num_vertices() != n_rim {
-            return None;
-        }
         let area: f64 = lines.iter().map(|line| 0.5 * doubled_area(&line.points)).sum();
-        let parameters = RefinementParameters::<f64>::new()
-            .exclude_outer_faces(true)
-            .keep_constraint_edges()
-            .with_angle_limit(AngleLimit::from_deg(25.0))
-            .with_max_allowed_area(largest)
-            .with_max_additional_vertices(8 * n_rim + (2.0 * area / largest) as usize);
-        let outer = delaunay.refine(parameters).excluded_faces;
-        let mut is_outer = vec![false; delaunay.num_all_faces()];
-        outer.iter().for_each(|face| is_outer[face.index()] = true);
-        // The vertices of the drawing alone, in their order.
-        let mut number = vec![u32::MAX; delaunay.num_vertices()];
-        let faces = || delaunay.inner_faces().filter(|face| !is_outer[face.fix().index()]);
-        for face in faces() {
-            face.vertices().iter().for_each(|v| number[v.fix().index()] = 0);
-        }
-        let mut vertices = Vec::new();
-        for (vertex, number) in delaunay.vertices().zip(&mut number) {
-            if *number == 0 {
-                *number = vertices.len() as u32;
-                vertices.push(DVec2::new(vertex.position().x, vertex.position().y));
-            }
-        }
-        if number[..n_rim].iter().enumerate().any(|(i, &v)| v as usize != i) {
-            return None;
-        }
-        let triangles = faces().map(|face| face.vertices().map(|v| number[v.fix().index()])).collect();
-        Some(Self { vertices, triangles, rims })
+        let made = if points.len() > LARGE {
+            aside(progress, move || triangulated(points, edges, largest, area))?
+        } else {
+            triangulated(points, edges, largest, area)
+        };
+        Ok(made.map(|(vertices, triangles)| Self { vertices, triangles, rims }))
     }
 
     /// A third of the area of the triangles at each vertex.
@@ -172,14 +151,59 @@ impl Carrier {
     }
 }
 
+/// Vertices and triangles of a refined triangulation: those of the boundary first, in their order. None where the
+/// boundary meets itself. `largest` is the greatest area of a triangle, `area` that of the whole.
+fn triangulated(
+    points: Vec<Point2<f64>>,
+    edges: Vec<[usize; 2]>,
+    largest: f64,
+    area: f64,
+) -> Option<(Vec<DVec2>, Vec<[u32; 3]>)> {
+    let n_rim = points.len();
+    let mut is_sound = true;
+    let mut delaunay: ConstrainedDelaunayTriangulation<Point2<f64>> =
+        ConstrainedDelaunayTriangulation::try_bulk_load_cdt(points, edges, |_| is_sound = false).ok()?;
+    if !is_sound || delaunay.num_vertices() != n_rim {
+        return None;
+    }
+    let parameters = RefinementParameters::<f64>::new()
+        .exclude_outer_faces(true)
+        .keep_constraint_edges()
+        .with_angle_limit(AngleLimit::from_deg(25.0))
+        .with_max_allowed_area(largest)
+        .with_max_additional_vertices(8 * n_rim + (2.0 * area / largest) as usize);
+    let outer = delaunay.refine(parameters).excluded_faces;
+    let mut is_outer = vec![false; delaunay.num_all_faces()];
+    outer.iter().for_each(|face| is_outer[face.index()] = true);
+    // The vertices of the drawing alone, in their order.
+    let mut number = vec![u32::MAX; delaunay.num_vertices()];
+    let faces = || delaunay.inner_faces().filter(|face| !is_outer[face.fix().index()]);
+    for face in faces() {
+        face.vertices().iter().for_each(|v| number[v.fix().index()] = 0);
+    }
+    let mut vertices = Vec::new();
+    for (vertex, number) in delaunay.vertices().zip(&mut number) {
+        if *number == 0 {
+            *number = vertices.len() as u32;
+            vertices.push(DVec2::new(vertex.position().x, vertex.position().y));
+        }
+    }
+    if number[..n_rim].iter().enumerate().any(|(i, &v)| v as usize != i) {
+        return None;
+    }
+    let triangles = faces().map(|face| face.vertices().map(|v| number[v.fix().index()])).collect();
+    Some((vertices, triangles))
+}
+
 fn doubled_area(points: &[DVec2]) -> f64 {
     (0..points.len()).map(|i| points[i].perp_dot(points[(i + 1) % points.len()])).sum()
 }
 
 /// Samples whose chords are near the drawing and do not meet.
-fn samples(lines: &[Line], spacing: f64) -> Option<Vec<Rim>> {
+fn samples(lines: &[Line], spacing: f64, progress: Progress<'_>) -> Result<Option<Vec<Rim>>> {
     let mut arcs: Vec<Vec<f64>> = lines.iter().map(|line| followed(line, spacing)).collect();
     for _ in 0..ROUNDS {
+        progress.report(0.0)?;
         let mut owner = Vec::new();
         let mut chords = Vec::new();
         for (k, (line, arcs)) in lines.iter().zip(&arcs).enumerate() {
@@ -209,7 +233,7 @@ fn samples(lines: &[Line], spacing: f64) -> Option<Vec<Rim>> {
                 start += rim.len();
                 rim
             });
-            return Some(rims.collect());
+            return Ok(Some(rims.collect()));
         }
         let chord = |&(k, i): &(usize, usize)| {
             let end = arcs[k].get(i + 1).copied().unwrap_or(lines[k].length());
@@ -218,14 +242,14 @@ fn samples(lines: &[Line], spacing: f64) -> Option<Vec<Rim>> {
         let added: Vec<(usize, f64)> =
             owner.iter().zip(&meeting).filter(|(_, meet)| **meet).filter_map(|(of, _)| chord(of)).collect();
         if added.is_empty() {
-            return None;
+            return Ok(None);
         }
         for (k, s) in added {
             arcs[k].push(s);
         }
         arcs.iter_mut().for_each(|arcs| arcs.sort_by(f64::total_cmp));
     }
-    None
+    Ok(None)
 }
 
 /// Even samples, and drawn points that stray from the chords.

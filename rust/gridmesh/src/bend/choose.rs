@@ -57,16 +57,17 @@ pub(crate) fn candidates(
 ) -> Result<()> {
     let tangents: Vec<Tangents> =
         ground.lines.iter().map(|line| Tangents::new(&line.points, &line.arcs)).collect();
-    let operators = Operators::new(&ground.carrier, &tangents, ground.shape)?;
-    let solver = operators.solver()?;
+    let operators = Operators::new(&ground.carrier, &ground.widths, &tangents, ground.shape, progress)?;
+    // What is solved after this is reported as one part.
+    let solver = operators.solver(progress.part(0.1, 0.2))?;
     let beta = STRENGTH * bend;
-    let robin = operators.robin(beta)?;
+    let robin = operators.robin(beta, progress)?;
     progress.report(0.1)?;
     // On a mirror axis the lattice can only lie in two ways.
     let n = if ground.is_symmetric { 2 } else { STARTS };
     let step = ground.shape.step();
     let starts: Vec<f64> = (0..n).map(|k| step * k as f64 / n as f64).collect();
-    let mut found = operators.rotations(&starts, beta, &robin, TURN)?;
+    let mut found = operators.rotations(&starts, (beta, &robin), TURN, progress.part(0.1, 0.2))?;
     let cost = |r: &Rotation| r.turns as f64 + MISFIT * r.misfit;
     found.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     let wide = if ground.shape == CellShape::Quad { count } else { SIZED * count };
@@ -82,7 +83,7 @@ pub(crate) fn candidates(
     progress.report(0.2)?;
     let wish = ground.wish();
     let wished = if ground.is_asked() { ASKED } else { QUAD_SIZE };
-    let narrowest = narrowest(&ground.carrier);
+    let narrowest = narrowest(&ground.carrier, &ground.widths);
     let floor = |&narrow: &bool| if narrow { NARROW_FLOOR } else { FLOOR };
     let floors: Vec<f64> = narrowest.iter().map(floor).collect();
     let sized: Vec<Result<(f64, Rotation)>> = chosen

@@ -44,17 +44,25 @@ pub struct Rotation {
     pub misfit: f64,
 }
 
-/// Operators and one factorisation for each boundary weight.
+/// Operators and the factorisation without a boundary weight. Each solve asks whether to go on.
 pub struct Solver<'a> {
     pub operators: &'a Operators,
     neumann: Factor,
+    progress: Progress<'a>,
 }
 
 impl Operators {
-    pub fn new(carrier: &Carrier, tangents: &[Tangents], shape: CellShape) -> Result<Self> {
+    /// `widths` as [`log_widths`](super::width::log_widths) gives them.
+    pub fn new(
+        carrier: &Carrier,
+        widths: &[f64],
+        tangents: &[Tangents],
+        shape: CellShape,
+        progress: Progress<'_>,
+    ) -> Result<Self> {
         let topology = Topology::new(carrier.vertices.len(), &carrier.triangles);
         let weights = cotangent_weights(&topology, &carrier.vertices, &carrier.triangles)?;
-        let pattern = Pattern::new(&topology, 0, Progress::NONE)?;
+        let pattern = Pattern::new(&topology, 0, progress)?;
         let mut at_rim = Vec::new();
         for (rim, tangents) in carrier.rims.iter().zip(tangents) {
             at_rim.extend(rim.arcs.iter().map(|&s| tangents.at(s)));
@@ -63,20 +71,21 @@ impl Operators {
         let contour = |(rim, t): (&Rim, &Tangents)| (rim.start, rim.len(), t.total(step));
         let contours = carrier.rims.iter().zip(tangents).map(contour).collect();
         let lengths = carrier.lengths();
-        let pulls = lengths.iter().zip(room(carrier)).map(|(length, room)| length * room).collect();
+        let pulls = lengths.iter().zip(room(widths)).map(|(length, room)| length * room).collect();
         Ok(Self { topology, weights, pattern, lengths, pulls, tangents: at_rim, contours, step })
     }
 
     /// The Laplacian with `beta` times the length of contour that wants a direction on its diagonal.
-    pub fn robin(&self, beta: f64) -> Result<Factor> {
+    pub fn robin(&self, beta: f64, progress: Progress<'_>) -> Result<Factor> {
         let diagonal = |v: usize| self.pulls.get(v).map_or(0.0, |pull| beta * pull);
-        self.pattern.factor(&self.topology, &self.weights, diagonal, Progress::NONE)
+        self.pattern.factor(&self.topology, &self.weights, diagonal, progress)
     }
 
-    pub fn solver(&self) -> Result<Solver<'_>> {
+    pub fn solver<'a>(&'a self, progress: Progress<'a>) -> Result<Solver<'a>> {
         Ok(Solver {
             operators: self,
-            neumann: self.pattern.factor(&self.topology, &self.weights, |_| FLOOR, Progress::NONE)?,
+            neumann: self.pattern.factor(&self.topology, &self.weights, |_| FLOOR, progress)?,
+            progress,
         })
     }
 
@@ -133,7 +142,13 @@ impl Operators {
     /// `1/2 |grad v|^2 + beta/2 |v - (step m - tangent)|^2` with `m` the directions of least cost for it,
     /// in turns, from even rotations by `starts` on. `robin` is the factor for `beta`. One solve a
     /// round for all.
-    pub fn rotations(&self, starts: &[f64], beta: f64, robin: &Factor, price: f64) -> Result<Vec<Rotation>> {
+    pub fn rotations(
+        &self,
+        starts: &[f64],
+        (beta, robin): (f64, &Factor),
+        price: f64,
+        progress: Progress<'_>,
+    ) -> Result<Vec<Rotation>> {
         let n = self.topology.start.len() - 1;
         let mut found: Vec<(Vec<f64>, Vec<Directions>)> =
             starts.iter().map(|&start| (vec![start; n], Vec::new())).collect();
@@ -158,7 +173,9 @@ impl Operators {
             if open.is_empty() {
                 break;
             }
+            progress.report(0.0)?;
             robin.solve(&mut sides, open.len())?;
+            progress.report(0.0)?;
             for (&k, side) in open.iter().zip(sides.chunks_exact(n)) {
                 found[k].0.copy_from_slice(side);
             }
@@ -171,6 +188,7 @@ impl Solver<'_> {
     /// The harmonic conjugate of a rotation, up to a constant: its normal derivative is the rotation's
     /// derivative along the contours.
     pub fn scale(&self, v: &[f64]) -> Result<Vec<f64>> {
+        self.progress.report(0.0)?;
         let mut u = self.operators.along(v);
         self.neumann.solve(&mut u, 1)?;
         Ok(u)
@@ -178,6 +196,7 @@ impl Solver<'_> {
 
     /// Solves with the Laplacian alone, in place; the right side should add up to zero.
     pub fn potential(&self, of: &mut [f64]) -> Result<()> {
+        self.progress.report(0.0)?;
         self.neumann.solve(of, 1)
     }
 
@@ -197,6 +216,7 @@ impl Solver<'_> {
                 sums[n + i] += 0.5 * (across.x * gradient.y + across.y * gradient.x);
             }
         }
+        self.progress.report(0.0)?;
         self.neumann.solve(&mut sums, 2)?;
         Ok((0..n).map(|i| DVec2::new(sums[i], sums[n + i])).collect())
     }

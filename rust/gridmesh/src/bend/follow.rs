@@ -204,7 +204,8 @@ mod tests {
         let contours = read_contours(&wavy(|_| DVec2::ZERO), &[])?;
         let moved = read_contours(&wavy(|i| DVec2::new(0.0, 1e-6 * (i % 7) as f64)), &[])?;
         let frame = Lattice { origin: DVec2::ZERO, angle: 0.0, edge_length: 1.0 };
-        let ground = Ground::new(&contours, frame, None, false, CellShape::Triangle).map(Arc::new);
+        let ground =
+            Ground::new(&contours, frame, None, false, CellShape::Triangle, Progress::NONE)?.map(Arc::new);
         let mut seen = 0;
         if let Some(ground) = ground {
             choose::candidates(&ground, 1.0, 1, Progress::NONE, |bent, _| {

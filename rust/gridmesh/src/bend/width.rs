@@ -3,6 +3,8 @@
 use glam::DVec2;
 
 use super::carrier::{Carrier, Rim};
+use crate::error::Result;
+use crate::progress::Progress;
 
 /// Parts narrower than this want more triangles across, in edges.
 const WIDE: f64 = 12.0;
@@ -10,6 +12,8 @@ const WIDE: f64 = 12.0;
 const MOST: f64 = 1.2;
 /// Standard deviation of the smoothing of widths along the contours, in edges.
 const SIGMA: f64 = 1.5;
+/// So many widths are measured between two questions whether to go on.
+const ASKED: usize = 64;
 
 /// Sizes that the boundary vertices wish for.
 pub struct Wish {
@@ -21,9 +25,9 @@ pub struct Wish {
 
 impl Wish {
     /// Finer where the drawing is narrow, by this share of the most; wide parts count little.
-    pub fn of_narrowness(carrier: &Carrier, share: f64) -> Self {
+    pub fn of_narrowness(widths: &[f64], share: f64) -> Self {
         const LITTLE: f64 = 0.1;
-        let sizes = narrowness(carrier);
+        let sizes = narrowness(widths);
         let shares = sizes.iter().map(|size| LITTLE + size / MOST).collect();
         let sizes = sizes.iter().map(|size| share * size).collect();
         Self { sizes, shares }
@@ -37,22 +41,21 @@ impl Wish {
 }
 
 /// Log scale that each boundary vertex wishes for: finer where the drawing is narrow.
-fn narrowness(carrier: &Carrier) -> Vec<f64> {
-    log_widths(carrier).iter().map(|width| (WIDE.ln() - width).clamp(0.0, MOST)).collect()
+fn narrowness(widths: &[f64]) -> Vec<f64> {
+    widths.iter().map(|width| (WIDE.ln() - width).clamp(0.0, MOST)).collect()
 }
 
 /// How much the direction of each boundary vertex counts, 0 to 1: less at tips and in parts too narrow for
 /// two lattice lines, which no lattice direction suits.
-pub fn room(carrier: &Carrier) -> Vec<f64> {
+pub fn room(widths: &[f64]) -> Vec<f64> {
     const NARROW: f64 = 2.5;
     const LEAST: f64 = 0.02;
-    log_widths(carrier).iter().map(|width| (width.exp() / NARROW).powi(2).clamp(LEAST, 1.0)).collect()
+    widths.iter().map(|width| (width.exp() / NARROW).powi(2).clamp(LEAST, 1.0)).collect()
 }
 
 /// The boundary vertices in the narrowest part of the contours, a seventh of their length.
-pub fn narrowest(carrier: &Carrier) -> Vec<bool> {
+pub fn narrowest(carrier: &Carrier, widths: &[f64]) -> Vec<bool> {
     const SHARE: f64 = 0.15;
-    let widths = log_widths(carrier);
     let lengths = carrier.lengths();
     let mut order: Vec<usize> = (0..widths.len()).collect();
     order.sort_by(|&a, &b| widths[a].total_cmp(&widths[b]).then(a.cmp(&b)));
@@ -72,39 +75,59 @@ pub fn narrowest(carrier: &Carrier) -> Vec<bool> {
 ///
 /// The width at a vertex is twice the smallest circle that touches the contour there from inside and
 /// meets a contour again. O(square of the number of boundary vertices).
-fn log_widths(carrier: &Carrier) -> Vec<f64> {
+///
+/// # Errors
+/// [`Error::Cancelled`](crate::error::Error::Cancelled).
+pub fn log_widths(carrier: &Carrier, progress: Progress<'_>) -> Result<Vec<f64>> {
     let n: usize = carrier.rims.iter().map(Rim::len).sum();
     let at = &carrier.vertices[..n];
     let mut found = Vec::with_capacity(n);
     for rim in &carrier.rims {
         let count = rim.len();
-        let widths: Vec<f64> = (0..count)
-            .map(|i| {
-                let p = at[rim.start + i];
-                let ahead = at[rim.next(i)] - at[rim.start + (i + count - 1) % count];
-                let inwards = ahead.perp().normalize_or_zero();
-                let radius = |q: &DVec2| {
-                    let d = *q - p;
-                    let depth = d.dot(inwards);
-                    if depth > 0.0 { d.length_squared() / (2.0 * depth) } else { f64::INFINITY }
-                };
-                2.0 * at.iter().map(radius).fold(f64::INFINITY, f64::min)
-            })
-            .collect();
-        let logs: Vec<f64> = widths.iter().map(|w| w.clamp(0.5, 1e6).ln()).collect();
+        let mut logs = Vec::with_capacity(count);
         for i in 0..count {
-            let (mut sum, mut weights) = (0.0, 0.0);
-            for (&s, log) in rim.arcs.iter().zip(&logs) {
-                let d = (s - rim.arcs[i]).abs();
-                let d = d.min(rim.length - d);
-                if d < 3.0 * SIGMA {
-                    let weight = (-0.5 * (d / SIGMA).powi(2)).exp();
-                    sum += weight * log;
-                    weights += weight;
-                }
+            if i % ASKED == 0 {
+                progress.report(0.0)?;
             }
-            found.push(sum / weights);
+            let p = at[rim.start + i];
+            let ahead = at[rim.next(i)] - at[rim.start + (i + count - 1) % count];
+            let inwards = ahead.perp().normalize_or_zero();
+            let radius = |q: &DVec2| {
+                let d = *q - p;
+                let depth = d.dot(inwards);
+                if depth > 0.0 { d.length_squared() / (2.0 * depth) } else { f64::INFINITY }
+            };
+            let width = 2.0 * at.iter().map(radius).fold(f64::INFINITY, f64::min);
+            logs.push(width.clamp(0.5, 1e6).ln());
+        }
+        found.extend((0..count).map(|i| smoothed(rim, &logs, i)));
+    }
+    Ok(found)
+}
+
+/// The mean of the logarithms near a vertex, weighted by their distance along the contour.
+fn smoothed(rim: &Rim, logs: &[f64], i: usize) -> f64 {
+    let (here, reach) = (rim.arcs[i], 3.0 * SIGMA);
+    // A little wider than it has to be: the distance decides.
+    let within = |from: f64, to: f64| {
+        let slack = 1e-6 * rim.length;
+        let first = rim.arcs.partition_point(|&s| s < from - slack);
+        first..rim.arcs.partition_point(|&s| s <= to + slack).max(first)
+    };
+    let low = within(f64::NEG_INFINITY, here + reach - rim.length);
+    let middle = within(here - reach, here + reach);
+    let high = within(here - reach + rim.length, f64::INFINITY);
+    let middle = middle.start.max(low.end)..middle.end.max(low.end);
+    let high = high.start.max(middle.end)..high.end.max(middle.end);
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for k in low.chain(middle).chain(high) {
+        let d = (rim.arcs[k] - here).abs();
+        let d = d.min(rim.length - d);
+        if d < reach {
+            let weight = (-0.5 * (d / SIGMA).powi(2)).exp();
+            sum += weight * logs[k];
+            weights += weight;
         }
     }
-    found
+    sum / weights
 }

@@ -7,6 +7,7 @@ use glam::DVec3;
 use crate::error::{Error, Result};
 use crate::fill::loops::reserve::edges;
 use crate::fill::options::Smooth;
+use crate::fill::parallel::steady;
 use crate::fill::report::FillReport;
 use crate::fill::surface::patchwork::Patchwork;
 use crate::progress::Progress;
@@ -100,19 +101,9 @@ impl Fill {
     /// value within the range of its column.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] if the number of values does not fit, [`Error::NotFinite`].
-    pub fn extend(&self, values: &[f64], columns: usize) -> Result<Vec<f64>> {
-        self.extended(values, columns, Progress::NONE)
-    }
-
-    /// As [`Fill::extend`], and asks whether to go on.
-    pub(crate) fn extended(
-        &self,
-        values: &[f64],
-        columns: usize,
-        progress: Progress<'_>,
-    ) -> Result<Vec<f64>> {
-        self.shape.extend(values, columns, progress)
+    /// [`Error::InvalidOption`] if the number of values does not fit, [`Error::NotFinite`], [`Error::Cancelled`].
+    pub fn extend(&self, values: &[f64], columns: usize, progress: Progress<'_>) -> Result<Vec<f64>> {
+        whole(progress, |progress| self.shape.extend(values, columns, progress))
     }
 
     /// The new vertices if those of the mesh were at `vertices`: the same triangles, solved again. For
@@ -120,8 +111,8 @@ impl Fill {
     ///
     /// # Errors
     /// [`Error::InvalidOption`] if there are not as many vertices as before, [`Error::NotFinite`] for one near
-    /// the loop.
-    pub fn refit(&self, vertices: &[DVec3]) -> Result<Vec<DVec3>> {
+    /// the loop, [`Error::Cancelled`].
+    pub fn refit(&self, vertices: &[DVec3], progress: Progress<'_>) -> Result<Vec<DVec3>> {
         if vertices.len() != self.shape.vertices {
             return Err(Error::InvalidOption {
                 name: "vertices",
@@ -133,16 +124,30 @@ impl Fill {
         if let Some(&v) = near.into_iter().find(|&&v| !vertices[v as usize].is_finite()) {
             return Err(Error::NotFinite { what: "mesh".into(), point: v as usize });
         }
+        whole(progress, |progress| self.solved(vertices, progress))
+    }
+
+    fn solved(&self, vertices: &[DVec3], progress: Progress<'_>) -> Result<Vec<DVec3>> {
         if !self.shape.creases.is_empty() {
-            return self.shape.carried(vertices);
+            return self.shape.carried(vertices, progress);
         }
         let positions = match self.shape.bridged.as_slice() {
-            [bridged] => self.shape.lofted(vertices, bridged.first)?,
-            [_, _, ..] => return self.shape.carried(vertices),
-            [] => self.shape.solve(vertices, Progress::NONE)?.positions,
+            [bridged] => self.shape.lofted(vertices, bridged.first, progress)?,
+            [_, _, ..] => return self.shape.carried(vertices, progress),
+            [] => self.shape.solve(vertices, progress)?.positions,
         };
         Ok(positions[self.shape.work.inner()].to_vec())
     }
+}
+
+/// Runs work whose progress does not fall, and asks before and after it.
+fn whole<T>(progress: Progress<'_>, work: impl FnOnce(Progress<'_>) -> Result<T>) -> Result<T> {
+    steady(progress, |progress| {
+        progress.report(0.0)?;
+        let done = work(progress)?;
+        progress.report(1.0)?;
+        Ok(done)
+    })
 }
 
 impl PartialEq for Fill {

@@ -156,9 +156,15 @@ mod tests {
         let again = Fill::from_parts(fill.parts(), fill.report.clone()).unwrap();
         assert_eq!((&again, again.parts()), (&fill, fill.parts()));
         vertices[3].z -= 0.2;
-        assert_eq!(again.refit(&vertices).unwrap(), fill.refit(&vertices).unwrap());
+        assert_eq!(
+            again.refit(&vertices, Progress::NONE).unwrap(),
+            fill.refit(&vertices, Progress::NONE).unwrap()
+        );
         let values = (0..20).map(|k| f64::from(k % 3)).collect::<Vec<_>>();
-        assert_eq!(again.extend(&values, 1).unwrap(), fill.extend(&values, 1).unwrap());
+        assert_eq!(
+            again.extend(&values, 1, Progress::NONE).unwrap(),
+            fill.extend(&values, 1, Progress::NONE).unwrap()
+        );
     }
 
     #[test]

@@ -108,9 +108,9 @@ impl Job<'_> {
         let ahead = self.symmetry.as_ref().map_or(self.farthest(), |symmetry| symmetry.axis.direction);
         let frame = Lattice { angle: ahead.to_angle(), origin: self.centre, edge_length };
         let density = self.options.density.as_ref();
-        let Some(ground) =
-            Ground::new(&self.contours, frame, density, self.symmetry.is_some(), self.options.cells)
-        else {
+        let is_symmetric = self.symmetry.is_some();
+        let ground = Ground::new(&self.contours, frame, density, is_symmetric, self.options.cells, progress)?;
+        let Some(ground) = ground else {
             return Ok(Vec::new());
         };
         let mut found = Vec::new();
@@ -148,7 +148,7 @@ impl Job<'_> {
         let along = symmetry.is_some().then_some(0.0);
         let options = SketchOptions { edge_length: None, triangles: None, angle: along, ..self.of_bent() };
         let job = self.in_bent_plane(&bent, &options, symmetry);
-        let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick).first() else {
+        let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick(0)).first() else {
             return Ok(None);
         };
         let Ok((lattice, outline)) = job.outline(asked, Effort::Full, angle, shift, progress)? else {

@@ -33,8 +33,8 @@ pub(crate) enum Asked {
 pub(crate) enum Effort {
     /// All placements.
     Full,
-    /// One.
-    Quick,
+    /// One, whose search takes so many states at most.
+    Quick(u64),
 }
 
 /// A patch on one lattice, and how far it is from being good enough.
@@ -338,7 +338,7 @@ const TURNS_OF_CORNER: f64 = 12.0;
 pub(crate) const TURNS_OF_ANGLE: f64 = 16.0;
 
 /// After so many states no more shifts of the lattice are tried.
-const STATES_BEFORE_SHIFTS: u64 = 30_000_000;
+const STATES_BEFORE_SHIFTS: u64 = 15_000_000;
 
 /// A flat patch with the numbers of its making.
 #[derive(Clone, Debug)]

@@ -13,10 +13,16 @@ use crate::sketch::job::{Asked, Effort, Job};
 
 /// Work that the search may take, in triangles; an edge of the boundary counts as `EDGE` of them. Some
 /// seconds, whatever the drawing. Where walls get in each other's way the states that searches take count, so many
-/// as a triangle.
+/// as a triangle: sixteen million at most, a second or two.
 const WORK: f64 = 2e6;
 const EDGE: f64 = 20.0;
-const STATES: f64 = 15.0;
+const STATES: f64 = 8.0;
+
+/// States that one search may take, and more for each triangle: where a drawing has no mesh most are spent to find out, and a
+/// larger number is found sooner than it is shown that a smaller one fails. A number that is said to work does so with
+/// more effort too. And beyond what the search took that worked, where a smaller number is looked for after it.
+const MOST: u64 = 400_000;
+const MOST_EACH: u64 = 300;
 
 /// Sizes are tried in steps of this factor.
 const STEP: f64 = 1.1;
@@ -42,10 +48,10 @@ impl Job<'_> {
         let last = most_symmetric.map_or(limit, |most| steps(most - 1.0).min(limit));
         let mut work = WORK + 4.0 * asked;
         let mut fails = self.last_hopeless(last, at);
-        let (mut works, first) = (None, fails);
+        let (mut works, first, mut most) = (None, fails, 0);
         while works.is_none() && fails < last {
             // Small steps first, for drawings that nearly fit; larger ones after them.
-            let step = (fails + 1 + (fails - first) / 3).min(last);
+            let step = (fails + 1 + (fails - first) / 2).min(last);
             let ahead = at(step) as f64 + EDGE * self.boundary_edges(at(step));
             if work < ahead {
                 return Ok(Error::TooCoarse {
@@ -54,10 +60,11 @@ impl Job<'_> {
                     needed: Needed::MoreThan(at(fails)),
                 });
             }
-            let (does, spent) = self.works(at(step), progress)?;
-            work -= spent.max(ahead);
+            let (does, states) = self.works(at(step), MOST + MOST_EACH * at(step) as u64, progress)?;
+            work -= (states as f64 / STATES).max(ahead);
             if does {
                 works = Some(step);
+                most = states + MOST;
             } else {
                 fails = step;
             }
@@ -70,8 +77,8 @@ impl Job<'_> {
         };
         while works - fails > 1 && work > 0.0 {
             let step = (works + fails) / 2;
-            let (does, spent) = self.works(at(step), progress)?;
-            work -= spent;
+            let (does, states) = self.works(at(step), most, progress)?;
+            work -= states as f64 / STATES;
             if does {
                 works = step;
             } else {
@@ -120,12 +127,13 @@ impl Job<'_> {
         }
     }
 
-    /// Whether the first placement at `n` triangles gives a valid patch, and the work that its searches took.
-    fn works(&mut self, n: usize, progress: Progress<'_>) -> Result<(bool, f64)> {
+    /// Whether the first placement at `n` triangles gives a valid patch, with so many states at most, and the states
+    /// that its searches took.
+    fn works(&mut self, n: usize, most: u64, progress: Progress<'_>) -> Result<(bool, u64)> {
         progress.report(0.9)?;
         let begun = self.states.taken();
-        let does = self.attempt(Asked::Cells(n), Effort::Quick, progress)?.is_ok();
-        Ok((does, (self.states.taken() - begun) as f64 / STATES))
+        let does = self.attempt(Asked::Cells(n), Effort::Quick(most), progress)?.is_ok();
+        Ok((does, self.states.taken() - begun))
     }
 
     /// Length of the drawing in edges at about `n` triangles.

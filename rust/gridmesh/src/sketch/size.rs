@@ -11,9 +11,9 @@ use crate::progress::{Meter, Progress};
 use crate::sketch::job::{Asked, Effort, Job, Miss};
 
 /// States that pricing conflicts may take on one lattice, over all corrections of its edge length, beside six for each
-/// state there is: a second or two. And where only the least number of cells that works is looked for.
+/// state there is: a second or two. And before a proof on a shifted lattice.
 const MOST_STATES: u64 = 14_000_000;
-const MOST_STATES_QUICK: u64 = 4_000_000;
+const MOST_STATES_SHIFTED: u64 = 4_000_000;
 
 impl Job<'_> {
     /// The outline for one placement, its work noted.
@@ -25,7 +25,10 @@ impl Job<'_> {
         shift: DVec2,
         progress: Progress<'_>,
     ) -> Result<Result<(Lattice, Outline), Miss>> {
-        let meter = Meter::new(if effort == Effort::Full { MOST_STATES } else { MOST_STATES_QUICK });
+        let meter = Meter::new(match effort {
+            Effort::Full => MOST_STATES,
+            Effort::Quick(most) => most,
+        });
         let found = self.sized(asked, effort, angle, shift, progress.metered(&meter));
         self.states.add(meter.taken());
         found
@@ -59,7 +62,7 @@ impl Job<'_> {
                 Ok(outline) => outline,
                 Err(found) => {
                     obstacle = found;
-                    if effort == Effort::Quick && progress.meter().is_some_and(|meter| meter.left() == 0) {
+                    if effort != Effort::Full && progress.meter().is_some_and(|meter| meter.left() == 0) {
                         // With more effort it may end otherwise.
                         best = None;
                     }
@@ -122,7 +125,7 @@ impl Job<'_> {
         progress: Progress<'_>,
     ) -> Result<Result<(Lattice, Outline), Miss>> {
         if effort == Effort::Full && self.options.proof_nodes > 0 {
-            let unproved = self.outline(asked, Effort::Quick, angle, shift, progress)?;
+            let unproved = self.outline(asked, Effort::Quick(MOST_STATES_SHIFTED), angle, shift, progress)?;
             let Ok((lattice, outline)) = &unproved else { return Ok(unproved) };
             let placed = self.place(None, lattice, outline, progress)?;
             if !placed.is_ok_and(|(placed, _)| placed.fault(self.options).is_none()) {

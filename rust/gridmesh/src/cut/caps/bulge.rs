@@ -67,7 +67,7 @@ impl Capper<'_> {
         }
         // Without a bulge: what hangs evenly in the rim.
         let rim = nodes.iter().flat_map(|&v| positions[v as usize].to_array()).collect::<Vec<_>>();
-        let level = fill.extended(&rim, 3, progress.part(1.0, 1.0))?;
+        let level = fill.extend(&rim, 3, progress.part(1.0, 1.0))?;
         let level = level.chunks_exact(3).map(DVec3::from_slice).collect::<Vec<_>>();
         let other = if both { self.side(!left) } else { vec![] };
         let room = Room::new(self, &positions, [&around, &other], &nodes, inverted);

@@ -278,7 +278,12 @@ impl Shape {
     ///
     /// # Errors
     /// [`Error::Solver`].
-    pub(in crate::fill) fn lofted(&self, mesh: &[DVec3], first: usize) -> Result<Vec<DVec3>> {
+    pub(in crate::fill) fn lofted(
+        &self,
+        mesh: &[DVec3],
+        first: usize,
+        progress: Progress<'_>,
+    ) -> Result<Vec<DVec3>> {
         let work = &self.work;
         let mut positions = work_positions(work, &self.loop_, mesh);
         let bank = |range: std::ops::Range<usize>| {
@@ -311,7 +316,7 @@ impl Shape {
             positions[v] = loft.at(self.flat[v].x, self.flat[v].y).point;
         }
         if self.smooth == Smooth::Curvature {
-            positions = self.curved(positions, Progress::NONE)?;
+            positions = self.curved(positions, progress)?;
         }
         if positions.iter().any(|p| !p.is_finite()) {
             return Err(Error::Solver { stage: "bridge", reason: "a vertex is not finite".into() });

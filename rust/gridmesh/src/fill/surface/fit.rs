@@ -131,7 +131,7 @@ impl Shape {
 
     /// New vertices for a mesh at `mesh`, moved with the loop: by the affine map that fits its displacement best,
     /// and what that leaves extended harmonically. So hard edges stay straight.
-    pub(in crate::fill) fn carried(&self, mesh: &[DVec3]) -> Result<Vec<DVec3>> {
+    pub(in crate::fill) fn carried(&self, mesh: &[DVec3], progress: Progress<'_>) -> Result<Vec<DVec3>> {
         let work = &self.work;
         let before = |v: usize| self.positions[v];
         let after = |v: usize| {
@@ -158,11 +158,7 @@ impl Shape {
         }
         let weights =
             work.cotangents(&self.positions).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-        let rest = Membrane::new(work, Progress::NONE)?.harmonic(
-            &weights,
-            |v| left(v).to_array(),
-            Progress::NONE,
-        )?;
+        let rest = Membrane::new(work, progress)?.harmonic(&weights, |v| left(v).to_array(), progress)?;
         for (p, rest) in found.iter_mut().zip(rest) {
             *p += DVec3::from(rest);
         }

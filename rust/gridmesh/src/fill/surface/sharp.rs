@@ -194,7 +194,7 @@ impl Task<'_> {
         triangles.extend(last);
         let work = Patchwork::new(loop_, positions.len() - n, &triangles, self.rim, 1)?.of_quads(quads);
         positions.extend(work.outer.iter().map(|&v| self.job.vertices[v as usize]));
-        let faults = Faults::of(&work, &positions, 1, Progress::NONE)?;
+        let faults = Faults::of(&work, &positions, 1, progress)?;
         if faults != Faults::default() {
             return Ok(None);
         }

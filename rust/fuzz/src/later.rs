@@ -1,0 +1,181 @@
+//! Targets for joined bodies, holes with several loops, quads, bent lattices and pictures.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use gridmesh::cut::Polygons;
+use gridmesh::fill::{BridgeOptions, Fill, FillOptions, bridge, fill_hole, fill_loops};
+use gridmesh::geometry::metrics::check_mesh;
+use gridmesh::join::{JoinOptions, Part, join as joined};
+use gridmesh::options::{CellShape, Density};
+use gridmesh::picture::decode::decode_image;
+use gridmesh::picture::{Picture, TraceOptions, trace_image};
+use gridmesh::sketch::mesh_sketch;
+
+use super::bounded;
+use super::cases::Case;
+
+/// The edges of faces that have a face on one side alone; no two faces may run along an edge the same way.
+fn open_edges<'a>(faces: impl Iterator<Item = &'a [u32]>) -> usize {
+    let mut edges = BTreeSet::new();
+    for face in faces {
+        for (&a, &b) in face.iter().zip(face.iter().cycle().skip(1)) {
+            assert!(a != b, "a face repeats a vertex");
+            assert!(edges.insert([a, b]), "two faces run along an edge the same way");
+        }
+    }
+    edges.iter().filter(|&&[a, b]| !edges.contains(&[b, a])).count()
+}
+
+/// The boundary loops of triangles, as their holes run; none where more than two open edges meet in a vertex.
+fn loops(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
+    let edges: BTreeSet<[u32; 2]> =
+        triangles.iter().flat_map(|t| [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]])).collect();
+    let mut next: BTreeMap<u32, u32> = BTreeMap::new();
+    for &[a, b] in edges.iter().filter(|&&[a, b]| !edges.contains(&[b, a])) {
+        if next.insert(b, a).is_some() {
+            return Vec::new();
+        }
+    }
+    let mut found = Vec::new();
+    while let Some((&first, _)) = next.iter().next() {
+        let (mut ring, mut at) = (Vec::new(), first);
+        while let Some(after) = next.remove(&at) {
+            ring.push(at);
+            at = after;
+        }
+        if at != first {
+            return Vec::new();
+        }
+        found.push(ring);
+    }
+    found
+}
+
+/// Patches on bent lattices, of triangles and quads, with sizes wished for.
+pub fn bent(data: &[u8]) {
+    let mut case = Case::new(data);
+    let (outline, holes, mut options) = (case.polygon(), case.holes(), case.sketch_options());
+    options.least = false;
+    options.angle = None;
+    options.bend = case.share();
+    options.cells = if case.chance() { CellShape::Quad } else { CellShape::Triangle };
+    options.density = match case.below(3) {
+        0 => None,
+        1 => Some(Density::Width(case.share())),
+        _ => Some(Density::PerPoint(vec![outline.iter().map(|_| 0.5 + 4.0 * case.share()).collect()])),
+    };
+    let Some(sketch) = bounded(|progress| mesh_sketch(&outline, &holes, &options, progress)) else { return };
+    let patch = &sketch.patch;
+    assert!(patch.vertices.iter().all(|p| p.is_finite()));
+    let rims: usize = patch.loops.iter().map(|l| l.source.len()).sum();
+    let open = match options.cells {
+        CellShape::Triangle => open_edges(patch.triangles.iter().map(|t| &t[..])),
+        CellShape::Quad => open_edges(patch.quads.iter().map(|q| &q[..])),
+    };
+    assert_eq!(open, rims);
+    let check = check_mesh(patch.vertices.len(), &patch.triangles);
+    assert_eq!((check.bad_triangles, check.components), (0, 1));
+}
+
+/// Promises of a fill of loops with so many edges together.
+fn filled(fill: &Fill, loops: usize, edges: usize) {
+    assert!(fill.vertices.iter().all(|p| p.is_finite()));
+    let faces = fill.triangles.iter().map(|t| &t[..]).chain(fill.quads.iter().map(|q| &q[..]));
+    assert_eq!(open_edges(faces), edges);
+    if fill.quads.is_empty() {
+        let n = 1 + fill.triangles.iter().flatten().max().map_or(0, |&v| v as usize);
+        let check = check_mesh(n, &fill.triangles);
+        assert_eq!((check.bad_edges, check.bad_vertices, check.bad_triangles), (0, 0, 0));
+        assert_eq!((check.components, check.boundaries, check.genus), (1, loops, 0));
+    }
+}
+
+/// Tubes between loops, and patches of several.
+pub fn several(data: &[u8]) {
+    let mut case = Case::new(data);
+    let (vertices, triangles) = case.mesh();
+    let mut found = loops(&triangles);
+    found.truncate(2 + case.below(4));
+    let edges = found.iter().map(Vec::len).sum();
+    let smooth = case.smooth();
+    if let ([one, other], true) = (&found[..], case.chance()) {
+        let options = BridgeOptions {
+            smooth,
+            rows: case.chance().then(|| case.below(12)),
+            twist: case.share(),
+            ..BridgeOptions::default()
+        };
+        let made = bounded(|progress| bridge(&vertices, &triangles, one, other, &options, progress));
+        if let Some(fill) = made {
+            filled(&fill, 2, edges);
+        }
+        return;
+    }
+    let options = FillOptions { smooth, ..FillOptions::default() };
+    if let Some(fill) = bounded(|progress| fill_loops(&vertices, &triangles, &found, &options, progress)) {
+        filled(&fill, found.len(), edges);
+    }
+}
+
+/// Fills with quads.
+pub fn quads(data: &[u8]) {
+    let mut case = Case::new(data);
+    let (vertices, triangles) = case.mesh();
+    let polygons = if case.chance() { (0..triangles.len() as u32).map(|t| t / 2).collect() } else { vec![] };
+    let options = FillOptions {
+        cells: CellShape::Quad,
+        smooth: case.smooth(),
+        polygons,
+        sharp: case.chance().then(|| case.share()),
+        ..FillOptions::default()
+    };
+    for ring in loops(&triangles).iter().take(3) {
+        let made = bounded(|progress| fill_hole(&vertices, &triangles, ring, &options, progress));
+        let Some(fill) = made else { continue };
+        filled(&fill, 1, ring.len());
+        assert_eq!(fill.triangles.len(), ring.len() % 2, "quads alone, or one triangle beside them");
+    }
+}
+
+/// Closed meshes joined.
+pub fn join(data: &[u8]) {
+    let mut case = Case::new(data);
+    let n = 2 + case.below(2);
+    let meshes: Vec<_> = (0..n).map(|_| case.closed()).collect();
+    let numbers: Vec<(Vec<u32>, Vec<u32>)> = meshes
+        .iter()
+        .map(|(_, triangles)| {
+            let offsets = (0..=triangles.len() as u32).map(|f| 3 * f).collect();
+            (triangles.iter().flatten().copied().collect(), offsets)
+        })
+        .collect();
+    let parts: Vec<Part<'_>> = meshes
+        .iter()
+        .zip(&numbers)
+        .map(|((vertices, _), (corners, offsets))| Part { vertices, faces: Polygons { corners, offsets } })
+        .collect();
+    let options = JoinOptions { blend: case.share(), ..JoinOptions::default() };
+    let Some(made) = bounded(|progress| joined(&parts, &options, progress)) else { return };
+    assert!(made.vertices.iter().all(|p| p.is_finite()));
+    let faces = (0..made.offsets.len().saturating_sub(1)).map(|f| made.face(f));
+    assert_eq!(open_edges(faces), 0);
+    assert!(made.corners.iter().all(|&v| (v as usize) < made.vertices.len()));
+}
+
+/// Files of pictures, and outlines of small pictures.
+pub fn picture(data: &[u8]) {
+    if let Ok(decoded) = decode_image(data) {
+        assert_eq!(decoded.pixels.len(), 4 * decoded.width * decoded.height);
+    }
+    let mut case = Case::new(data);
+    let (width, height) = (1 + case.below(40), 1 + case.below(40));
+    let values = (0..width * height).map(|_| case.share() as f32).collect();
+    let Ok(picture) = Picture::new(width, height, values) else { return };
+    let options =
+        TraceOptions { smooth: 4.0 * case.share(), min_area: 8.0 * case.share(), ..TraceOptions::default() };
+    let Some(traced) = bounded(|progress| trace_image(&picture, &options, progress)) else { return };
+    for part in traced.parts {
+        assert!(part.outline.len() >= 3 && part.outline.iter().all(|p| p.is_finite()));
+        assert!(part.holes.iter().flatten().all(|p| p.is_finite()));
+    }
+}
