@@ -18,7 +18,7 @@ from bpy.props import BoolProperty, CollectionProperty, FloatProperty, PointerPr
 from mathutils import Matrix
 
 from .. import api
-from ..data import defaults, frames, written
+from ..data import defaults, frames, listening, written
 from ..live import engine
 from . import deleted, drafts, joining, parts
 from .uniting import JoinError
@@ -383,18 +383,12 @@ def register() -> None:
     _known = None
     parts.register()
     bpy.types.Object.gridmesh_joined = PointerProperty(type=GridMeshJoined)
-    for handlers, function in _handlers():
-        if function not in handlers:
-            handlers.append(function)
+    listening.start(_handlers())
 
 
 def unregister() -> None:
     """Stop; joined bodies stay as they are."""
-    for handlers, function in _handlers():
-        if function in handlers:
-            handlers.remove(function)
-    if bpy.app.timers.is_registered(_look):
-        bpy.app.timers.unregister(_look)
+    listening.stop(_handlers(), _look)
     if hasattr(bpy.types.Object, "gridmesh_joined"):
         del bpy.types.Object.gridmesh_joined
     parts.unregister()

@@ -12,7 +12,7 @@ from typing import Any
 import bpy
 
 from ..bodies import strokes
-from ..data import frames, written
+from ..data import frames, listening, written
 from . import applied, engine, family, migration
 
 _DRAWINGS = tuple(
@@ -189,16 +189,10 @@ def _handlers() -> list[tuple[list[Any], Any]]:
 
 def register() -> None:
     """Start to listen."""
-    for handlers, function in _handlers():
-        if function not in handlers:
-            handlers.append(function)
+    listening.start(_handlers())
 
 
 def unregister() -> None:
     """Stop; bodies stay as they are."""
-    for handlers, function in _handlers():
-        if function in handlers:
-            handlers.remove(function)
-    if bpy.app.timers.is_registered(_mend):
-        bpy.app.timers.unregister(_mend)
+    listening.stop(_handlers(), _mend)
     family.forget(everything=True)

@@ -12,12 +12,15 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import sys
 import time
-from collections import defaultdict
 from pathlib import Path
 
 import gridmesh
 import numpy as np
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "peers"))
+from closeness import angles_across, distances, samples
 
 KINDS = {"float": "<f4", "float32": "<f4", "double": "<f8", "uchar": "u1", "int": "<i4"}
 
@@ -33,57 +36,6 @@ def read(path):
     at += counts["vertex"] * row.itemsize
     faces = np.frombuffer(data, np.dtype([("n", "u1"), ("v", "<i4", 3)]), counts["face"], at)
     return np.c_[points["x"], points["y"], points["z"]].astype(float), faces["v"].astype(int)
-
-
-def unit(x):
-    return x / np.maximum(np.linalg.norm(x, axis=-1, keepdims=True), 1e-300)
-
-
-def seam(points, patch, around):
-    """Root mean square angle, in degrees, across the edges that a patch shares with what is around it."""
-    faces = np.r_[patch, around]
-    normal = unit(
-        np.cross(points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]])
-    )
-    at = defaultdict(list)
-    for k, face in enumerate(faces.tolist()):
-        for i in range(3):
-            a, b = face[i], face[(i + 1) % 3]
-            at[min(a, b), max(a, b)].append((k, a < b))
-    angles = []
-    for sides in at.values():
-        if len(sides) == 2 and (sides[0][0] < len(patch)) != (sides[1][0] < len(patch)):
-            (i, up), (j, down) = sides
-            cosine = normal[i] @ normal[j] * (1 if up != down else -1)
-            angles.append(math.degrees(math.acos(max(-1.0, min(1.0, cosine)))))
-    return float(np.sqrt(np.mean(np.square(angles)))) if angles else math.nan
-
-
-def distances(points, corners):
-    """From each point to the nearest of some triangles."""
-    a, b, c = (corners[None, :, k] for k in range(3))
-    normal = unit(np.cross(b - a, c - a))
-    found = []
-    for part in np.array_split(points[:, None], max(1, len(points) * len(corners) // 400_000)):
-        height = ((part - a) * normal).sum(-1)
-        within = np.ones(height.shape, bool)
-        least = np.full(height.shape, np.inf)
-        for u, w in ((a, b), (b, c), (c, a)):
-            within &= (np.cross(w - u, part - u) * normal).sum(-1) >= 0
-            along = ((part - u) * (w - u)).sum(-1) / np.maximum(((w - u) ** 2).sum(-1), 1e-300)
-            foot = u + np.clip(along, 0, 1)[..., None] * (w - u)
-            least = np.minimum(least, np.linalg.norm(part - foot, axis=-1))
-        found.append(np.where(within, np.abs(height), least).min(1))
-    return np.concatenate(found)
-
-
-def samples(corners, count=400):
-    """Points spread over triangles."""
-    rng = np.random.default_rng(0)
-    size = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    chosen = corners[rng.choice(len(corners), count, p=size / size.sum())]
-    r, s = np.sqrt(rng.random(count)), rng.random(count)
-    return (np.stack([1 - r, r * (1 - s), r * s], axis=1)[..., None] * chosen).sum(1)
 
 
 def corners_of(points, quads):
@@ -108,7 +60,7 @@ def filled(vertices, faces, loop, truth, cells):
         old, ours = truth[0][truth[1]], points[cut]
         both = np.r_[distances(samples(ours), old), distances(samples(old), ours)]
         off = math.sqrt(np.mean(both**2))
-    return fill, points, (seam(points, cut, faces[near]), off, seconds)
+    return fill, points, (angles_across(points, cut, faces[near]), off, seconds)
 
 
 def main():

@@ -350,26 +350,33 @@ def test_examples_run(function) -> None:
     assert not failures, "".join(failures)
 
 
-@settings(max_examples=60, deadline=None)
-@given(
-    n=st.integers(3, 40),
-    seed=st.integers(0, 2**32 - 1),
-    rough=st.floats(0, 1.5),
-    wild=st.booleans(),
-    smooth=st.sampled_from(["flat", "tangent", "curvature"]),
-)
-def test_random_loops(n: int, seed: int, rough: float, wild: bool, smooth: str) -> None:
+RANDOM_LOOPS = {
+    "n": st.integers(3, 40),
+    "seed": st.integers(0, 2**32 - 1),
+    "rough": st.floats(0, 1.5),
+    "wild": st.booleans(),
+    "smooth": st.sampled_from(["flat", "tangent", "curvature"]),
+}
+
+
+def random_loop(n: int, seed: int, rough: float, wild: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices, of which the first n are a loop, and faces beside half of its edges, or none."""
     rng = np.random.default_rng(seed)
     if wild:
         loop = rng.normal(size=(n, 3))
     else:
         t = np.sort(rng.random(n)) * 2 * np.pi
         loop = np.c_[np.cos(t), np.sin(t), 0 * t] + 0.2 * rough * rng.normal(size=(n, 3))
-    # Half of the edges have a neighbour.
     apex = 1.5 * loop + rng.normal(size=(n, 3)) * 0.2
-    vertices = np.vstack([loop, apex])
     i = np.arange(0, n, 2)
-    faces = np.c_[(i + 1) % n, i, i + n] if seed % 3 else NO_FACES
+    return np.vstack([loop, apex]), np.c_[(i + 1) % n, i, i + n] if seed % 3 else NO_FACES
+
+
+@settings(max_examples=60, deadline=None)
+@given(**RANDOM_LOOPS)
+def test_random_loops(n: int, seed: int, rough: float, wild: bool, smooth: str) -> None:
+    vertices, faces = random_loop(n, seed, rough, wild)
+    loop = vertices[:n]
     fill = gridmesh.fill_hole(vertices, faces, np.arange(n), smooth=smooth)
     check_fill(vertices, faces, fill)
     size = np.ptp(loop, axis=0).max()

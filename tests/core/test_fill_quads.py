@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from checks import check_array
 from hypothesis import given, settings
-from hypothesis import strategies as st
-from test_fill import NO_FACES, pierced, ring, sheet_of_quads, tube
+from test_fill import NO_FACES, RANDOM_LOOPS, pierced, random_loop, ring, sheet_of_quads, tube
 from test_fill_hostile import HOLES, box, volume
 
 
@@ -204,25 +203,10 @@ def test_unknown_cells_are_refused() -> None:
 
 
 @settings(max_examples=80, deadline=None)
-@given(
-    n=st.integers(3, 40),
-    seed=st.integers(0, 2**32 - 1),
-    rough=st.floats(0, 1.5),
-    wild=st.booleans(),
-    smooth=st.sampled_from(["flat", "tangent", "curvature"]),
-)
+@given(**RANDOM_LOOPS)
 def test_random_loops(n: int, seed: int, rough: float, wild: bool, smooth: str) -> None:
-    rng = np.random.default_rng(seed)
-    if wild:
-        loop = rng.normal(size=(n, 3))
-    else:
-        t = np.sort(rng.random(n)) * 2 * np.pi
-        loop = np.c_[np.cos(t), np.sin(t), 0 * t] + 0.2 * rough * rng.normal(size=(n, 3))
-    # Half of the edges have a neighbour.
-    apex = 1.5 * loop + rng.normal(size=(n, 3)) * 0.2
-    vertices = np.vstack([loop, apex])
-    i = np.arange(0, n, 2)
-    faces = np.c_[(i + 1) % n, i, i + n] if seed % 3 else NO_FACES
+    vertices, faces = random_loop(n, seed, rough, wild)
+    loop = vertices[:n]
     fill = gridmesh.fill_hole(vertices, faces, np.arange(n), smooth=smooth, cells="quads")
     check_quad_fill(vertices, faces, fill)
     size = np.ptp(loop, axis=0).max()

@@ -40,6 +40,7 @@ import bpy  # noqa: F401  (bmesh is there once bpy is)
 import bmesh
 import gridmesh
 import numpy as np
+from closeness import angles_across, distances, samples
 from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import spsolve
 from scipy.spatial import ConvexHull, Delaunay
@@ -57,10 +58,6 @@ class Hole:
     faces: np.ndarray
     loop: np.ndarray
     disk: np.ndarray
-
-
-def unit(x):
-    return x / np.maximum(np.linalg.norm(x, axis=-1, keepdims=True), 1e-300)
 
 
 def ball(count):
@@ -244,54 +241,6 @@ def blender(hole, grid):
 
 
 # What is measured
-
-
-def normals(points, faces):
-    corners = points[faces]
-    return unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
-
-
-def angles_across(points, one, two=None):
-    """Root mean square angle, in degrees, across edges of triangles: all inner ones of `one`, or those that it
-    shares with `two`. Winding does not matter where it disagrees."""
-    faces = one if two is None else np.r_[one, two]
-    normal = normals(points, faces)
-    at = defaultdict(list)
-    for k, face in enumerate(faces.tolist()):
-        for i in range(3):
-            a, b = face[i], face[(i + 1) % 3]
-            at[min(a, b), max(a, b)].append((k, a < b))
-    angles = []
-    for sides in at.values():
-        if len(sides) == 2 and (two is None or (sides[0][0] < len(one)) != (sides[1][0] < len(one))):
-            (i, up), (j, down) = sides
-            cosine = normal[i] @ normal[j] * (1 if up != down else -1)
-            angles.append(math.degrees(math.acos(max(-1.0, min(1.0, cosine)))))
-    return float(np.sqrt(np.mean(np.square(angles))))
-
-
-def distances(points, corners):
-    """From each point to the nearest of some triangles."""
-    a, b, c = (corners[None, :, k] for k in range(3))
-    p = points[:, None]
-    normal = unit(np.cross(b - a, c - a))
-    height = ((p - a) * normal).sum(-1)
-    within = np.ones(height.shape, bool)
-    least = np.full(height.shape, np.inf)
-    for u, w in ((a, b), (b, c), (c, a)):
-        within &= (np.cross(w - u, p - u) * normal).sum(-1) >= 0
-        along = ((p - u) * (w - u)).sum(-1) / np.maximum(((w - u) ** 2).sum(-1), 1e-300)
-        foot = u + np.clip(along, 0, 1)[..., None] * (w - u)
-        least = np.minimum(least, np.linalg.norm(p - foot, axis=-1))
-    return np.where(within, np.abs(height), least).min(1)
-
-
-def samples(corners, count=500):
-    rng = np.random.default_rng(0)
-    size = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    chosen = corners[rng.choice(len(corners), count, p=size / size.sum())]
-    r, s = np.sqrt(rng.random(count)), rng.random(count)
-    return (np.stack([1 - r, r * (1 - s), r * s], axis=1)[..., None] * chosen).sum(1)
 
 
 def measure(hole, patch):
