@@ -270,12 +270,15 @@ def _laid(trace: Trace, shape: Shape, wanted: Wanted) -> Decision:
     if stroke is None:
         raise DecisionError("the stroke leaves the plane; turn the view or choose another plane")
     stroke = closed(stroke)
+    hint = _hidden(trace, stroke, [shape], plane)
+    if hint.startswith("inside") and depth == 0:
+        hint = f"inside '{shape.name}': not visible; let it lie in front"
     return Decision(
         "PART",
         plane,
         [stroke],
         shape.name,
-        hint=_hidden(trace, stroke, [shape], plane),
+        hint=hint,
         depth=depth,
         reach=tuple(reach.tolist()),
         twin=shape.across if wanted.twin else None,
