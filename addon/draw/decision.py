@@ -7,7 +7,7 @@ nothing. Adding is the default, to take away is asked for.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -49,6 +49,8 @@ class Shape:
     """(k, 3) points of its surface, in the frame of its plane."""
     across: Mirror | None = None
     """Where twins of its parts are mirrored."""
+    twin: bool = False
+    """Whether it is the mirror image of the body: its plane is that of the body mirrored, what is drawn in it is the body's own."""
     low: np.ndarray = field(init=False)
     high: np.ndarray = field(init=False)
 
@@ -60,6 +62,13 @@ class Shape:
     def part(self) -> Part:
         """Outline and holes."""
         return self.outline, self.holes
+
+    def mirrored(self) -> Shape:
+        """Return its twin."""
+        origin = self.across.across(self.plane.origin[None])[0]
+        normal = self.across.normal
+        axes = self.plane.axes - 2 * np.outer(self.plane.axes @ normal, normal)
+        return replace(self, plane=Plane(origin, axes), twin=True)
 
     @property
     def middle(self) -> np.ndarray:
@@ -152,6 +161,8 @@ def decide(trace: Trace, shapes: list[Shape], wanted: Wanted, mirror: Mirror | N
     if second.action in {"EXTEND", "TRIM", "HOLE"} and second.body == first.body:
         joined = tuple(dict.fromkeys((*first.joined, *second.joined)))
         action = "TRIM" if "TRIM" in {first.action, second.action} else first.action
+        if np.linalg.det(first.plane.axes) * np.linalg.det(second.plane.axes) < 0:
+            image = second.strokes[0]  # one of the two lies over the twin
         return [_with(first, [first.strokes[0], image], action=action, joined=joined)]
     if second.action in {"NEW", "PART"}:
         second = _with(second, [image]) if second.plane is first.plane else second
@@ -216,7 +227,7 @@ def _extended(met: _Met, shapes: list[Shape]) -> Decision:
     plane = met.shape.plane
     joined = []
     for other in shapes:
-        if other is met.shape or not together(met.shape, other):
+        if other.twin or met.shape.twin or other is met.shape or not together(met.shape, other):
             continue
         part = other.on(plane)
         # What overlaps already was drawn as a part of its own and stays one.
@@ -259,12 +270,15 @@ def _laid(trace: Trace, shape: Shape, wanted: Wanted) -> Decision:
     if stroke is None:
         raise DecisionError("the stroke leaves the plane; turn the view or choose another plane")
     stroke = closed(stroke)
+    hint = _hidden(trace, stroke, [shape], plane)
+    if hint.startswith("inside") and depth == 0:
+        hint = f"inside '{shape.name}': not visible; let it lie in front"
     return Decision(
         "PART",
         plane,
         [stroke],
         shape.name,
-        hint=_hidden(trace, stroke, [shape], plane),
+        hint=hint,
         depth=depth,
         reach=tuple(reach.tolist()),
         twin=shape.across if wanted.twin else None,

@@ -80,7 +80,9 @@ def carry_out(
     problems: list[str] = []
     survivors: dict[str, str] = {}
     for number, plan in enumerate(plans):
-        ink = _ink(memory, plan.decision)
+        changes = plan.decision.action not in {"NEW", "PART"}
+        own = bodies[plan.decision.body].shape.plane if changes else plan.decision.plane
+        ink = _ink(memory, plan.decision, own)
         if plan.decision.action in {"NEW", "PART"}:
             for part in plan.parts:
                 made.append(_new(context, plan.decision, part, ink, options))
@@ -113,13 +115,16 @@ def _of_stroke(text: str) -> str:
     return text.replace("the other outline", "the stroke").replace("the outline", "the stroke")
 
 
-def _ink(memory: Memory, decision: Decision) -> _Ink:
-    """Return where the pen went, and its mirror image: what is nearest counts."""
+def _ink(memory: Memory, decision: Decision, own: Plane) -> _Ink:
+    """Return where the pen went, and its mirror image: what is nearest counts.
+
+    own : plane of what is drawn; of a stroke over a twin that of the body itself.
+    """
     points = memory.trace.on(decision.plane)
     if points is None:
         raise DrawError("the stroke leaves the plane; turn the view or choose another plane")
     both = np.concatenate([points, memory.mirror.image(decision.plane, points)])
-    world = decision.plane.world(np.column_stack([both, np.zeros(len(both))]))
+    world = own.world(np.column_stack([both, np.zeros(len(both))]))
     return _Ink(world, np.tile(memory.trace.pressures, 2))
 
 
@@ -165,10 +170,10 @@ def _again(plan: _Plan, bodies: dict[str, shapes.Drawn], survivors: dict[str, st
     old = plan.decision
     name = survivors.get(old.body, old.body)
     plane = bodies[name].shape.plane
-    laid = [
-        plane.local(old.plane.world(np.column_stack([stroke, np.zeros(len(stroke))])))[:, :2]
-        for stroke in old.strokes
-    ]
+    places = [_world(old.plane, stroke) for stroke in old.strokes]
+    if np.linalg.det(old.plane.axes) < 0:  # drawn over the twin of the body
+        places = [bodies[name].shape.across.across(points) for points in places]
+    laid = [plane.local(points)[:, :2] for points in places]
     joined = tuple(one for one in old.joined if one in bodies and one != name)
     return _combined(replace(old, plane=plane, strokes=laid, body=name, joined=joined), bodies)
 

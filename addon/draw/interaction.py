@@ -135,7 +135,7 @@ class Interaction:
         if not len(self._gesture):
             raise DecisionError("the stroke is too short; drag to draw an outline")
         if self._bodies is None:  # once, and not for a click
-            self._bodies = [drawn.shape for drawn in shapes.read(bpy.context).values()]
+            self._bodies = shapes.seen(shapes.read(bpy.context))
         mirror = self._mirror if self.mirrored else None
         return decide(self.trace(), self._bodies, self.wanted(event), mirror)
 

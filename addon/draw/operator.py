@@ -77,7 +77,7 @@ class _Action(options.StrokeOptions):
         wanted = remembered.wanted if self.action == remembered.action else Wanted(self.action)
         wanted = replace(wanted, lies=self.part_lies, twin=self.use_twin)
         mirror = remembered.mirror if self.use_mirror else None
-        decisions = decide(remembered.trace, [drawn.shape for drawn in bodies.values()], wanted, mirror)
+        decisions = decide(remembered.trace, shapes.seen(bodies), wanted, mirror)
         first = decisions[0]
         again = self._options_of(first, bodies, remembered)
         self.resolve_curve(context)
@@ -281,7 +281,7 @@ class OBJECT_OT_gridmesh_draw(options.StrokeOptions, bpy.types.Operator):  # noq
             remembered.options = options.of_operator(self)
             bodies = shapes.read(context)
             mirror = remembered.mirror if self.use_mirror else None
-            found = [drawn.shape for drawn in bodies.values()]
+            found = shapes.seen(bodies)
             wanted = replace(remembered.wanted, lies=self.part_lies, twin=self.use_twin)
             decisions = decide(remembered.trace, found, wanted, mirror)
         except (DecisionError, memory.ForgottenError, NativeError) as error:

@@ -26,7 +26,8 @@ def base(trace: Trace, plane: Plane, middle: np.ndarray, *, near: bool) -> Plane
     itself. Otherwise the part faces the view, through the middle of the body; a plane that was chosen stays.
     """
     if near:
-        return plane
+        x, _, z = plane.axes
+        return Plane(plane.origin, np.stack([x, np.cross(z, x), z]))  # that of a twin is left-handed
     return Plane(middle, trace.plane.axes) if trace.free else trace.plane
 
 

@@ -59,6 +59,17 @@ def read(context: bpy.types.Context) -> dict[str, Drawn]:
     return found
 
 
+def seen(bodies: dict[str, Drawn]) -> list[Shape]:
+    """Shapes of bodies, and of the twins of those that have one."""
+    found = [drawn.shape for drawn in bodies.values()]
+    twins = [drawn.shape.mirrored() for drawn in bodies.values() if _has_twin(drawn.ob)]
+    return found + twins
+
+
+def _has_twin(ob: bpy.types.Object) -> bool:
+    return following.whole_of(ob) is not None and ob.gridmesh_part.twin
+
+
 def _drawn(ob: bpy.types.Object, sketch: Sketch) -> Drawn | None:
     """Lay a sketch into the world; None if it is squeezed to nothing there."""
     matrix = frames.place(ob)

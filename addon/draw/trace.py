@@ -103,6 +103,10 @@ class Mirror:
             return np.array([1.0, 0.0]), float(plane.local(self.place[None])[0, 0])
         return across / length, float(self.normal @ (self.place - plane.origin)) / length
 
+    def across(self, points: np.ndarray) -> np.ndarray:
+        """Mirror image (n, 3) of points of the world."""
+        return points - 2 * ((points - self.place) @ self.normal)[:, None] * self.normal
+
     def image(self, plane: Plane, points: np.ndarray) -> np.ndarray:
         """Mirror image (n, 2) of points of a plane."""
         normal, offset = self.line(plane)

@@ -309,6 +309,7 @@ _DRAW = {
         "nichts ist gezeichnet; das Werkzeug „GridMesh Zeichnen“ in einer 3D-Ansicht verwenden"
     ),
     "'{}' will be inside it: not visible": "'{0}' liegt dann darin: nicht sichtbar",
+    "inside '{}': not visible; let it lie in front": "in '{0}': nicht sichtbar; davor legen",
     "inside '{}': not visible; use Plane: Surface": ("in '{0}': nicht sichtbar; „Ebene“ auf „Fläche“ setzen"),
     "nothing would be left of it": "nichts bliebe davon übrig",
     "the stroke leaves the plane; turn the view or choose another plane": (
@@ -511,8 +512,8 @@ _JOINS = {
         "Die Übergänge treffen die Teile oder sich selbst; schmaler verbinden, einen Teil verschieben oder „Streng“ "
         "einschalten, um das abzulehnen"
     ),
-    "'{}' has no part '{}'": "{0} hat keinen Teil {1}",
-    "'{}' stays apart: {}": "{0} bleibt für sich: {1}",
+    "'{}' has no part '{}'": "'{0}' hat keinen Teil '{1}'",
+    "'{}' stays apart: {}": "'{0}' bleibt für sich: {1}",
     "Make a part of a joined body the active object": "Einen Teil eines zusammengeführten Körpers zum aktiven Objekt machen",
     "Make a joined body, or one of its parts, the active object": (
         "Einen zusammengeführten Körper oder einen seiner Teile zum aktiven Objekt machen"

@@ -23,7 +23,14 @@ ARM = circle(40, 0.5, (1.9, 0.3), start=np.pi)
 BELLY = circle(40, 0.8, (0.2, -0.3))
 """A stroke inside it."""
 
-DEFAULTS = {"triangles": 300, "use_part": False, "part_lies": "AUTO", "use_twin": False, "use_join": True}
+DEFAULTS = {
+    "triangles": 300,
+    "use_part": False,
+    "part_lies": "AUTO",
+    "use_twin": False,
+    "use_mirror": False,
+    "use_join": True,
+}
 
 
 def draw(points, **options):
@@ -162,6 +169,31 @@ def test_a_twin_is_its_mirror_image_and_follows_it(disk):
     assert settle() == 1
     low, high = extent(whole)
     assert (low[0], high[0]) == pytest.approx((-2.0, 2.7), abs=0.03)
+
+
+def test_a_stroke_over_a_twin_changes_the_part_itself(disk):
+    part, whole = add(ARM, use_twin=True)
+    draw(circle(40, 0.3, (-2.5, 0.3)))
+    assert len(engine.bodies()) == 2
+    assert extent(part)[1][0] == pytest.approx(2.8, abs=0.03)
+    low, high = extent(whole)
+    assert (low[0], high[0]) == pytest.approx((-2.8, 2.8), abs=0.03)
+    check_sound(whole)
+    hand, _ = add(circle(30, 0.3, (-2.8, 0.3)))
+    assert hand.matrix_world.translation.x == pytest.approx(-2.8, abs=0.02)
+    assert np.linalg.det(np.array(hand.matrix_world)) > 0
+    assert extent(whole)[0][0] == pytest.approx(-3.1, abs=0.03)
+
+
+def test_a_mirrored_stroke_over_a_part_and_its_twin_changes_the_part_on_both_strokes(disk):
+    part, whole = add(ARM, use_twin=True)
+    bpy.context.scene.cursor.location = (0, 0, 0)
+    draw(circle(40, 0.3, (2.4, 0.4)), use_mirror=True)
+    assert len(engine.bodies()) == 2
+    low, high = extent(whole)
+    assert (low[0], high[0]) == pytest.approx((-2.7, 2.7), abs=0.03)
+    assert extent(part)[0][0] > 1.3, "the image of the stroke was added on the wrong side"
+    check_sound(whole)
 
 
 def test_a_stroke_over_a_joined_body_changes_the_part_that_it_meets(disk):

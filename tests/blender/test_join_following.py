@@ -243,3 +243,21 @@ def test_strokes_that_are_joined_and_followed():
     redraw(drawing, "Body", circle(radius=1.2))
     assert settle() == 1
     check_sound(whole)
+
+
+def test_undo_after_it_has_followed_finds_its_mesh(snowman):
+    """Undo takes objects that are alike in two steps as they are: between the steps the mesh must stay the same data block."""
+    drawing, whole, parts = snowman
+    name, mesh = whole.name, whole.data
+    bpy.ops.ed.undo_push(message="base")
+    activate(parts[1])
+    bpy.ops.ed.undo_push(message="nothing of the whole")
+    redraw(drawing, "Head", circle(radius=0.8, centre=(0.0, 1.2)))
+    assert settle() == 1
+    assert whole.data == mesh
+    bpy.ops.ed.undo()
+    whole = bpy.data.objects[name]
+    assert whole.data in bpy.data.meshes[:]
+    settle()
+    check_sound(whole)
+    assert top(whole) == pytest.approx(1.8, abs=0.02)

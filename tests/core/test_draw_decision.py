@@ -300,3 +300,67 @@ def test_an_outline_with_fewer_points_stays_within_the_tolerance(tolerance):
     part = np.clip(((line[:, None] - a) * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
     off = np.linalg.norm(line[:, None] - a - part[..., None] * along, axis=2).min(axis=1)
     assert off.max() <= tolerance + 1e-12
+
+
+def ball(**options):
+    """A body that is a ball: with points of its surface, and a mirror."""
+    t, u = np.meshgrid(np.linspace(0, 2 * np.pi, 60), np.linspace(-1, 1, 41))
+    r = np.sqrt(1 - u * u)
+    surface = 2 * np.stack([r * np.cos(t), r * np.sin(t), u], axis=-1).reshape(-1, 3)
+    return replace(body(**options), surface=surface, across=MIRROR)
+
+
+@pytest.mark.parametrize(
+    ("stroke", "lies", "depth"),
+    [
+        (WITHIN, "AUTO", 1.0),
+        (FROM_INSIDE, "AUTO", 0.0),
+        (FROM_OUTSIDE, "AUTO", 0.0),
+        (WITHIN, "MIDDLE", 0.0),
+        (WITHIN, "BEHIND", -1.0),
+        (FROM_INSIDE, "FRONT", 1.0),
+    ],
+)
+def test_where_a_part_lies(stroke, lies, depth):
+    decision = one(seen(stroke), [ball()], part=True, lies=lies)
+    assert decision.depth == depth
+    assert np.allclose(decision.plane.origin, depth * np.array(decision.reach))
+    assert decision.reach[2] > 0, "in front is towards the viewer"
+    assert np.allclose(decision.strokes[0] + decision.plane.origin[:2], stroke, atol=1e-9)
+    if stroke is WITHIN:
+        assert decision.reach[2] == pytest.approx(1.9, abs=0.1), "to the surface"
+
+
+def test_a_part_seen_from_behind_lies_on_that_side():
+    decision = one(seen(WITHIN, turned=180), [ball()], part=True, lies="FRONT")
+    assert decision.plane.origin[2] < -1.5
+
+
+def test_a_part_seen_from_aside_faces_the_view():
+    trace = seen(WITHIN, turned=60)
+    decision = one(trace, [ball()], part=True, lies="FRONT")
+    assert np.allclose(decision.plane.axes, trace.plane.axes)
+    assert decision.plane.origin @ trace.plane.axes[2] == pytest.approx(1.9, abs=0.15)
+    near = one(seen(WITHIN, turned=10), [ball()], part=True, lies="FRONT")
+    assert np.allclose(near.plane.axes[2], FLOOR.axes[2]), "hardly turned, it is laid into the body's plane"
+
+
+def test_a_twin_takes_the_place_of_a_mirrored_stroke():
+    decisions = decide(seen(FROM_INSIDE), [ball()], Wanted(part=True, twin=True), MIRROR)
+    assert len(decisions) == 1
+    assert decisions[0].twin is MIRROR
+    assert len(decide(seen(FROM_INSIDE), [ball()], Wanted(part=True), MIRROR)) == 2
+
+
+def test_a_stroke_over_the_twin_of_a_body_is_one_over_the_body():
+    arm = replace(ball(), plane=Plane(np.array([5.0, 0, 0]), np.eye(3)))
+    image = arm.mirrored()
+    assert image.twin
+    assert image.name == arm.name
+    over = FROM_INSIDE + [5, 0]
+    own = one(seen(over), [arm, image])
+    other = one(seen(over * [-1, 1]), [arm, image])
+    assert own.action == other.action == "EXTEND"
+    assert np.allclose(own.strokes[0], other.strokes[0], atol=1e-9)
+    hand = one(seen(over * [-1, 1]), [arm, image], part=True)
+    assert np.linalg.det(hand.plane.axes) > 0, "a part is a body of its own, not mirrored"
