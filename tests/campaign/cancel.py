@@ -42,6 +42,14 @@ def comb(teeth: int) -> np.ndarray:
     return np.array(points)
 
 
+def spiral(turns: int, width: float) -> np.ndarray:
+    """A band rolled up."""
+    t = np.linspace(0, turns * 2 * np.pi, turns * 40)
+    r = 1 + t / (2 * np.pi)
+    sides = [np.column_stack([(r + w) * np.cos(t), (r + w) * np.sin(t)]) for w in (width / 2, -width / 2)]
+    return np.vstack([sides[0], sides[1][::-1]])
+
+
 def sheet(n: int, hole: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """A bumpy grid of n by n squares, open in the middle."""
     i, j = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij")
@@ -149,6 +157,11 @@ def calls(scale: float) -> dict[str, Callable[[Clock], Any]]:
         "sketch 20,000": lambda: sketch(wave(600), 20_000),
         "sketch 100,000": lambda: sketch(wave(2000), 100_000),
         "sketch 100,000 grown": lambda: sketch(wave(2000), 100_000, boundary="grown"),
+        "sketch 100,000 spiral": lambda: sketch(spiral(20, 0.2), 100_000),
+        "sketch 50,000 quads": lambda: (
+            lambda clock: gridmesh.mesh_sketch(wave(2000), quads=int(50_000 * scale), progress=clock)
+        ),
+        "sketch refused": lambda: sketch(spiral(8, 0.2), 1000),
         "sketch 100,000 mirror": lambda: sketch(wave(2000, 6), 100_000, mirror="auto"),
         "sketch of 100,000 points": lambda: sketch(wave(100_000, 30), 20_000),
         "sketch proof": lambda: sketch(comb(8), 2000, proof_nodes=300),
@@ -172,6 +185,13 @@ def calls(scale: float) -> dict[str, Callable[[Clock], Any]]:
         ),
         "fill_holes 20,000": hole(200, int(70 * scale)),
         "fill_holes 100,000": hole(400, int(150 * scale), smooth="curvature"),
+        "fill_holes 100,000 quads": hole(400, int(150 * scale), cells="quads"),
+        "join 20,000": lambda: (
+            lambda clock: gridmesh.join(
+                [ball(int(70 * scale)), (lambda v, f: (v + [0.9, 0.1, 0.05], f))(*ball(int(70 * scale)))],
+                progress=clock,
+            )
+        ),
         "fill_holes 100,000 flat": hole(400, int(150 * scale), smooth="flat"),
         "regrid 20,000": regrid(int(140 * scale)),
         "regrid 100,000": regrid(int(300 * scale)),
