@@ -14,13 +14,13 @@ from typing import Any
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, CollectionProperty, FloatProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, CollectionProperty, PointerProperty, StringProperty
 from mathutils import Matrix
 
 from .. import api
-from ..data import defaults, frames, listening, written
+from ..data import frames, listening, written
 from ..live import engine
-from . import deleted, drafts, joining, parts
+from . import blending, deleted, drafts, joining, parts
 from .uniting import JoinError
 
 BY_HAND = "its mesh was changed by hand; undo that, or apply the join"
@@ -48,30 +48,9 @@ class GridMeshJoined(bpy.types.PropertyGroup):
     """What a joined body remembers of how it was made. Pointers to the parts outlive renaming and duplicating"""  # noqa: D400
 
     parts: CollectionProperty(type=GridMeshPart, options={"HIDDEN"})
-    blend: FloatProperty(
-        name="Blend Width",
-        description="Edge lengths to each side of the line where two parts meet that become a smooth transition; 0 keeps "
-        "the crease",
-        default=defaults.BLEND,
-        min=0.0,
-        soft_max=10.0,
-        max=1000.0,
-        update=_changed,
-    )
-    edge_length: FloatProperty(
-        name="Edge Length",
-        description="The edge length that Blend Width counts in; 0 for that of each part",
-        subtype="DISTANCE",
-        default=0.0,
-        min=0.0,
-        update=_changed,
-    )
-    strict: BoolProperty(
-        name="Strict",
-        description="Refuse joints that meet themselves or the parts, instead of warning of them",
-        default=False,
-        update=_changed,
-    )
+    blend: blending.blend(update=_changed)
+    edge_length: blending.edge_length(update=_changed)
+    strict: blending.strict(update=_changed)
     quiet: BoolProperty(options={"HIDDEN"})
     digest: StringProperty(options={"HIDDEN"})
     """Fingerprint of what it was made of."""

@@ -14,7 +14,7 @@ from mathutils.bvhtree import BVHTree
 from .. import api
 from ..data import defaults, frames
 from ..ui.progress import Pointer
-from . import following, joining
+from . import blending, following, joining
 from .uniting import JoinError
 
 _PARALLEL = np.cos(np.radians(10.0))
@@ -39,15 +39,7 @@ class JoinsBodies:
         soft_max=1.0,
         max=2.0,
     )
-    blend: FloatProperty(
-        name="Blend Width",
-        description="Edge lengths to each side of the line where two parts meet that become a smooth transition; 0 keeps "
-        "the crease",
-        default=defaults.BLEND,
-        min=0.0,
-        soft_max=10.0,
-        max=1000.0,
-    )
+    blend: blending.blend()
 
     @property
     def joins(self) -> bool:

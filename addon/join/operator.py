@@ -6,16 +6,15 @@ from __future__ import annotations
 from time import perf_counter
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty, StringProperty
+from bpy.props import BoolProperty, StringProperty
 
 from .. import api
-from ..data import defaults
 from ..text.messages import listed
 from ..text.telling import told
 from ..ui import wrapping
 from ..ui.patching import ResultShown
 from ..ui.progress import Pointer
-from . import characters, following, joining, parts
+from . import blending, characters, following, joining, parts
 from .uniting import JoinError
 
 
@@ -26,28 +25,9 @@ class OBJECT_OT_gridmesh_join(ResultShown, bpy.types.Operator):  # noqa: N801
     bl_label = "Grid Join"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
 
-    blend: FloatProperty(
-        name="Blend Width",
-        description="Edge lengths to each side of the line where two parts meet that become a smooth transition; 0 keeps "
-        "the crease",
-        default=defaults.BLEND,
-        min=0.0,
-        soft_max=10.0,
-        max=1000.0,
-    )
-    edge_length: FloatProperty(
-        name="Edge Length",
-        description="The edge length that Blend Width counts in; 0 for that of each part",
-        subtype="DISTANCE",
-        default=0.0,
-        min=0.0,
-        options={"SKIP_SAVE"},
-    )
-    strict: BoolProperty(
-        name="Strict",
-        description="Refuse joints that meet themselves or the parts, instead of warning of them",
-        default=False,
-    )
+    blend: blending.blend()
+    edge_length: blending.edge_length(options={"SKIP_SAVE"})
+    strict: blending.strict()
     follow: BoolProperty(
         name="Follow the Parts",
         description="Let the body follow where live bodies are joined, or parts are kept: it is joined anew when one of them changes",
