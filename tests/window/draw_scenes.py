@@ -353,9 +353,11 @@ def draw_eye():
     yield 0.5
     said.clear()
     yield from stroke(eye, keys=("P",), picture="draw_eye_part", at=0.9)
-    assert said[-1][0] == f"Part of '{face}'", said[-1]
+    assert said[-1][0] == f"Part of '{face}', In Front", said[-1]
     part = next(ob for ob in bodies() if ob.name != face)
-    assert part.parent.name == face
+    whole = modules("join.following").whole_of(part)
+    assert whole == modules("join.following").whole_of(bpy.data.objects[face])
+    assert whole.visible_get()
     yield from stage.key("Z", ctrl=True)
     yield 0.5
     with stage.override():
