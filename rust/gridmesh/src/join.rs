@@ -3,16 +3,14 @@
 //! [`join()`] does it all. `parts` checks and numbers what is given, `union` finds out by an exact Boolean operation what is within
 //! other parts and where surfaces meet, `collar` which faces lie near that, `rims` makes the borders of what stays simple loops,
 //! `strips` finds the pieces of the union between them. For each one `patch` makes a tube or a fill, or, where it is neither an
-//! annulus nor a disk, evens the piece itself (`take`, `local`, `remesh`, `regular`) and fairs it (`fair`, `polish`). `assemble` puts all together and
-//! proves it closed.
+//! annulus nor a disk, takes the piece itself (`take`); triangles are made even there with what `fill::even` has. `assemble` puts all
+//! together and proves it closed.
 
 mod assemble;
 mod collar;
 mod options;
 mod parts;
 mod patch;
-mod polish;
-mod regular;
 mod rims;
 mod site;
 mod strips;

@@ -14,7 +14,10 @@ use self::tour::{Loops, turned};
 use crate::error::{Error, Result};
 use crate::fill::even::fair::{Beyond, fair};
 use crate::fill::even::local::{Local, edge};
+use crate::fill::even::polish::polish;
+use crate::fill::even::regular::regularize;
 use crate::fill::even::remesh::{Ground, adapt, flip_valences, mend_thin, refine, remesh};
+use crate::fill::even::untangle::{Near, tangled, unfold, untangle};
 use crate::fill::filled::{Bridged, Fill, Shape};
 use crate::fill::job::{Job, SOUND_RINGS};
 use crate::fill::layout::unroll::Unrolling;
@@ -26,6 +29,7 @@ use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::report::{FillReport, Grid};
 use crate::fill::surface::fair::Membrane;
 use crate::fill::surface::fit::{Faults, LEAST_WEIGHT, folds, rim_angle};
+use crate::fill::surface::meet::Box3;
 use crate::fill::surface::patchwork::Patchwork;
 use crate::geometry::metrics::min_angle;
 use crate::options::CellShape;
@@ -69,7 +73,7 @@ pub(super) fn fill_several(
     progress.report(0.1)?;
     let spanning = tour::spanning(&checked, vertices);
     turned(&mut checked, &spanning, vertices);
-    let span = Several { vertices, rim: &rim, options, checked: &checked };
+    let span = Several { vertices, triangles, rim: &rim, options, checked: &checked };
     let fill = span.fill(&spanning, rings, progress.part(0.1, 0.8))?;
     let mut fills = [Ok(fill)];
     Job { vertices, triangles, options }.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
@@ -81,6 +85,7 @@ pub(super) fn fill_several(
 /// The loops, as the patch's boundary runs.
 struct Several<'a> {
     vertices: &'a [DVec3],
+    triangles: &'a [[u32; 3]],
     rim: &'a Rim,
     options: &'a FillOptions,
     checked: &'a [Checked],
@@ -106,31 +111,26 @@ impl Several<'_> {
         local.taken = taken;
         self.size(&loops, &mut local);
         let beyond = self.beyond(&loops, &loop_);
+        let place: FxHashMap<u32, u32> = loop_.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
+        let near = |local: &Local| {
+            Near::new(Box3::around(local.positions.iter().copied()), self.vertices, self.triangles, &place)
+        };
         let is_flat = self.options.smooth == Smooth::Flat;
         if is_flat {
             let ground = Ground::of(&local);
-            remesh(&mut local, &ground, progress.part(0.3, 0.6))?;
+            remesh(&mut local, &ground, progress.part(0.3, 0.5))?;
+            regularize(&mut local, Some(&ground), progress.part(0.5, 0.6))?;
         } else {
-            // Shape and triangles depend on each other. Fairing spreads the vertices too: to project them to a surface
-            // with two sheets close to each other would mix these up.
-            refine(&mut local);
-            for round in 0..SHAPED {
-                let part = progress
-                    .part(0.3, 0.6)
-                    .part(round as f64 / SHAPED as f64, (round + 1) as f64 / SHAPED as f64);
-                local.positions = fair(&local, &beyond, part)?;
-                let before = local.positions.len() as f64;
-                adapt(&mut local);
-                if round > 1 && (local.positions.len() as f64 - before).abs() < SETTLED * before {
-                    break;
-                }
-            }
+            self.shaped(&mut local, &beyond, progress.part(0.3, 0.5))?;
+            regularize(&mut local, None, progress.part(0.5, 0.6))?;
+            let near = near(&local);
+            unfold(&mut local, &near, progress.part(0.6, 0.65))?;
         }
         clock.stage("grid");
         let even = local.positions.clone();
         if !is_flat {
             for round in 0..=ROUNDS {
-                let part = |k: usize| 0.6 + 0.2 * k as f64 / (ROUNDS + 1) as f64;
+                let part = |k: usize| 0.65 + 0.15 * k as f64 / (ROUNDS + 1) as f64;
                 if round > 0 {
                     flip_valences(&mut local);
                     mend_thin(&mut local);
@@ -138,6 +138,9 @@ impl Several<'_> {
                 local.positions = fair(&local, &beyond, progress.part(part(round), part(round + 1)))?;
             }
         }
+        let near = near(&local);
+        untangle(&mut local, &even, &near, polish, progress.part(0.8, 0.85))?;
+        let faired = local.positions.clone();
         let mut work =
             Patchwork::new(&loop_, local.positions.len() - loop_.len(), &local.triangles, self.rim, rings)?;
         work.later = loops.starts[1..].to_vec();
@@ -154,9 +157,47 @@ impl Several<'_> {
             positions: vec![],
             creases: vec![],
         };
-        shape.positions = self.placed(&shape, &even, &local.positions, progress.part(0.8, 1.0))?;
+        shape.positions = self.placed(&shape, &even, &faired, progress.part(0.85, 0.95))?;
+        self.mended(&mut shape, &mut local, &even, &near, progress.part(0.95, 1.0))?;
         clock.stage("fair");
         Ok(self.finish(shape, clock))
+    }
+
+    /// Makes the triangles even on a surface that is made smooth: shape and triangles depend on each other. Fairing spreads the
+    /// vertices too: to project them to a surface with two sheets close to each other would mix these up.
+    fn shaped(&self, local: &mut Local, beyond: &Beyond, progress: Progress<'_>) -> Result<()> {
+        refine(local);
+        for round in 0..SHAPED {
+            let part = progress.part(round as f64 / SHAPED as f64, (round + 1) as f64 / SHAPED as f64);
+            local.positions = fair(local, beyond, part)?;
+            let before = local.positions.len() as f64;
+            adapt(local);
+            if round > 1 && (local.positions.len() as f64 - before).abs() < SETTLED * before {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes thin triangles of the patch in its place rounder, and takes back what meets something.
+    fn mended(
+        &self,
+        shape: &mut Shape,
+        local: &mut Local,
+        even: &[DVec3],
+        near: &Near,
+        progress: Progress<'_>,
+    ) -> Result<()> {
+        let end = shape.work.end;
+        local.positions = shape.positions[..end].to_vec();
+        let before = tangled(local, near, progress.part(0.0, 0.3))?.len();
+        let folds_before = folds(&shape.work, &shape.positions);
+        let bad = untangle(local, even, near, polish, progress.part(0.3, 1.0))?;
+        let mended = [&local.positions[..], &shape.positions[end..]].concat();
+        if bad.len() <= before && folds(&shape.work, &mended) <= folds_before {
+            shape.positions = mended;
+        }
+        Ok(())
     }
 
     /// Edges that the mesh has between vertices of the loops, by their places.

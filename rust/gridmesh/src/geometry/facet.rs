@@ -54,6 +54,11 @@ impl Facet {
         (0..3).map(|k| weights[k] * self.corners[k]).sum()
     }
 
+    /// Its normal, not of length one.
+    pub fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
     /// Its bounding box.
     pub fn bounds(&self) -> AABB<[f64; 3]> {
         let [a, b, c] = self.corners;

@@ -1,33 +1,43 @@
 //! The patch in place of a strip: a tube, a fill, or the strip itself with even triangles.
 
+use std::cell::OnceCell;
+
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::polish::polish;
-use super::regular::regularize;
 use super::site::Site;
 use super::strips::Strip;
 use super::take::{Taken, surroundings, take};
 use crate::error::{Error, Result};
-use crate::fill::even::fair::fair;
+use crate::fill::even::fair::{Beyond, fair};
 use crate::fill::even::local::Local;
+use crate::fill::even::polish::polish;
+use crate::fill::even::regular::regularize;
 use crate::fill::even::remesh::{Ground, flip_valences, mend_thin, remesh};
-use crate::fill::surface::meet::{Box3, MOST, count_meetings, near_boxes};
+use crate::fill::even::untangle::{Near, tangled, untangle};
+use crate::fill::surface::meet::Box3;
 use crate::fill::{BridgeOptions, Fill, FillOptions, bridge, fill_hole};
 use crate::geometry::metrics::min_angle;
 use crate::progress::Progress;
 
-/// A patch with a smaller angle, in radians, is compared with others.
-const THIN: f64 = 0.15;
-
-/// A tube with a smaller one is compared with its faired self.
+/// Angles, in radians, below which a patch is worse for it.
 const FINE: f64 = 0.35;
 
-/// How much of the fairing is tried, where all of it makes a patch meet something.
-const SHARES: [f64; 4] = [1.0, 0.6, 0.3, 0.0];
+/// So many irregular vertices weigh as much as an angle of nothing instead of a fine one.
+const FLAT: f64 = 60.0;
+
+/// Irregular vertices that a tube or a fill may have, by vertex, before it is compared with others.
+const FEW: f64 = 0.04;
 
 /// Rounds of flips and fairing.
 const ROUNDS: usize = 3;
+
+/// Times that a strip is made anew with shorter edges where it meets something.
+const FINER: usize = 3;
+
+/// How much shorter, and how far around in edge lengths, at full strength and fading out.
+const SHORTER: f64 = 0.6;
+const AROUND: [f64; 2] = [2.0, 6.0];
 
 /// How a patch was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,19 +63,39 @@ pub(super) struct Patch {
 /// A patch and what is wrong with it.
 struct Try {
     patch: Patch,
+    /// Triangles, or pairs of them, that meet something.
     meetings: usize,
     angle: f64,
+    /// Vertices with other numbers of triangles than wanted, those of the rims too.
+    odd: usize,
+    /// Where something meets.
+    places: Vec<DVec3>,
 }
 
 impl Try {
+    /// Less is better.
+    fn faults(&self) -> (usize, f64) {
+        (self.meetings, self.odd as f64 + FLAT * (1.0 - self.angle / FINE).max(0.0))
+    }
+
     fn is_good(&self) -> bool {
-        self.meetings == 0 && self.angle > THIN
+        self.meetings == 0 && self.angle > FINE && (self.odd as f64) <= FEW * self.patch.vertices.len() as f64
     }
 }
 
-/// That of two with fewer meetings, or with rounder triangles; the first of equal ones.
+/// That of two with fewer faults; the first of equal ones.
 fn better(a: Try, b: Try) -> Try {
-    if (a.meetings, -a.angle) <= (b.meetings, -b.angle) { a } else { b }
+    if a.faults() <= b.faults() { a } else { b }
+}
+
+/// A strip with what lies around it.
+struct Place<'a> {
+    site: &'a Site<'a>,
+    strip: &'a Strip,
+    /// The parts' vertices of its rims, and their numbers.
+    border: Vec<u32>,
+    place: FxHashMap<u32, u32>,
+    near: OnceCell<Near>,
 }
 
 impl Site<'_> {
@@ -74,41 +104,66 @@ impl Site<'_> {
     /// # Errors
     /// [`Error::JoinFailed`], [`Error::Cancelled`].
     pub fn close(&self, strip: &Strip, progress: Progress<'_>) -> Result<Patch> {
-        let grid = if self.options.blend > 0.0 { self.grid(strip, progress.part(0.0, 0.4))? } else { None };
-        let grid = match grid {
-            Some(it) if it.is_good() && it.angle > FINE => return Ok(it.patch),
-            Some(it) => match self.settled(strip, &it.patch, progress.part(0.4, 0.5))? {
-                Some(other) => Some(better(it, other)),
-                None => Some(it),
-            },
-            None => None,
-        };
-        if let Some(it) = grid.as_ref().filter(|it| it.is_good()) {
-            return Ok(it.patch.clone());
-        }
-        let own = if strip.sound { self.even(strip, progress.part(0.5, 1.0))? } else { None };
-        let best = match (grid, own) {
-            (Some(a), Some(b)) => better(a, b),
-            (Some(it), None) | (None, Some(it)) => it,
-            (None, None) => {
-                let reason = "what was taken away there has no border of whole edges";
-                return Err(Error::JoinFailed { reason, at: strip.at.into() });
+        let rims = strip.rims.iter().flat_map(|&k| self.outside.rims[k].iter().copied());
+        let border = rims.collect::<Vec<_>>();
+        let place = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
+        Place { site: self, strip, border, place, near: OnceCell::new() }.close(progress)
+    }
+}
+
+impl Place<'_> {
+    fn close(&self, progress: Progress<'_>) -> Result<Patch> {
+        let strip = self.strip;
+        let blend = self.site.options.blend > 0.0;
+        let mut best = if blend { self.grid(progress.part(0.0, 0.3))? } else { None };
+        if let Some(it) = best.take() {
+            if it.is_good() {
+                return Ok(it.patch);
             }
-        };
-        Ok(best.patch)
+            let other = self.refined(&it.patch, progress.part(0.3, 0.5))?;
+            let it = other.into_iter().fold(it, better);
+            if it.meetings == 0 && it.angle > FINE {
+                return Ok(it.patch);
+            }
+            best = Some(it);
+        }
+        if strip.sound {
+            let own = self.even(progress.part(0.5, 1.0))?;
+            best = match (best, own) {
+                (Some(a), Some(b)) => Some(better(a, b)),
+                (a, b) => a.or(b),
+            };
+        }
+        best.map(|it| it.patch).ok_or_else(|| {
+            let reason = "what was taken away there has no border of whole edges";
+            Error::JoinFailed { reason, at: strip.at.into() }
+        })
+    }
+
+    /// What stays near the strip.
+    fn near(&self) -> &Near {
+        self.near.get_or_init(|| {
+            let Site { parts, union, .. } = self.site;
+            let corners = self.strip.triangles.iter().flat_map(|&t| union.triangles[t as usize]);
+            let own = Box3::around(corners.map(|v| union.vertices[v as usize]));
+            let wide = 0.2 * (own.high - own.low).max_element();
+            let around = Box3 { low: own.low - wide, high: own.high + wide };
+            Near::new(around, &parts.vertices, &self.site.kept, &self.place)
+        })
     }
 
     /// A tube or a fill, where the strip is an annulus or a disk.
-    fn grid(&self, strip: &Strip, progress: Progress<'_>) -> Result<Option<Try>> {
-        let rim = |k: usize| &self.outside.rims[strip.rims[k]][..];
-        let (vertices, kept) = (&self.parts.vertices[..], &self.kept[..]);
+    fn grid(&self, progress: Progress<'_>) -> Result<Option<Try>> {
+        let (site, strip) = (self.site, self.strip);
+        let rim = |k: usize| &site.outside.rims[strip.rims[k]][..];
+        let (vertices, kept) = (&site.parts.vertices[..], &site.kept[..]);
         let (made, kind) = match (strip.rims.len(), strip.euler) {
             (2, 0) => {
-                let options = BridgeOptions { polygons: self.polygons.clone(), ..BridgeOptions::default() };
+                let options = BridgeOptions { polygons: site.polygons.clone(), ..BridgeOptions::default() };
                 (bridge(vertices, kept, rim(0), rim(1), &options, progress), Kind::Tube)
             }
             (1, 1) => {
-                let options = FillOptions { polygons: self.polygons.clone(), ..FillOptions::default() };
+                let options = FillOptions { polygons: site.polygons.clone(), ..FillOptions::default() };
                 (fill_hole(vertices, kept, rim(0), &options, progress), Kind::Fill)
             }
             _ => return Ok(None),
@@ -118,6 +173,8 @@ impl Site<'_> {
                 patch: Patch { kind, vertices, triangles },
                 meetings: report.self_intersections,
                 angle: report.min_angle,
+                odd: report.irregular + report.irregular_loop,
+                places: vec![],
             })),
             Err(Error::Cancelled) => Err(Error::Cancelled),
             // The strip itself is left to be tried.
@@ -125,94 +182,98 @@ impl Site<'_> {
         }
     }
 
-    /// The triangles of a tube or a fill, faired as strips are; `None` for those that have no vertices inside.
-    fn settled(&self, strip: &Strip, patch: &Patch, progress: Progress<'_>) -> Result<Option<Try>> {
+    /// The triangles of a tube or a fill, made more regular and faired as strips are; `None` for those that have no vertices
+    /// inside.
+    fn refined(&self, patch: &Patch, progress: Progress<'_>) -> Result<Option<Try>> {
         if patch.vertices.is_empty() {
             return Ok(None);
         }
-        let n = self.parts.vertices.len() as u32;
-        let border =
-            strip.rims.iter().flat_map(|&k| self.outside.rims[k].iter().copied()).collect::<Vec<_>>();
-        let place: FxHashMap<u32, u32> = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
-        let m = border.len() as u32;
-        let number = |v: u32| if v < n { place.get(&v).copied() } else { Some(m + v - n) };
+        let n = self.site.parts.vertices.len() as u32;
+        let m = self.border.len() as u32;
+        let number = |v: u32| if v < n { self.place.get(&v).copied() } else { Some(m + v - n) };
         let mut triangles = Vec::with_capacity(patch.triangles.len());
         for t in &patch.triangles {
             let [Some(a), Some(b), Some(c)] = t.map(number) else { return Ok(None) };
             triangles.push([a, b, c]);
         }
-        let rims = border.iter().map(|&v| self.parts.vertices[v as usize]);
+        let rims = self.border.iter().map(|&v| self.site.parts.vertices[v as usize]);
         let positions = rims.chain(patch.vertices.iter().copied()).collect();
         let sides = vec![0; triangles.len()];
-        let mut local = Local::new(positions, triangles, sides, border.len());
-        let beyond = surroundings(self, strip, &border, &place, &mut local);
-        local.positions = fair(&local, &beyond, progress)?;
-        polish(&mut local);
-        let angle = min_angle(&local.positions, &local.triangles);
-        let vertices = local.positions[border.len()..].to_vec();
-        let patch = Patch { vertices, triangles: patch.triangles.clone(), ..*patch };
-        let meetings = self.meetings(&patch, progress)?;
-        Ok(Some(Try { patch, meetings, angle }))
+        let mut local = Local::new(positions, triangles, sides, self.border.len());
+        let beyond = surroundings(self.site, self.strip, &self.border, &self.place, &mut local);
+        let ground = Ground::of(&local);
+        regularize(&mut local, Some(&ground), progress.part(0.0, 0.4))?;
+        self.smoothed(local, &beyond, patch.kind, progress.part(0.4, 1.0)).map(Some)
     }
 
-    /// The strip with even triangles, faired unless the line is to stay.
-    fn even(&self, strip: &Strip, progress: Progress<'_>) -> Result<Option<Try>> {
-        let Some(Taken { mut local, beyond, border }) = take(self, strip) else { return Ok(None) };
-        let ground = Ground::of(&local);
-        remesh(&mut local, &ground, progress.part(0.0, 0.5))?;
-        let n = self.parts.vertices.len() as u32;
-        let crease = self.options.blend == 0.0;
-        if !crease {
-            regularize(&mut local, &ground, progress.part(0.5, 0.6))?;
-        }
-        let flat = local.positions.clone();
-        if !crease {
-            for round in 0..ROUNDS {
-                let at = |k: usize| 0.6 + 0.3 * k as f64 / ROUNDS as f64;
-                local.positions = fair(&local, &beyond, progress.part(at(round), at(round + 1)))?;
-                flip_valences(&mut local);
-            }
-            local.positions = fair(&local, &beyond, progress.part(0.9, 0.9))?;
-            mend_thin(&mut local);
-        }
-        let faired = local.positions.clone();
-        let m = local.border as u32;
-        let name = |v: u32| if v < m { border[v as usize] } else { n + v - m };
-        let triangles = local.triangles.iter().map(|t| t.map(name)).collect::<Vec<_>>();
+    /// The strip with even triangles, faired unless the line is to stay; with shorter edges where that would meet something.
+    fn even(&self, progress: Progress<'_>) -> Result<Option<Try>> {
+        let Some(Taken { local: given, beyond }) = take(self.site, self.strip) else { return Ok(None) };
+        let ground = Ground::of(&given);
+        let crease = self.site.options.blend == 0.0;
+        let mut given = given;
         let mut best: Option<Try> = None;
-        for share in if crease { &SHARES[3..] } else { &SHARES[..] } {
-            local.positions = flat.iter().zip(&faired).map(|(a, b)| a.lerp(*b, *share)).collect();
-            if !crease {
-                polish(&mut local);
-            }
-            let positions = &local.positions;
-            let angle = min_angle(positions, &local.triangles);
-            let patch = Patch {
-                kind: Kind::Strip,
-                vertices: positions[m as usize..].to_vec(),
-                triangles: triangles.clone(),
+        for level in 0..=FINER {
+            let part =
+                progress.part(level as f64 / (FINER + 1) as f64, (level + 1) as f64 / (FINER + 1) as f64);
+            let mut local = given.clone();
+            remesh(&mut local, &ground, part.part(0.0, 0.4))?;
+            let made = if crease {
+                let bad = tangled(&local, self.near(), part.part(0.4, 1.0))?;
+                self.tried(&local, &bad, Kind::Strip)
+            } else {
+                regularize(&mut local, Some(&ground), part.part(0.4, 0.6))?;
+                self.smoothed(local, &beyond, Kind::Strip, part.part(0.6, 1.0))?
             };
-            let meetings = self.meetings(&patch, progress.part(0.9, 1.0))?;
-            if best.as_ref().is_none_or(|best| (meetings, -angle) < (best.meetings, -best.angle)) {
-                best = Some(Try { patch, meetings, angle });
-            }
-            if meetings == 0 && angle > THIN {
+            let places = made.places.clone();
+            best = Some(match best {
+                Some(it) => better(it, made),
+                None => made,
+            });
+            if places.is_empty() {
                 break;
+            }
+            for v in given.border..given.positions.len() {
+                let (p, size) = (given.positions[v], given.sizes[v]);
+                let distance = places.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min) / size;
+                let fade = ((distance - AROUND[0]) / (AROUND[1] - AROUND[0])).clamp(0.0, 1.0);
+                given.sizes[v] *= SHORTER + (1.0 - SHORTER) * fade;
             }
         }
         Ok(best)
     }
 
-    /// How often a patch meets itself or what stays.
-    fn meetings(&self, patch: &Patch, progress: Progress<'_>) -> Result<usize> {
-        let n = self.parts.vertices.len();
-        let at = |v: u32| {
-            let v = v as usize;
-            if v < n { self.parts.vertices[v] } else { patch.vertices[v - n] }
+    /// Fairs, as far as nothing meets by it.
+    fn smoothed(&self, mut local: Local, beyond: &Beyond, kind: Kind, progress: Progress<'_>) -> Result<Try> {
+        let flat = local.positions.clone();
+        for round in 0..ROUNDS {
+            let at = |k: usize| 0.5 * k as f64 / ROUNDS as f64;
+            local.positions = fair(&local, beyond, progress.part(at(round), at(round + 1)))?;
+            flip_valences(&mut local);
+        }
+        local.positions = fair(&local, beyond, progress.part(0.5, 0.6))?;
+        mend_thin(&mut local);
+        let bad = untangle(&mut local, &flat, self.near(), polish, progress.part(0.6, 1.0))?;
+        Ok(self.tried(&local, &bad, kind))
+    }
+
+    fn tried(&self, local: &Local, bad: &[u32], kind: Kind) -> Try {
+        let n = self.site.parts.vertices.len() as u32;
+        let m = local.border as u32;
+        let name = |v: u32| if v < m { self.border[v as usize] } else { n + v - m };
+        let off = |v: &u32| local.fan(*v).len() as i64 != local.wanted_at(*v);
+        let patch = Patch {
+            kind,
+            vertices: local.positions[m as usize..].to_vec(),
+            triangles: local.triangles.iter().map(|t| t.map(name)).collect(),
         };
-        let around = Box3::around(patch.triangles.iter().flatten().map(|&v| at(v)));
-        let near = near_boxes(&[around], &self.parts.vertices, &self.kept);
-        let old = near[0].iter().map(|&t| self.kept[t as usize]).collect::<Vec<_>>();
-        Ok(count_meetings(at, &patch.triangles, &old, false, MOST, progress)?.0)
+        let middle = |&t: &u32| local.corners(t).iter().sum::<DVec3>() / 3.0;
+        Try {
+            patch,
+            meetings: bad.len(),
+            angle: min_angle(&local.positions, &local.triangles),
+            odd: (0..local.positions.len() as u32).filter(off).count(),
+            places: bad.iter().map(middle).collect(),
+        }
     }
 }

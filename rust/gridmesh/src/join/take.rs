@@ -27,8 +27,6 @@ const EVEN: usize = 2;
 pub(super) struct Taken {
     pub local: Local,
     pub beyond: Beyond,
-    /// The parts' vertices of the border.
-    pub border: Vec<u32>,
 }
 
 /// Takes a strip out; `None` if its border is not that of its rims.
@@ -68,7 +66,7 @@ pub(super) fn take(site: &Site<'_>, strip: &Strip) -> Option<Taken> {
         harden(site, strip, &number, &mut local);
         local.knots = knots(&local);
     }
-    Some(Taken { local, beyond, border })
+    Some(Taken { local, beyond })
 }
 
 /// Wanted lengths, numbers of triangles, and edges that exist beyond the border; what lies beyond it.

@@ -5,6 +5,9 @@ use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
 use crate::geometry::facet::Facet;
 
+/// Triangles at most that are asked which way they face.
+const LOOKED_AT: usize = 64;
+
 /// Triangles to lay points on.
 pub(crate) struct Facets(RTree<Face>);
 
@@ -23,9 +26,13 @@ impl Facets {
         Facets(RTree::bulk_load(corners.into_iter().map(|t| Face(Facet::new(t))).collect()))
     }
 
-    /// The nearest point of them all.
-    pub fn nearest(&self, p: DVec3) -> DVec3 {
-        self.0.nearest_neighbor(p.to_array()).map_or(p, |face| face.0.place(p))
+    /// The nearest point of those that face the same way as a normal, among the nearest ones, or else of all: the other side of
+    /// something thin, or of a narrow gap, may be nearer.
+    pub fn nearest(&self, p: DVec3, normal: DVec3) -> DVec3 {
+        let alike = |face: &&Face| face.0.normal().dot(normal) >= 0.0;
+        let mut near = self.0.nearest_neighbor_iter(p.to_array()).take(LOOKED_AT);
+        let found = near.find(alike).or_else(|| self.0.nearest_neighbor(p.to_array()));
+        found.map_or(p, |face| face.0.place(p))
     }
 }
 
@@ -104,11 +111,17 @@ mod tests {
     #[test]
     fn nearest_points_lie_inside_on_sides_and_in_corners() {
         let facets = Facets::new(vec![[DVec3::ZERO, DVec3::X, DVec3::Y], [DVec3::Z * 9.0; 3]]);
-        let near = |x: f64, y: f64, z: f64| facets.nearest(DVec3::new(x, y, z));
+        let near = |x: f64, y: f64, z: f64| facets.nearest(DVec3::new(x, y, z), DVec3::Z);
         assert!(near(0.2, 0.3, 0.7).distance(DVec3::new(0.2, 0.3, 0.0)) < 1e-15);
         assert!(near(0.5, -1.0, 0.1).distance(DVec3::new(0.5, 0.0, 0.0)) < 1e-15);
         assert!(near(2.0, -1.0, 0.1).distance(DVec3::X) < 1e-15);
         assert!(near(0.0, 0.0, 8.0).distance(DVec3::Z * 9.0) < 1e-15);
+        // The lower side of a thin plate, from a point nearer to the upper one.
+        let [up, down] = [[DVec3::ZERO, DVec3::X, DVec3::Y], [DVec3::ZERO, DVec3::Y, DVec3::X]];
+        let plate = Facets::new(vec![up, down.map(|p| p - 0.1 * DVec3::Z)]);
+        let p = DVec3::new(0.2, 0.2, -0.01);
+        assert!(plate.nearest(p, DVec3::Z).z.abs() < 1e-15);
+        assert!((plate.nearest(p, -DVec3::Z).z + 0.1).abs() < 1e-15);
         let lines = Lines::numbered(vec![([DVec3::ZERO, DVec3::X], 3), ([DVec3::Y, DVec3::ONE], 5)]);
         assert_eq!(lines.find(DVec3::new(0.5, 0.2, 0.0)), Some((3, 0.2)));
         assert_eq!(lines.find(DVec3::new(0.0, 2.0, 0.0)), Some((5, 1.0)));

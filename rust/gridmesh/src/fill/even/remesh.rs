@@ -45,9 +45,9 @@ impl Ground {
         Ground { sides, lines }
     }
 
-    fn nearest(&self, side: u32, p: DVec3) -> DVec3 {
+    fn nearest(&self, side: u32, p: DVec3, normal: DVec3) -> DVec3 {
         let side = if self.lines.is_some() { side } else { 0 };
-        self.sides.get(&side).map_or(p, |facets| facets.nearest(p))
+        self.sides.get(&side).map_or(p, |facets| facets.nearest(p, normal))
     }
 }
 
@@ -63,10 +63,10 @@ pub(crate) fn remesh(local: &mut Local, ground: &Ground, progress: Progress<'_>)
             collapse_short(local);
         }
         flip_valences(local);
-        relax(local, ground);
+        relax(local, Some(ground));
     }
     mend_thin(local);
-    relax(local, ground);
+    relax(local, Some(ground));
     local.compact();
     Ok(())
 }
@@ -158,8 +158,9 @@ fn is_unfolded(local: &Local, old: [u32; 2], new: [[u32; 3]; 2]) -> bool {
     after.iter().all(|n| n.dot(before) > least * n.length()) && after[0].dot(after[1]) > 0.0
 }
 
-/// Moves vertices towards the middle of their neighbours, within the surface; those of hard lines along them.
-pub(crate) fn relax(local: &mut Local, ground: &Ground) {
+/// Moves vertices towards the middle of their neighbours, within the surface; those of hard lines along them. Without a surface each
+/// moves in its tangent plane. No triangle gets thin or turns over by it.
+pub(crate) fn relax(local: &mut Local, ground: Option<&Ground>) {
     for v in local.border as u32..local.positions.len() as u32 {
         if local.fan(v).is_empty() || local.knots.contains(&v) {
             continue;
@@ -168,7 +169,8 @@ pub(crate) fn relax(local: &mut Local, ground: &Ground) {
         let at = |u: u32| local.positions[u as usize];
         let p = at(v);
         let along = near.iter().copied().filter(|&u| local.hard.contains(&edge(u, v))).collect::<Vec<_>>();
-        let moved = match (along.as_slice(), &ground.lines) {
+        let lines = ground.and_then(|ground| ground.lines.as_ref());
+        let moved = match (along.as_slice(), lines) {
             ([a, b], Some(lines)) => lines.nearest(0.5 * p + 0.25 * (at(*a) + at(*b))),
             ([], _) => {
                 let mean = near.iter().map(|&u| at(u)).sum::<DVec3>() / near.len() as f64;
@@ -177,11 +179,25 @@ pub(crate) fn relax(local: &mut Local, ground: &Ground) {
                     .iter()
                     .map(|&t| local.corners(t))
                     .fold(DVec3::ZERO, |sum, [a, b, c]| sum + (b - a).cross(c - a));
-                let step = (mean - p).reject_from_normalized(normal.try_normalize().unwrap_or(DVec3::Z));
-                ground.nearest(local.sides[local.fan(v)[0] as usize], p + 0.7 * step)
+                let up = normal.try_normalize().unwrap_or(DVec3::Z);
+                let there = p + 0.7 * (mean - p).reject_from_normalized(up);
+                ground
+                    .map_or(there, |ground| ground.nearest(local.sides[local.fan(v)[0] as usize], there, up))
             }
             _ => continue,
         };
+        if along.is_empty() && !stays_sound(local, v, moved) {
+            continue;
+        }
         local.positions[v as usize] = moved;
     }
+}
+
+/// Whether no triangle at a vertex gets thin or turns over by a move of it.
+fn stays_sound(local: &Local, v: u32, p: DVec3) -> bool {
+    local.fan(v).iter().all(|&t| {
+        let own = local.triangles[t as usize];
+        let moved = own.map(|u| if u == v { p } else { local.positions[u as usize] });
+        local.is_better(local.corners(t), moved)
+    })
 }

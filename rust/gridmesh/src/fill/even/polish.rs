@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::fill::even::local::{Local, quality};
+use super::local::{Local, quality};
 
 /// Triangles below this quality are worth a move.
 const THIN: f64 = 0.7;
@@ -17,7 +17,7 @@ const STEPS: [f64; 3] = [0.16, 0.08, 0.03];
 const WAYS: usize = 8;
 
 /// Moves vertices inside, at most a few tenths of an edge; no worst triangle at a vertex gets worse.
-pub(super) fn polish(local: &mut Local) {
+pub(crate) fn polish(local: &mut Local) {
     for _ in 0..ROUNDS {
         let mut moved = false;
         for v in local.border as u32..local.positions.len() as u32 {
