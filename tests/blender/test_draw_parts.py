@@ -528,7 +528,13 @@ class Play:
         bpy.ops.ed.undo()
 
     def redo(self):
-        bpy.ops.ed.redo()
+        """What was undone, or if that was nothing a step back and forth."""
+        try:
+            bpy.ops.ed.redo()
+        except RuntimeError:
+            bpy.ops.ed.undo()
+            settle()
+            bpy.ops.ed.redo()
 
     def reload(self):
         bpy.ops.wm.save_as_mainfile(filepath=self.path)
