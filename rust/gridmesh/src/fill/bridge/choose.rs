@@ -54,10 +54,11 @@ impl Bank {
         let start = self.around[0];
         let round = (around - start).floor();
         let within = around - round;
-        let k = self.around.partition_point(|&x| x <= within) - 1;
+        // Rounding can put it before the first.
+        let k = self.around.partition_point(|&x| x <= within).saturating_sub(1);
         let end = self.around.get(k + 1).copied().unwrap_or(start + 1.0);
         let share = (within - self.around[k]) / (end - self.around[k]).max(1e-12);
-        round * n as f64 + k as f64 + share.min(1.0)
+        round * n as f64 + k as f64 + share.clamp(0.0, 1.0)
     }
 
     /// The place around the axis before which so many vertices come.
