@@ -29,7 +29,7 @@ use crate::{arrays, error};
 /// Raises
 /// ------
 /// GridMeshError
-///     If an outline encloses nothing, or parts that meet in single points only.
+///     If an outline encloses nothing, or parts that meet in single points only, or outlines are not between 1e-30 and 1e30 across.
 /// TypeError
 ///     If an argument has a type that is not allowed.
 ///

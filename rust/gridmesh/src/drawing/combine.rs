@@ -7,7 +7,7 @@ use i_overlay::float::single::SingleFloatOverlay;
 
 use crate::drawing::curve::bounds;
 use crate::drawing::union::outer_outline;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// What becomes of two drawings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +38,8 @@ const SLIVER: f64 = 1e-5;
 /// difference leaves nothing. Time grows as n log n for n points and crossings.
 ///
 /// # Errors
-/// [`NotFinite`](crate::error::Error::NotFinite), [`ZeroArea`](crate::error::Error::ZeroArea) and
-/// [`Disconnected`](crate::error::Error::Disconnected), as of an outline that crosses
-/// itself.
+/// [`Error::NotFinite`], [`Error::ZeroArea`] and [`Error::Disconnected`], as of an outline that crosses itself;
+/// [`Error::ExtremeSize`] if the first outline, or both together, are not between 1e-30 and 1e30 across.
 pub fn combine(
     outline: &[DVec2],
     holes: &[Vec<DVec2>],
@@ -54,6 +53,9 @@ pub fn combine(
     let second = outer_outline(other, "other outline")?.0;
     let (low, high) = bounds(outline);
     let size = (high - low).max_element();
+    check_size("outline", size)?;
+    let (far_low, far_high) = bounds(other);
+    check_size("other outline", (high.max(far_high) - low.min(far_low)).max_element())?;
     let unit = |points: &Vec<DVec2>| -> Vec<[f64; 2]> {
         points.iter().map(|&p| ((p - low) / size).to_array()).collect()
     };
@@ -78,6 +80,14 @@ pub fn combine(
     }
     parts.sort_by(|a, b| signed_area(&b.outline).total_cmp(&signed_area(&a.outline)));
     Ok(parts)
+}
+
+/// The boolean works in units of the first drawing, where the other must have finite squares.
+fn check_size(what: &str, size: f64) -> Result<()> {
+    match (1e-30..=1e30).contains(&size) {
+        true => Ok(()),
+        false => Err(Error::ExtremeSize { what: what.to_owned(), size }),
+    }
 }
 
 /// The parts' outlines are counter-clockwise, so positive; holes are negative.
@@ -131,6 +141,16 @@ mod tests {
         // Drawn over the hole, the union closes the part that it covers.
         let over = square(0.5, 0.5, 4.0);
         assert_eq!(areas(&combine(&a, &[hole], &over, Combination::Union).unwrap()), [(100.0, vec![])]);
+    }
+
+    #[test]
+    fn an_outline_beyond_all_measure_is_refused() {
+        let (near, far) = (square(0.0, 0.0, 1.0), square(0.0, 0.0, 1e200));
+        for (a, b) in [(&near, &far), (&far, &near), (&near, &square(0.0, 0.0, 1e31))] {
+            let refused = combine(a, &[], b, Combination::Union).map_err(|error| error.kind());
+            assert_eq!(refused, Err("extreme_size"));
+        }
+        assert!(combine(&near, &[], &square(0.0, 0.0, 1e29), Combination::Union).is_ok());
     }
 
     #[test]
