@@ -18,8 +18,9 @@ use crate::geometry::laplace::Factor;
 const ROUNDS: usize = 2;
 /// Standard deviation of the smoothing along a side, in edges: what wanders faster stays within an edge.
 const SIGMA: f64 = 8.0;
-/// Along shorter sides hardly an edge adds up; in edges.
-const SHORTEST: f64 = 45.0;
+/// Along shorter sides hardly an edge adds up, in edges. With 45 meshes of 2000 triangles lose a degree of least angle and gain
+/// nothing, with 140 those of 10,000 have as many irregular vertices as without.
+const SHORTEST: f64 = 100.0;
 /// So near to the ends of a side the outline turns to the next one, in edges: what is off there does not count.
 const ENDS: f64 = 2.0;
 /// A chord counts as off by no more than this, in radians: what is off by more is a detail of the drawing.
