@@ -21,6 +21,7 @@ mod grid;
 pub(crate) mod image;
 mod mirrored;
 mod sized;
+mod straight;
 mod tangents;
 mod width;
 

@@ -109,13 +109,32 @@ pub(crate) fn candidates(
     let expected: Vec<f64> = sized.iter().map(|(cost, _)| *cost).collect();
     for (k, (_, rotation)) in sized.into_iter().enumerate() {
         let next = expected.get(k + 1).copied().unwrap_or(f64::INFINITY);
-        if let Some(bent) = bent(ground, &solver, rotation.v, mirrored.as_ref(), &narrowest)?
+        let made = |v: Vec<f64>| bent(ground, &solver, v, mirrored.as_ref(), &narrowest);
+        let found = if ground.shape == CellShape::Triangle {
+            let straight = solver.straightened(&ground.carrier, &rotation.v, (beta, &robin), TURN)?;
+            match made(straight)? {
+                Some(bent) if bent.share == 1.0 => Some(bent),
+                // Better bent as a whole than straight and bent less.
+                less => most(made(rotation.v)?, less),
+            }
+        } else {
+            made(rotation.v)?
+        };
+        if let Some(bent) = found
             && is_enough(bent, next)?
         {
             break;
         }
     }
     Ok(())
+}
+
+/// The one that is bent more, the first of equals.
+fn most(a: Option<Bent>, b: Option<Bent>) -> Option<Bent> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b.share > a.share { b } else { a }),
+        (a, b) => a.or(b),
+    }
 }
 
 /// The drawing bent by a rotation, or by a part of it where it would overlap itself.

@@ -90,7 +90,7 @@ impl Operators {
     }
 
     /// The directions for a rotation, contour by contour.
-    fn directions(&self, v: &[f64], price: f64) -> Vec<Directions> {
+    pub fn directions(&self, v: &[f64], price: f64) -> Vec<Directions> {
         let of = |&(start, n, total): &(usize, usize, i32)| {
             let range = start..start + n;
             let turned: Vec<f64> =
@@ -105,6 +105,21 @@ impl Operators {
         let found = self.directions(&v, price);
         let (turns, misfit) = (found.iter().map(|d| d.turns).sum(), found.iter().map(|d| d.misfit).sum());
         Rotation { v, turns, misfit }
+    }
+
+    /// Angle between two lattice directions.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Per contour: first vertex, number of vertices, lattice directions that the tangent turns through.
+    pub fn contours(&self) -> &[(usize, usize, i32)] {
+        &self.contours
+    }
+
+    /// The length of contour at each boundary vertex that wants to run along a lattice direction.
+    pub fn pulls(&self) -> &[f64] {
+        &self.pulls
     }
 
     pub fn lengths(&self) -> &[f64] {
