@@ -58,13 +58,11 @@ fn combined_drawings_keep_their_promises() {
 }
 
 #[test]
-#[ignore = "not run yet since its target was mended"]
 fn bent_lattices_keep_their_promises() {
     run(targets::bent, 300);
 }
 
 #[test]
-#[ignore = "not run yet since its target was mended"]
 fn fills_of_several_loops_keep_their_promises() {
     run(targets::several, 1500);
 }
@@ -86,7 +84,6 @@ fn pictures_keep_their_promises() {
 
 /// A place around the axis of a tube that rounding put before the first vertex of a loop.
 #[test]
-#[ignore = "not run yet since its target was mended"]
 fn a_vertex_at_the_seam_of_a_tube_is_found() {
     targets::several(&[205, 17, 85, 31, 82, 66, 100, 3, 249, 27, 108, 238, 67, 82, 100, 88, 0, 40, 75]);
 }
