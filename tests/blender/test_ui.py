@@ -8,6 +8,7 @@ from drawings import activate, circle, grease_pencil, run_one
 from holes import cylinder, edit
 
 from addon.bodies.operator import OBJECT_OT_gridmesh_from_strokes
+from addon.bridge.operator import MESH_OT_gridmesh_bridge
 from addon.fill.operator import MESH_OT_gridmesh_fill
 from addon.live import ui as live_ui
 from addon.ui import panels as ui
@@ -171,7 +172,16 @@ def test_redo_panel_of_fill():
     assert "max_edges" in options(MESH_OT_gridmesh_fill, holes="ALL")
 
 
-@pytest.mark.parametrize("cls", [MESH_OT_gridmesh_fill, OBJECT_OT_gridmesh_from_strokes])
+@pytest.mark.parametrize("has_tube", [True, False])
+def test_redo_panel_of_bridge_says_what_two_loops_alone_have(has_tube):
+    drawn = options(MESH_OT_gridmesh_bridge, has_tube=has_tube)
+    assert {"rows", "smooth", "twist", "use_quads"} <= set(drawn)
+    assert ("Rows and Twist are for two loops" in drawn) != has_tube
+
+
+@pytest.mark.parametrize(
+    "cls", [MESH_OT_gridmesh_fill, MESH_OT_gridmesh_bridge, OBJECT_OT_gridmesh_from_strokes]
+)
 def test_every_option_has_a_name_and_a_description(cls):
     for option in Settings(cls.bl_idname).rna.properties:
         if option.identifier == "rna_type" or option.is_hidden:
