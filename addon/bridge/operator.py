@@ -57,6 +57,7 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
     )
     has_tube: BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
     """Whether a tube was made: only that has rows and a twist."""
+
     use_quads: BoolProperty(
         name="Quads",
         description="Join pairs of triangles to quads where that gives good ones",
@@ -110,6 +111,10 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
                 {"INFO"},
                 told("UVs or colours are torn at the loops: continued from the longest stretch of each"),
             )
+        broken = sum(job.added.broken for job in jobs)
+        if broken:
+            layers = counted(broken, "layer")
+            self.report({"INFO"}, told(f"{layers} of data not continued: a value at a loop is not finite"))
         for job in jobs:
             for warning in job.warnings():
                 self.report({"WARNING"}, told(warning))

@@ -476,6 +476,9 @@ _BRIDGES = {
     "both loops pass through vertex {}; split it, or choose loops that are apart": (
         "beide Schleifen gehen durch Punkt {0}; ihn trennen oder Schleifen wählen, die getrennt sind"
     ),
+    "{} of data not continued: a value at a loop is not finite": (
+        "{0} mit Daten nicht fortgesetzt: ein Wert an einer Schleife ist nicht endlich"
+    ),
     "{} of the loops pass through vertex {}; split it, or choose loops that are apart": (
         "{0} der Schleifen gehen durch Punkt {1}; ihn trennen oder Schleifen wählen, die getrennt sind"
     ),

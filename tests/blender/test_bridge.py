@@ -1,6 +1,7 @@
 """`mesh.gridmesh_bridge` on real loops: geometry, data, undo, refusals."""
 
 from collections import Counter
+from types import SimpleNamespace
 
 import bmesh
 import bpy
@@ -9,6 +10,8 @@ import pytest
 from drawings import activate, fingerprint, vertices
 from holes import Before, cylinder, edit, faces_of, grid, leave, rim, select, without_faces
 from mathutils import Vector
+
+from addon.fill import patches
 
 
 def bridge(**options):
@@ -355,6 +358,23 @@ def test_data_of_all_sides_goes_on():
     assert abs(moved[np.minimum(far[0], far[1]).argmin()]) < 0.6
 
 
+def test_data_that_is_not_finite_is_left_out_and_told(capfd):
+    ob, loops = trousers()
+    for name in ("Bad", "Good"):
+        ob.data.attributes.new(name, "FLOAT", "POINT")
+    bad, good = ob.data.attributes["Bad"], ob.data.attributes["Good"]
+    for index in range(len(ob.data.vertices)):
+        good.data[index].value = 2.0
+        bad.data[index].value = float("nan") if index == loops[2][5] else 1.0
+    n = len(ob.data.vertices)
+    choose(ob, loops)
+    bridge()
+    leave()
+    assert "1 layer of data not continued: a value at a loop is not finite" in capfd.readouterr().out
+    values = [item.value for item in ob.data.attributes["Good"].data]
+    assert values[n:] == pytest.approx([2.0] * (len(values) - n))
+
+
 def test_uvs_go_on_on_all_sides():
     ob, loops = trousers()
     layer = ob.data.uv_layers.new()
@@ -493,4 +513,25 @@ def test_three_loops_two_of_which_touch_are_refused_and_the_vertex_is_selected()
         bpy.ops.mesh.gridmesh_bridge()
     leave()
     assert [v.index for v in ob.data.vertices if v.select] == [shared]
+    assert (vertices(ob.data).tobytes(), faces_of(ob.data)) == before
+
+
+def test_three_loops_without_a_patch_are_told_and_stay_selected(monkeypatch):
+    class Refused(ValueError):
+        kind = "no_patch"
+
+    def refuse(*_, **__):
+        raise Refused("no valid mesh was found")
+
+    ob, loops = trousers()
+    before = vertices(ob.data).tobytes(), faces_of(ob.data)
+    choose(ob, loops)
+    module = SimpleNamespace(GridMeshError=Refused, fill_hole=refuse)
+    monkeypatch.setattr(patches, "native", lambda *_: module)
+    with pytest.raises(RuntimeError, match="No triangles between these loops make one patch; subdivide"):
+        bpy.ops.mesh.gridmesh_bridge()
+    leave()
+    assert {edge.index for edge in ob.data.edges if edge.select} == {
+        edge.index for edge in ob.data.edges if any(set(edge.vertices) <= set(loop) for loop in loops)
+    }
     assert (vertices(ob.data).tobytes(), faces_of(ob.data)) == before
