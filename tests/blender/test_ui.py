@@ -11,7 +11,9 @@ from addon.bodies.operator import OBJECT_OT_gridmesh_from_strokes
 from addon.bridge.operator import MESH_OT_gridmesh_bridge
 from addon.fill.operator import MESH_OT_gridmesh_fill
 from addon.live import ui as live_ui
+from addon.text import telling
 from addon.ui import panels as ui
+from addon.ui import patching
 
 
 class Settings:
@@ -45,7 +47,7 @@ class Layout:
     def separator(self):
         pass
 
-    def label(self, *, text, icon="NONE"):
+    def label(self, *, text, icon="NONE", translate=True):
         check_icon(icon)
         self.drawn.append(text)
 
@@ -170,6 +172,13 @@ def test_redo_panel_of_fill():
     assert drawn[:2] == ["Filled 1 hole: 4 triangles", "0 irregular vertices, 1 ms"]
     assert {"holes", "smooth", "cells", "close_chains"} <= set(drawn)
     assert "max_edges" in options(MESH_OT_gridmesh_fill, holes="ALL")
+
+
+def test_numbers_in_redo_panels_are_translated_as_a_whole(monkeypatch):
+    """Told in halves, the sentence stayed English: "Joined by 9 Reihen"."""
+    monkeypatch.setattr(patching, "told", lambda text, _of: telling.translate(text, "de_DE"))
+    drawn = options(MESH_OT_gridmesh_bridge, result="Joined by 9 rows: 4 triangles, 1 irregular vertex, 3 ms")
+    assert drawn[:2] == ["Verbunden durch 9 Reihen: 4 Dreiecke", "1 unregelmäßiger Punkt, 3 ms"]
 
 
 @pytest.mark.parametrize("has_tube", [True, False])
