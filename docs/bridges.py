@@ -12,8 +12,8 @@
 
     uv run docs/bridges.py [PICTURE.png]
 
-Above, each pair of loops joined by Blender's *Bridge Edge Loops*; below, by *Grid Bridge*, the tube in colour: pipes of
-different sizes and numbers of vertices, pipes tilted against each other, and two spheres.
+Above, loops joined by Blender's *Bridge Edge Loops*; below, by *Grid Bridge*, what is new in colour: pipes of different sizes
+and numbers of vertices, pipes tilted against each other, two spheres, and three pipes.
 """
 
 from __future__ import annotations
@@ -80,8 +80,15 @@ def spheres(bm) -> None:
         bmesh.ops.delete(bm, geom=gone, context="FACES")
 
 
+def trousers(bm) -> None:
+    """Two legs of 16 and 20 vertices below a waist of 32."""
+    pipe(bm, 16, 0.42, Matrix.Translation((-0.62, 0, -0.8)))
+    pipe(bm, 20, 0.42, Matrix.Translation((0.62, 0, -0.8)))
+    pipe(bm, 32, 0.95, Matrix.Translation((0, 0, 0.8)) @ Matrix.Rotation(math.pi, 4, "X"))
+
+
 def joined(make, *, ours: bool):
-    """The mesh of `make`, its facing loops joined; the tube gets the second material."""
+    """The mesh of `make`, its facing loops joined; the new faces get the second material."""
     mesh = bpy.data.meshes.new(make.__name__)
     bm = bmesh.new()
     make(bm)
@@ -93,9 +100,10 @@ def joined(make, *, ours: bool):
         (sum((v.co for e in piece for v in e.verts), Vector()) / (2 * len(piece)), piece)
         for piece in pieces(loops)
     ]
-    middle = sum((centre for centre, _ in centres), Vector()) / len(centres)
+    corners = [Vector([of(axis) for axis in zip(*(c for c, _ in centres), strict=True)]) for of in (min, max)]
+    middle = (corners[0] + corners[1]) / 2
     centres.sort(key=lambda item: (item[0] - middle).length)
-    loops = [edge for _, piece in centres[:2] for edge in piece]
+    loops = [edge for _, piece in centres[: max(2, len(centres) // 2)] for edge in piece]
     for edge in loops:
         edge.select_set(True)
     bm.to_mesh(mesh)
@@ -142,14 +150,14 @@ def main() -> None:
     picture = parser.parse_args().picture.resolve()
     plain = studio.body_material("Mesh", "#9AA3AE", 0.4)
     tube = studio.body_material("Tube", "#E8963A", 0.4)
-    for k, make in enumerate((of_sizes, tilted, spheres)):
+    for k, make in enumerate((of_sizes, tilted, spheres, trousers)):
         for row in (0, 1):
             ob = joined(make, ours=row == 0)
             for material in (plain, tube):
                 ob.data.materials.append(material)
             ob.rotation_euler = (0.35, 0, 0)
-            ob.location = ((k - 1) * STEP, 0, (row - 0.5) * RISE)
-    fills.stage(3 * STEP, 2 * RISE + 0.1, 1000, 12)
+            ob.location = ((k - 1.5) * STEP, 0, (row - 0.5) * RISE)
+    fills.stage(4 * STEP, 2 * RISE + 0.1, 1300, 12)
     studio.render(picture)
     print(f"wrote {picture}")
 

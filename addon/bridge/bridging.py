@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Two loops of a mesh being edited, found and joined: what the operator does."""
+"""Loops of a mesh being edited, found and joined: what the operator does.
+
+Two are joined by a tube, three or more by one patch that has them all as its boundary.
+"""
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ..api import Progress
@@ -26,21 +31,25 @@ class Job:
     report: dict = field(default_factory=dict)
     added: Added = field(default_factory=Added)
 
+    @property
+    def is_tube(self) -> bool:
+        """Whether two loops are joined, which has rows and a twist; a patch with more loops has neither."""
+        return len(self.loops) == _PAIR
+
     def find(self) -> None:
-        """Find the two loops that the selection means, or say why not."""
+        """Find the loops that the selection means, or say why they cannot be joined."""
         found = self.edited.selected_holes(close_chains=False)
         self.problems = list(found.problems)
         if self.problems:
             return
         self.loops = found.holes
-        if len(self.loops) != _PAIR:
+        if len(self.loops) < _PAIR:
             loops = counted(len(self.loops), "loop")
-            self.problems.append(Problem(f"{loops} of open edges selected; select two to join"))
+            self.problems.append(Problem(f"{loops} of open edges selected; select two or more to join"))
             return
-        shared = sorted(set(self.loops[0].vertices) & set(self.loops[1].vertices))
-        if shared:
-            reason = f"both loops pass through vertex {shared[0]}; split it, or choose loops that are apart"
-            self.problems.append(Problem(reason, tuple(shared)))
+        touching = _touching(self.loops)
+        if touching is not None:
+            self.problems.append(touching)
             return
         try:
             self.snapshot = self.edited.snapshot()
@@ -51,31 +60,40 @@ class Job:
         self.problems += [problem for problem in faulty if problem is not None]
 
     def bridge(self, smooth: str, rows: int, twist: float, progress: Progress) -> None:
-        """Make the tube, without touching the mesh. rows : 0 for as many as suit."""
+        """Make the patch, without touching the mesh. rows : 0 for as many as suit; these and twist count for two loops."""
         if self.problems or self.snapshot is None:
             return
         at = self.snapshot
-        one, two = (hole.vertices for hole in self.loops)
-        made = patches.bridge(
-            at.positions,
-            at.triangles,
-            one,
-            two,
-            smooth=smooth,
-            rows=rows or None,
-            twist=twist,
-            polygons=at.polygons,
-            poses=at.poses,
-            progress=progress,
-        )
+        loops = [hole.vertices for hole in self.loops]
+        if self.is_tube:
+            made = patches.bridge(
+                at.positions,
+                at.triangles,
+                *loops,
+                smooth=smooth,
+                rows=rows or None,
+                twist=twist,
+                polygons=at.polygons,
+                poses=at.poses,
+                progress=progress,
+            )
+        else:
+            made = patches.fill_loops(
+                at.positions,
+                at.triangles,
+                loops,
+                smooth=smooth,
+                polygons=at.polygons,
+                poses=at.poses,
+                progress=progress,
+            )
         if isinstance(made, str):
-            self.problems.append(Problem(made, (*one, *two)))
+            self.problems.append(Problem(made, tuple(vertex for loop in loops for vertex in loop)))
             return
         self.report = made.report
         self.patches.append(
             Patch(
-                loop=(*one, *two),
-                split=len(one),
+                loops=loops,
                 first=len(at.positions),
                 vertices=made.vertices @ at.to_local.T,
                 faces=made.triangles.tolist(),
@@ -90,17 +108,49 @@ class Job:
         own = f"'{self.edited.name}'"
         return f"{own}: {problem.reason}" if several and own not in problem.reason else problem.reason
 
+    def warnings(self) -> list[str]:
+        """What the patch tells about itself that a user should look at."""
+        warnings = []
+        if self.report["self_intersections"]:
+            warnings.append(
+                "The tube meets the mesh or itself; check the shape, or choose less smoothness"
+                if self.is_tube
+                else "The patch meets the mesh or itself; check the shape and which way the faces at the loops look"
+            )
+        if self.report["winding_conflicts"]:
+            faces = counted(self.report["winding_conflicts"], "face")
+            warnings.append(
+                f"{faces} at the loops look the other way than the tube; recalculate the normals"
+                if self.is_tube
+                else f"{faces} at the loops look the other way than the patch; recalculate the normals"
+            )
+        if self.report["grid"] == "graded":
+            warnings.append(
+                "No regular lattice suits these numbers of edges; choose other rows or subdivide a loop"
+            )
+        return warnings
 
-def warnings_of(report: dict) -> list[str]:
-    """What a tube tells about itself that a user should look at."""
-    warnings = []
-    if report["self_intersections"]:
-        warnings.append("The tube meets the mesh or itself; check the shape, or choose less smoothness")
-    if report["winding_conflicts"]:
-        faces = counted(report["winding_conflicts"], "face")
-        warnings.append(f"{faces} at the loops look the other way than the tube; recalculate the normals")
-    if report["grid"] == "graded":
-        warnings.append(
-            "No regular lattice suits these numbers of edges; choose other rows or subdivide a loop"
-        )
-    return warnings
+
+def summary(jobs: Sequence[Job], made: str, milliseconds: float) -> str:
+    """Say in numbers what was joined. made : the faces that it took."""
+    irregular = counted(sum(job.report["irregular"] for job in jobs), "irregular vertex")
+    if all(job.is_tube for job in jobs):
+        rows = counted(max(job.report["rows"] for job in jobs), "row")
+        return f"Joined by {rows}: {made}, {irregular}, {milliseconds:.0f} ms"
+    loops = counted(sum(len(job.loops) for job in jobs), "loop")
+    return f"Joined {loops}: {made}, {irregular}, {milliseconds:.0f} ms"
+
+
+def _touching(loops: Sequence[Hole]) -> Problem | None:
+    """Say where loops have a vertex in common, if anywhere."""
+    uses = Counter(vertex for hole in loops for vertex in hole.vertices)
+    shared = sorted(vertex for vertex, number in uses.items() if number > 1)
+    if not shared:
+        return None
+    first = shared[0]
+    reason = (
+        f"both loops pass through vertex {first}; split it, or choose loops that are apart"
+        if len(loops) == _PAIR
+        else f"{uses[first]} of the loops pass through vertex {first}; split it, or choose loops that are apart"
+    )
+    return Problem(reason, tuple(shared))

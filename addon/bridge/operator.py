@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`mesh.gridmesh_bridge`: two loops of the mesh being edited become one tube."""
+"""`mesh.gridmesh_bridge`: two loops of the mesh being edited are joined by a tube, or more by one patch."""
 
 from __future__ import annotations
 
@@ -15,11 +15,13 @@ from ..text.messages import counted, listed
 from ..text.telling import told
 from ..ui.patching import PatchOptions, faces_made
 from ..ui.progress import Pointer
-from .bridging import Job, warnings_of
+from .bridging import Job, summary
+
+ONLY_TWO = "Rows and Twist are for two loops"
 
 
 class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
-    """Join two selected loops by a regular tube, whatever their numbers of edges"""  # noqa: D400 (the tooltip)
+    """Join two selected loops by a regular tube, or more by one smooth patch, whatever their numbers of edges"""  # noqa: D400 (the tooltip)
 
     bl_idname = "mesh.gridmesh_bridge"
     bl_label = "Grid Bridge"
@@ -27,7 +29,7 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
 
     rows: IntProperty(
         name="Rows",
-        description="Rows of triangles between the loops; 0 for as many as the lengths of the edges ask for",
+        description="Rows of triangles between two loops; 0 for as many as the lengths of the edges ask for",
         default=0,
         min=0,
         soft_max=100,
@@ -36,7 +38,7 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
     )
     smooth: EnumProperty(
         name="Smoothness",
-        description="How the tube continues the surfaces at its ends",
+        description="How the tube or patch continues the surfaces at the loops",
         items=[
             ("FLAT", "Flat", "Straight from loop to loop"),
             ("TANGENT", "Tangent", "With the slope of the surface"),
@@ -46,13 +48,15 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
     )
     twist: FloatProperty(
         name="Twist",
-        description="Turn of one loop against the other, from where they fit best",
+        description="Turn of one of two loops against the other, from where they fit best",
         default=0.0,
         subtype="ANGLE",
         soft_min=-3.1416,
         soft_max=3.1416,
         options={"SKIP_SAVE"},
     )
+    has_tube: BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
+    """Whether a tube was made: only that has rows and a twist."""
 
     use_quads: BoolProperty(
         name="Quads",
@@ -65,7 +69,7 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
         """Ask for a mesh in Edit Mode."""
         if context.mode == "EDIT_MESH":
             return True
-        cls.poll_message_set(told("Edit a mesh and select two loops of open edges", "tooltips"))
+        cls.poll_message_set(told("Edit a mesh and select two or more loops of open edges", "tooltips"))
         return False
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -98,10 +102,8 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
 
     def _tell(self, jobs: list[Job], problems: list[str], seconds: float) -> None:
         """Report numbers, and what the user should know."""
-        made = faces_made(jobs)
-        irregular = sum(job.report["irregular"] for job in jobs)
-        rows = max(job.report["rows"] for job in jobs)
-        self.result = f"Joined by {counted(rows, 'row')}: {made}, {counted(irregular, 'irregular vertex')}, {1000 * seconds:.0f} ms"
+        self.result = summary(jobs, faces_made(jobs), 1000 * seconds)
+        self.has_tube = any(job.is_tube for job in jobs)
         self.report({"INFO"}, told(self.result))
         torn = sum(job.added.torn for job in jobs)
         if torn:
@@ -109,9 +111,15 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
                 {"INFO"},
                 told("UVs or colours are torn at the loops: continued from the longest stretch of each"),
             )
+        broken = sum(job.added.broken for job in jobs)
+        if broken:
+            layers = counted(broken, "layer")
+            self.report({"INFO"}, told(f"{layers} of data not continued: a value at a loop is not finite"))
         for job in jobs:
-            for warning in warnings_of(job.report):
+            for warning in job.warnings():
                 self.report({"WARNING"}, told(warning))
+        if (self.rows or self.twist) and not self.has_tube:
+            self.report({"INFO"}, told(ONLY_TWO))
         if problems:
             self.report(
                 {"WARNING"}, told(f"{counted(len(problems), 'selection')} left out:\n{listed(problems)}")
@@ -120,9 +128,13 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
         layout = self.draw_result()
-        layout.prop(self, "rows")
         layout.prop(self, "smooth")
-        layout.prop(self, "twist")
+        tube = layout.column()
+        tube.active = self.has_tube
+        tube.prop(self, "rows")
+        tube.prop(self, "twist")
+        if not self.has_tube:
+            tube.label(text=told(ONLY_TWO, "interface"), icon="INFO")
         layout.prop(self, "use_quads")
 
 

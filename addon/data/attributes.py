@@ -36,7 +36,7 @@ class Surroundings:
     def __init__(self, bm: Any, *loops: Sequence[Any]) -> None:
         """Read it.
 
-        bm : BMesh. loops : BMVerts in order, of the one loop of a patch or of both.
+        bm : BMesh. loops : BMVerts in order, of each loop of a patch.
         """
         self.loop = loop = [vertex for loop in loops for vertex in loop]
         neighbours = [[_neighbour(a, b) for a, b in _edges(loop)] for loop in loops]
@@ -179,7 +179,7 @@ class _Corners:
         width = len(self._read(known[0]))
         found = [self._settled(loop, arc, width) for loop, arc in zip(loops, arcs, strict=True)]
         self.torn = any(torn for _, torn in found)
-        # A loop of wires has what the other has in the mean.
+        # A loop of wires has what the others have in the mean.
         mean = np.concatenate([values for values, _ in found if values is not None]).mean(axis=0)
         self.values = np.concatenate(
             [

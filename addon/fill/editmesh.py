@@ -201,7 +201,7 @@ class EditMesh:
             new.append(vertex)
             for layer, pose in zip(layers, patch.poses, strict=True):
                 vertex[layer] = pose[index].tolist()
-        by_number = dict(zip(patch.loop, around.loop, strict=True))
+        by_number = dict(zip((index for loop in patch.loops for index in loop), around.loop, strict=True))
         by_number.update(enumerate(new, patch.first))
         faces = []
         for numbers in patch.faces:
@@ -282,9 +282,10 @@ class Snapshot:
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """A filled hole in the object's space."""
+    """A filled hole, or the faces between loops, in the object's space."""
 
-    loop: Sequence[int]
+    loops: Sequence[Sequence[int]]
+    """The loops that it has as its boundary, one or several: vertices of the mesh in order."""
     first: int
     """Number of the first new vertex in `faces`; lower ones are the mesh's."""
     vertices: np.ndarray
@@ -296,13 +297,7 @@ class Patch:
     poses: list[np.ndarray]
     """(j, 3) new vertices for every shape key."""
     extend: attributes.Extend
-    split: int = 0
-    """Vertices of `loop` that belong to the first of two loops; 0 if it is one."""
-
-    @property
-    def loops(self) -> list[Sequence[int]]:
-        """The loops that the patch bounds."""
-        return [self.loop[: self.split], self.loop[self.split :]] if self.split else [self.loop]
+    """From values at the vertices of the loops, one loop after the other, to values at the new ones."""
 
 
 @dataclass

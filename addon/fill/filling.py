@@ -78,7 +78,7 @@ class Job:
                 continue
             self.patches.append(
                 Patch(
-                    loop=loop,
+                    loops=[loop],
                     first=len(at.positions),
                     vertices=fill.vertices @ at.to_local.T,
                     faces=[*fill.quads.tolist(), *fill.triangles.tolist()],

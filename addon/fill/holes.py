@@ -129,9 +129,13 @@ def _resolve(
 ) -> None:
     """Make holes of one connected piece of the selection, or say why not."""
     degrees = Counter(vertex for edge in part for vertex in edge.ends)
-    if len(part) >= 3 and all(degree == 2 for degree in degrees.values()):
-        found.add(_loop(part))  # what is selected across it does not matter
-        return
+    if part and all(degree == 2 for degree in degrees.values()):
+        # What is selected across loops, or from one to another, does not matter.
+        pieces = [piece for piece, _ in _components(part, ())]
+        if all(len(piece) >= 3 for piece in pieces):
+            for piece in pieces:
+                found.add(_loop(piece))
+            return
     if barred:
         found.problems.append(_barred(barred))
         return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Patches of meshes as arrays: holes filled, areas meshed anew, loops joined. numpy only, no bpy."""
+"""Patches of meshes as arrays: holes filled, areas meshed anew, two or more loops joined. numpy only, no bpy."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ import numpy as np
 
 from ..api import Progress, cancelling
 from ..native import native
+
+NO_PATCH = "no triangles between these loops make one patch; subdivide the smallest, or join fewer at once"
+"""Said of three loops or more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +32,7 @@ class Filled:
     """(j, 3) the new vertices in every pose."""
     report: dict[str, Any]
     extend: Callable[[np.ndarray], np.ndarray]
-    """From values at the loop's vertices (k, c) to values at the new ones (j, c)."""
+    """From values at the loops' vertices (k, c), one loop after the other, to values at the new ones (j, c)."""
 
 
 def fill(
@@ -170,6 +173,37 @@ def bridge(
             return _filled(gridmesh, made, vertices, poses, progress)
     except gridmesh.GridMeshError as error:
         return str(error)
+
+
+def fill_loops(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    loops: Sequence[Sequence[int]],
+    *,
+    smooth: str,
+    polygons: np.ndarray | None = None,
+    poses: Sequence[np.ndarray] = (),
+    progress: Progress | None = None,
+) -> Filled | str:
+    """Join loops of a mesh by one patch that has them all as its boundary: the patch, or the reason why there is none.
+
+    loops : vertex indices in order, of each loop. `extend` of the patch takes values one loop after the other. The others are
+    as of `fill`. Raises NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
+    """
+    gridmesh = native("fill_hole")
+    try:
+        with cancelling(gridmesh):
+            made = gridmesh.fill_hole(
+                vertices,
+                triangles,
+                [np.asarray(loop, np.int32) for loop in loops],
+                smooth=smooth,
+                polygons=polygons,
+                progress=progress,
+            )
+            return _filled(gridmesh, made, vertices, poses, progress)
+    except gridmesh.GridMeshError as error:
+        return NO_PATCH if error.kind == "no_patch" else str(error)
 
 
 def _filled(

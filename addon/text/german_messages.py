@@ -455,10 +455,17 @@ _CUTS = {
 
 _BRIDGES = {
     "Cancelled; nothing was joined": "Abgebrochen; nichts wurde verbunden",
-    "Edit a mesh and select two loops of open edges": "Ein Mesh bearbeiten und zwei Schleifen offener Kanten auswählen",
+    "Edit a mesh and select two or more loops of open edges": (
+        "Ein Mesh bearbeiten und zwei oder mehr Schleifen offener Kanten auswählen"
+    ),
+    "Joined {}: {}, {}, {} ms": "{0} verbunden: {1}, {2}, {3} ms",
     "Joined by {}: {}, {}, {} ms": "Verbunden durch {0}: {1}, {2}, {3} ms",
     "No regular lattice suits these numbers of edges; choose other rows or subdivide a loop": (
         "Kein regelmäßiges Gitter passt zu diesen Anzahlen von Kanten; andere Reihen wählen oder eine Schleife unterteilen"
+    ),
+    "Rows and Twist are for two loops": "Reihen und Verdrehung gelten für zwei Schleifen",
+    "The patch meets the mesh or itself; check the shape and which way the faces at the loops look": (
+        "Der Flicken trifft das Mesh oder sich selbst; die Form prüfen, und wohin die Flächen an den Schleifen schauen"
     ),
     "The tube meets the mesh or itself; check the shape, or choose less smoothness": (
         "Die Röhre trifft das Mesh oder sich selbst; die Form prüfen oder weniger Glätte wählen"
@@ -469,14 +476,26 @@ _BRIDGES = {
     "both loops pass through vertex {}; split it, or choose loops that are apart": (
         "beide Schleifen gehen durch Punkt {0}; ihn trennen oder Schleifen wählen, die getrennt sind"
     ),
+    "{} of data not continued: a value at a loop is not finite": (
+        "{0} mit Daten nicht fortgesetzt: ein Wert an einer Schleife ist nicht endlich"
+    ),
+    "{} of the loops pass through vertex {}; split it, or choose loops that are apart": (
+        "{0} der Schleifen gehen durch Punkt {1}; ihn trennen oder Schleifen wählen, die getrennt sind"
+    ),
+    "no triangles between these loops make one patch; subdivide the smallest, or join fewer at once": (
+        "keine Dreiecke zwischen diesen Schleifen ergeben einen Flicken; die kleinste unterteilen, oder weniger auf einmal verbinden"
+    ),
     "every tube repeats an edge of the mesh": "jede Röhre wiederholt eine Kante des Meshs",
     "{} at the loops look the other way than the tube; recalculate the normals": (
         "{0} an den Schleifen schauen anders herum als die Röhre; die Normalen neu berechnen"
     ),
+    "{} at the loops look the other way than the patch; recalculate the normals": (
+        "{0} an den Schleifen schauen anders herum als der Flicken; die Normalen neu berechnen"
+    ),
     "{} loop": "{0} Schleife",
     "{} loops": "{0} Schleifen",
-    "{} of open edges selected; select two to join": (
-        "{0} offener Kanten ausgewählt; zwei zum Verbinden auswählen"
+    "{} of open edges selected; select two or more to join": (
+        "{0} offener Kanten ausgewählt; zwei oder mehr zum Verbinden auswählen"
     ),
     "{} row": "{0} Reihe",
     "{} rows": "{0} Reihen",

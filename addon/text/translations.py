@@ -580,17 +580,20 @@ GERMAN = {
     "Width of what is taken away along the cut": "Breite dessen, was am Schnitt weggenommen wird",
     # Joining loops
     "Grid Bridge": "Schleifen mit Gitter verbinden",
-    "How the tube continues the surfaces at its ends": "Wie die Röhre die Flächen an ihren Enden fortsetzt",
-    "Join two selected loops by a regular tube, whatever their numbers of edges": (
-        "Zwei ausgewählte Schleifen durch eine regelmäßige Röhre verbinden, wie viele Kanten sie auch haben"
+    "How the tube or patch continues the surfaces at the loops": (
+        "Wie die Röhre oder der Flicken die Flächen an den Schleifen fortsetzt"
+    ),
+    "Join two selected loops by a regular tube, or more by one smooth patch, whatever their numbers of edges": (
+        "Zwei ausgewählte Schleifen durch eine regelmäßige Röhre verbinden, oder mehr durch einen glatten Flicken, wie viele "
+        "Kanten sie auch haben"
     ),
     "Rows": "Reihen",
-    "Rows of triangles between the loops; 0 for as many as the lengths of the edges ask for": (
-        "Reihen von Dreiecken zwischen den Schleifen; 0 für so viele, wie zu den Längen der Kanten passen"
+    "Rows of triangles between two loops; 0 for as many as the lengths of the edges ask for": (
+        "Reihen von Dreiecken zwischen zwei Schleifen; 0 für so viele, wie zu den Längen der Kanten passen"
     ),
     "Straight from loop to loop": "Gerade von Schleife zu Schleife",
-    "Turn of one loop against the other, from where they fit best": (
-        "Drehung der einen Schleife gegen die andere, von dort, wo sie am besten passen"
+    "Turn of one of two loops against the other, from where they fit best": (
+        "Drehung der einen von zwei Schleifen gegen die andere, von dort, wo sie am besten passen"
     ),
     "Twist": "Verdrehung",
     # Joining bodies

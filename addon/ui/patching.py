@@ -28,8 +28,8 @@ class ResultShown:
         layout.use_property_decorate = False
         if self.result:
             numbers = layout.column(align=True)
-            for part in self.result.split(", ", 1):  # on one line they would be cut off
-                numbers.label(text=told(part, "interface"))
+            for part in told(self.result, "interface").split(", ", 1):  # on one line they would be cut off
+                numbers.label(text=part, translate=False)
         return layout
 
 

@@ -1,13 +1,17 @@
 """`mesh.gridmesh_bridge` on real loops: geometry, data, undo, refusals."""
 
 from collections import Counter
+from types import SimpleNamespace
 
 import bmesh
 import bpy
 import numpy as np
 import pytest
 from drawings import activate, fingerprint, vertices
-from holes import cylinder, edit, faces_of, leave, rim, select, without_faces
+from holes import Before, cylinder, edit, faces_of, grid, leave, rim, select, without_faces
+from mathutils import Vector
+
+from addon.fill import patches
 
 
 def bridge(**options):
@@ -160,6 +164,303 @@ def test_two_wires():
     assert is_closed_but_for(ob, 19)
 
 
+# --------------------------------------------------------------------------------------------- several loops
+
+
+def pipes(*ends, name="pipes"):
+    """Open pipes of one segment, each of (edges around, end, radius, direction away from it), in one mesh."""
+    points, faces, loops = [], [], []
+    for n, end, radius, way in ends:
+        first, way = len(points), np.array(way, float)
+        u = np.cross(way, [1, 0, 0] if abs(way[0]) < abs(way[1]) + abs(way[2]) else [0, 0, 1])
+        u /= np.linalg.norm(u)
+        v = np.cross(way, u) / np.linalg.norm(way)
+        turns = 2 * np.pi * np.arange(n) / n
+        ring = np.array(end) + radius * (np.outer(np.cos(turns), u) + np.outer(np.sin(turns), v))
+        points += [*ring.tolist(), *(ring + way).tolist()]
+        for k in range(n):
+            a, b = first + k, first + (k + 1) % n
+            faces.append((a, b, b + n, a + n))
+        loops.append(list(range(first, first + n)))
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(points, [], faces)
+    ob = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(ob)
+    return ob, loops
+
+
+def trousers(counts=(16, 24, 31), **options):
+    """Two legs whose upper rims lie in one plane, and a waist above them."""
+    legs, waist, wide = counts
+    return pipes(
+        (legs, (-1.6, 0, 0), 1.0, (0, 0, -1)),
+        (waist, (1.6, 0, 0), 1.0, (0, 0, -1)),
+        (wide, (0, 0, 2.5), 2.2, (0, 0, 1)),
+        **options,
+    )
+
+
+def star(counts):
+    """Pipes whose ends look at each other, around a ring, each of its own width."""
+    turns = 2 * np.pi * np.arange(len(counts)) / len(counts)
+    ways = np.c_[np.cos(turns), np.sin(turns), 0.3 * np.cos(2 * turns)]
+    return pipes(
+        *((n, 2.5 * way, 0.7 + 0.1 * k, way) for k, (n, way) in enumerate(zip(counts, ways, strict=True)))
+    )
+
+
+def edges_of(bm, loop):
+    """Edges of a loop of vertex numbers."""
+    return [bm.edges.get([bm.verts[a], bm.verts[b]]) for a, b in zip(loop, [*loop[1:], loop[0]], strict=True)]
+
+
+def choose(ob, loops):
+    bm = edit(ob)
+    select(ob, [edge for loop in loops for edge in edges_of(bm, loop)])
+
+
+def check_patch(ob, before, loops, **options):
+    """The mesh as it was, and a patch with the loops as its boundary: a sphere with as many holes."""
+    patch = before.check(ob, closed=False, **options)
+    edges = Counter(frozenset(e) for f in patch for e in zip(f, [*f[1:], f[0]], strict=True))
+    own = {frozenset(e) for loop in loops for e in zip(loop, [*loop[1:], loop[0]], strict=True)}
+    assert {edge for edge, uses in edges.items() if uses == 1} == own
+    used = {vertex for face in patch for vertex in face}
+    assert used == {v for loop in loops for v in loop} | set(range(len(before.points), len(ob.data.vertices)))
+    assert len(used) - len(edges) + len(patch) == 2 - len(loops)
+    return patch
+
+
+SHAPES = {
+    "trousers": trousers,  # unequal counts, two of the loops in one plane
+    "equal": lambda: star((20, 20, 20)),
+    "unequal": lambda: star((9, 40, 17, 24)),
+    "five": lambda: star((14, 22, 18, 26, 12)),
+}
+
+
+@pytest.mark.smoke
+@pytest.mark.parametrize("smooth", ["FLAT", "TANGENT", "CURVATURE"])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_several_loops_get_one_patch(shape, smooth, capfd):
+    ob, loops = SHAPES[shape]()
+    before = Before(ob)
+    choose(ob, loops)
+    bridge(smooth=smooth)
+    leave()
+    check_patch(ob, before, loops)
+    told = capfd.readouterr().out
+    assert f"Joined {len(loops)} loops: " in told
+    assert "left out" not in told
+    if smooth == "TANGENT":
+        assert "Warning" not in told
+
+
+def test_a_single_edge_of_each_of_three_rims_is_enough():
+    ob, loops = trousers()
+    before = Before(ob)
+    bm = edit(ob)
+    select(ob, [edges_of(bm, loop)[0] for loop in loops])
+    bridge()
+    leave()
+    check_patch(ob, before, loops)
+
+
+def test_three_loops_with_vertices_selected():
+    ob, loops = trousers()
+    before = Before(ob)
+    bm = edit(ob, mode="VERT")
+    select(ob, [bm.verts[index] for loop in loops for index in loop])
+    bridge()
+    leave()
+    check_patch(ob, before, loops)
+
+
+def test_pairs_of_triangles_between_three_loops_become_quads():
+    ob, loops = trousers()
+    before = Before(ob)
+    choose(ob, loops)
+    bridge(use_quads=True)
+    leave()
+    patch = check_patch(ob, before, loops, triangles=False)
+    quads = sum(len(face) == 4 for face in patch)
+    assert 2 * quads > 0.5 * (2 * quads + sum(len(face) == 3 for face in patch))
+
+
+def test_three_holes_of_a_plate():
+    """All in one plane, and the patch on neither side of it: it runs beside the plate."""
+    ob = without_faces(grid(15), lambda c: not any(abs(c.x - x) < 1.1 and abs(c.y) < 1.1 for x in (-4, 0, 4)))
+    before = Before(ob)
+    bm = edit(ob)
+    inner = [e for e in rim(bm) if all(max(abs(v.co.x), abs(v.co.y)) < 6.9 for v in e.verts)]
+    around = {v.index for e in inner for v in e.verts}
+    select(ob, inner)
+    bridge()
+    leave()
+    patch = before.check(ob, closed=False)
+    assert around <= {vertex for face in patch for vertex in face}
+    assert is_closed_but_for(ob, 60)
+
+
+def test_three_wires():
+    ob, loops = trousers((11, 8, 20))
+    bm = bmesh.new()
+    bm.from_mesh(ob.data)
+    bm.verts.ensure_lookup_table()
+    own = {index for loop in loops for index in loop}
+    bmesh.ops.delete(bm, geom=[v for v in bm.verts if v.index not in own], context="VERTS")
+    for vertices_of in ((0, 11), (11, 19), (19, 39)):
+        bm.verts.ensure_lookup_table()
+        ring = [bm.verts[k] for k in range(*vertices_of)]
+        for a, b in zip(ring, [*ring[1:], ring[0]], strict=True):
+            if bm.edges.get((a, b)) is None:
+                bm.edges.new((a, b))
+    bm.to_mesh(ob.data)
+    bm.free()
+    edit(ob)
+    bpy.ops.mesh.select_all(action="SELECT")
+    bridge()
+    leave()
+    assert is_closed_but_for(ob, 39)
+
+
+def test_data_of_all_sides_goes_on():
+    """A group, a colour and a shape key that only one of three pipes has: more of it where that is nearer."""
+    ob, loops = star((16, 24, 31))
+    n = len(ob.data.vertices)
+    own = range(loops[2][0], n)
+    group = ob.vertex_groups.new(name="third")
+    group.add(list(own), 1.0, "REPLACE")
+    colour = ob.data.color_attributes.new("Colour", "FLOAT_COLOR", "POINT")
+    for index in range(n):
+        colour.data[index].color = (1, 0, 0, 1) if index in own else (0, 0, 1, 1)
+    ob.shape_key_add(name="Basis")
+    key = ob.shape_key_add(name="Up")
+    for index in own:
+        key.data[index].co.z += 2.0
+    choose(ob, loops)
+    bridge()
+    leave()
+    places = vertices(ob.data)
+    far = [np.linalg.norm(places[n:, None] - places[loop], axis=2).min(axis=1) for loop in loops]
+    share = np.minimum(far[0], far[1]) / (np.minimum(far[0], far[1]) + far[2])
+    new = ob.data.vertices[n:]
+    assert len(new) > 20
+    weights = np.array([next((g.weight for g in v.groups), 0.0) for v in new])
+    red = np.array([ob.data.color_attributes["Colour"].data[v.index].color[0] for v in new])
+    moved = np.array([ob.data.shape_keys.key_blocks["Up"].data[v.index].co.z - v.co.z for v in new])
+    for values in (weights, red):
+        assert values.min() >= -1e-6
+        assert values.max() <= 1 + 1e-6
+        assert np.corrcoef(share, values)[0, 1] > 0.9
+    assert np.corrcoef(share, moved)[0, 1] > 0.9
+    assert moved[far[2].argmin()] > 1.4
+    assert abs(moved[np.minimum(far[0], far[1]).argmin()]) < 0.6
+
+
+def test_data_that_is_not_finite_is_left_out_and_told(capfd):
+    ob, loops = trousers()
+    for name in ("Bad", "Good"):
+        ob.data.attributes.new(name, "FLOAT", "POINT")
+    bad, good = ob.data.attributes["Bad"], ob.data.attributes["Good"]
+    for index in range(len(ob.data.vertices)):
+        good.data[index].value = 2.0
+        bad.data[index].value = float("nan") if index == loops[2][5] else 1.0
+    n = len(ob.data.vertices)
+    choose(ob, loops)
+    bridge()
+    leave()
+    assert "1 layer of data not continued: a value at a loop is not finite" in capfd.readouterr().out
+    values = [item.value for item in ob.data.attributes["Good"].data]
+    assert values[n:] == pytest.approx([2.0] * (len(values) - n))
+
+
+def test_uvs_go_on_on_all_sides():
+    ob, loops = trousers()
+    layer = ob.data.uv_layers.new()
+    for loop in ob.data.loops:
+        co = ob.data.vertices[loop.vertex_index].co
+        layer.data[loop.index].uv = (co.x, co.z)
+    n_faces = len(ob.data.polygons)
+    choose(ob, loops)
+    bridge()
+    leave()
+    layer = ob.data.uv_layers.active
+    on_loops = {vertex for loop in loops for vertex in loop}
+    ends = vertices(ob.data)[sorted(on_loops)]
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    for face in list(ob.data.polygons)[n_faces:]:
+        for at in face.loop_indices:
+            u, v = layer.data[at].uv
+            assert low[0] - 1e-4 <= u <= high[0] + 1e-4
+            assert low[2] - 1e-4 <= v <= high[2] + 1e-4
+            vertex = ob.data.loops[at].vertex_index
+            if vertex in on_loops:
+                co = ob.data.vertices[vertex].co
+                assert (u, v) == pytest.approx((co.x, co.z), abs=1e-5)
+
+
+def test_three_loops_are_joined_in_one_undo_step():
+    ob, loops = trousers()
+    name, before = ob.name, (len(ob.data.vertices), len(ob.data.polygons))
+    choose(ob, loops)
+    bpy.ops.ed.undo_push(message="base")
+    assert bpy.ops.mesh.gridmesh_bridge("EXEC_DEFAULT", True) == {"FINISHED"}
+    bpy.ops.ed.undo()
+    leave()
+    mesh = bpy.data.objects[name].data
+    assert (len(mesh.vertices), len(mesh.polygons)) == before
+
+
+def test_two_meshes_at_once_each_for_itself(capfd):
+    """One with three loops, one with two: the second has rows, which the first has not."""
+    one, loops = trousers(name="one")
+    other, pair = pipes((16, (9, 0, 0), 1, (0, 0, -1)), (24, (9, 0, 2), 1, (0, 0, 1)), name="other")
+    before = [Before(one), Before(other)]
+    activate(one, other)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.tool_settings.mesh_select_mode = (False, True, False)
+    bpy.ops.mesh.select_all(action="DESELECT")
+    for ob, own in ((one, loops), (other, pair)):
+        bm = bmesh.from_edit_mesh(ob.data)
+        bm.verts.ensure_lookup_table()
+        select(ob, [edge for loop in own for edge in edges_of(bm, loop)])
+    bridge(rows=3)
+    leave()
+    for ob, own, was in zip((one, other), (loops, pair), before, strict=True):
+        check_patch(ob, was, own)
+    told = capfd.readouterr().out
+    assert "Joined 5 loops: " in told
+    assert "are for two loops" not in told
+
+
+def test_rows_and_twist_of_three_loops_are_told_to_do_nothing(capfd):
+    places = []
+    for options in ({}, {"rows": 3, "twist": 0.5}):
+        ob, loops = trousers()
+        choose(ob, loops)
+        bridge(**options)
+        leave()
+        places.append(vertices(ob.data).tobytes())
+        assert ("Rows and Twist are for two loops" in capfd.readouterr().out) == bool(options)
+    assert places[0] == places[1]
+
+
+def test_faces_that_look_the_other_way_are_told(capfd):
+    """One pipe inside out: a patch between it and the others meets itself."""
+    ob, loops = trousers()
+    bm = edit(ob)
+    bmesh.ops.reverse_faces(bm, faces=[f for f in bm.faces if all(v.index in range(32) for v in f.verts)])
+    bmesh.update_edit_mesh(ob.data)
+    leave()
+    before = Before(ob)
+    choose(ob, loops)
+    bridge()
+    leave()
+    check_patch(ob, before, loops)
+    assert "which way the faces at the loops look" in capfd.readouterr().out
+
+
 # --------------------------------------------------------------------------------------------------- refusals
 
 
@@ -167,8 +468,7 @@ def test_two_wires():
     ("choose", "words"),
     [
         (lambda bm: [], "select the edges"),
-        (lambda bm: rim(bm), "4 loops of open edges selected; select two"),
-        (lambda bm: facing(bm)[:1], "1 loop of open edges selected; select two"),
+        (lambda bm: facing(bm)[:1], "1 loop of open edges selected; select two or more"),
     ],
 )
 def test_other_selections_are_refused_and_change_nothing(choose, words, capfd):
@@ -194,3 +494,44 @@ def test_loops_with_a_common_vertex_are_refused():
     with pytest.raises(RuntimeError):
         bpy.ops.mesh.gridmesh_bridge()
     leave()
+
+
+def test_three_loops_two_of_which_touch_are_refused_and_the_vertex_is_selected():
+    """Two holes of a plate that meet in a vertex, and one apart."""
+    holes = [(-2, -2), (-1, -1), (2, 2)]
+    ob = without_faces(grid(7), lambda c: not any(abs(c.x - x) + abs(c.y - y) < 0.2 for x, y in holes))
+    before = vertices(ob.data).tobytes(), faces_of(ob.data)
+    bm = edit(ob, mode="VERT")
+    # One edge of each hole: whole loops that touch were taken for one selection.
+    middles = [Vector(place) for place in ((-2, -2.5, 0), (-1, -0.5, 0), (2, 2.5, 0))]
+    select(
+        ob, [min(rim(bm), key=lambda e: ((e.verts[0].co + e.verts[1].co) / 2 - at).length) for at in middles]
+    )
+    (shared,) = (v.index for v in bm.verts if sum(e.is_boundary for e in v.link_edges) == 4)
+    words = f"2 of the loops pass through vertex {shared}; split it, or choose loops that are apart"
+    with pytest.raises(RuntimeError, match=words):
+        bpy.ops.mesh.gridmesh_bridge()
+    leave()
+    assert [v.index for v in ob.data.vertices if v.select] == [shared]
+    assert (vertices(ob.data).tobytes(), faces_of(ob.data)) == before
+
+
+def test_three_loops_without_a_patch_are_told_and_stay_selected(monkeypatch):
+    class Refused(ValueError):
+        kind = "no_patch"
+
+    def refuse(*_, **__):
+        raise Refused("no valid mesh was found")
+
+    ob, loops = trousers()
+    before = vertices(ob.data).tobytes(), faces_of(ob.data)
+    choose(ob, loops)
+    module = SimpleNamespace(GridMeshError=Refused, fill_hole=refuse)
+    monkeypatch.setattr(patches, "native", lambda *_: module)
+    with pytest.raises(RuntimeError, match="No triangles between these loops make one patch; subdivide"):
+        bpy.ops.mesh.gridmesh_bridge()
+    leave()
+    assert {edge.index for edge in ob.data.edges if edge.select} == {
+        edge.index for edge in ob.data.edges if any(set(edge.vertices) <= set(loop) for loop in loops)
+    }
+    assert (vertices(ob.data).tobytes(), faces_of(ob.data)) == before

@@ -8,9 +8,12 @@ from drawings import activate, circle, grease_pencil, run_one
 from holes import cylinder, edit
 
 from addon.bodies.operator import OBJECT_OT_gridmesh_from_strokes
+from addon.bridge.operator import MESH_OT_gridmesh_bridge
 from addon.fill.operator import MESH_OT_gridmesh_fill
 from addon.live import ui as live_ui
+from addon.text import telling
 from addon.ui import panels as ui
+from addon.ui import patching
 
 
 class Settings:
@@ -44,7 +47,7 @@ class Layout:
     def separator(self):
         pass
 
-    def label(self, *, text, icon="NONE"):
+    def label(self, *, text, icon="NONE", translate=True):
         check_icon(icon)
         self.drawn.append(text)
 
@@ -171,7 +174,23 @@ def test_redo_panel_of_fill():
     assert "max_edges" in options(MESH_OT_gridmesh_fill, holes="ALL")
 
 
-@pytest.mark.parametrize("cls", [MESH_OT_gridmesh_fill, OBJECT_OT_gridmesh_from_strokes])
+def test_numbers_in_redo_panels_are_translated_as_a_whole(monkeypatch):
+    """Told in halves, the sentence stayed English: "Joined by 9 Reihen"."""
+    monkeypatch.setattr(patching, "told", lambda text, _of: telling.translate(text, "de_DE"))
+    drawn = options(MESH_OT_gridmesh_bridge, result="Joined by 9 rows: 4 triangles, 1 irregular vertex, 3 ms")
+    assert drawn[:2] == ["Verbunden durch 9 Reihen: 4 Dreiecke", "1 unregelmäßiger Punkt, 3 ms"]
+
+
+@pytest.mark.parametrize("has_tube", [True, False])
+def test_redo_panel_of_bridge_says_what_two_loops_alone_have(has_tube):
+    drawn = options(MESH_OT_gridmesh_bridge, has_tube=has_tube)
+    assert {"rows", "smooth", "twist", "use_quads"} <= set(drawn)
+    assert ("Rows and Twist are for two loops" in drawn) != has_tube
+
+
+@pytest.mark.parametrize(
+    "cls", [MESH_OT_gridmesh_fill, MESH_OT_gridmesh_bridge, OBJECT_OT_gridmesh_from_strokes]
+)
 def test_every_option_has_a_name_and_a_description(cls):
     for option in Settings(cls.bl_idname).rna.properties:
         if option.identifier == "rna_type" or option.is_hidden:

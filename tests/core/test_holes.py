@@ -176,6 +176,15 @@ def test_vertex_mode_ignores_edges_that_come_along():
     assert loops(select(faces, selected=[(12, 17)], strict=False)) == [[6, 7, 8, 11, 12, 13]]
 
 
+@pytest.mark.parametrize("strict", [True, False])
+def test_loops_with_a_selected_edge_between_them_are_all_found(strict):
+    """Only the first of them was."""
+    faces = grid(5, 4, [(1, 1), (3, 2)])
+    holes = [cycle(7, 8, 14, 13), cycle(15, 16, 22, 21)]
+    found = select(faces, selected=[*holes[0], (14, 15), *holes[1]], strict=strict)
+    assert loops(found) == [[7, 8, 13, 14], [15, 16, 21, 22]]
+
+
 class TestProblems:
     def only(self, found):
         assert not found.holes
