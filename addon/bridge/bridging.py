@@ -65,43 +65,18 @@ class Job:
             return
         at = self.snapshot
         loops = [hole.vertices for hole in self.loops]
+        options = {"smooth": smooth, "polygons": at.polygons, "poses": at.poses, "progress": progress}
         if self.is_tube:
             made = patches.bridge(
-                at.positions,
-                at.triangles,
-                *loops,
-                smooth=smooth,
-                rows=rows or None,
-                twist=twist,
-                polygons=at.polygons,
-                poses=at.poses,
-                progress=progress,
+                at.positions, at.triangles, *loops, rows=rows or None, twist=twist, **options
             )
         else:
-            made = patches.fill_loops(
-                at.positions,
-                at.triangles,
-                loops,
-                smooth=smooth,
-                polygons=at.polygons,
-                poses=at.poses,
-                progress=progress,
-            )
+            made = patches.fill_loops(at.positions, at.triangles, loops, **options)
         if isinstance(made, str):
             self.problems.append(Problem(made, tuple(vertex for loop in loops for vertex in loop)))
             return
         self.report = made.report
-        self.patches.append(
-            Patch(
-                loops=loops,
-                first=len(at.positions),
-                vertices=made.vertices @ at.to_local.T,
-                faces=made.triangles.tolist(),
-                creases=made.creases,
-                poses=[pose @ at.to_local.T for pose in made.poses],
-                extend=made.extend,
-            )
-        )
+        self.patches.append(Patch.of(made, loops, at))
 
     def name(self, problem: Problem, *, several: bool) -> str:
         """Message of a problem, with the object's name where there are several."""

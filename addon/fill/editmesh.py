@@ -15,6 +15,7 @@ from ..bodies.outlines import LARGEST
 from ..data import attributes
 from . import holes
 from .holes import Found, OpenEdge, Problem
+from .patches import Filled
 
 _FLAT = 1e-9
 """An object scaled to less than this part of its largest scale along some direction has no thickness there."""
@@ -298,6 +299,19 @@ class Patch:
     """(j, 3) new vertices for every shape key."""
     extend: attributes.Extend
     """From values at the vertices of the loops, one loop after the other, to values at the new ones."""
+
+    @classmethod
+    def of(cls, made: Filled, loops: Sequence[Sequence[int]], at: Snapshot) -> Patch:
+        """Take what was made for loops of a mesh to the object's space."""
+        return cls(
+            loops=loops,
+            first=len(at.positions),
+            vertices=made.vertices @ at.to_local.T,
+            faces=[*made.quads.tolist(), *made.triangles.tolist()],
+            creases=made.creases,
+            poses=[pose @ at.to_local.T for pose in made.poses],
+            extend=made.extend,
+        )
 
 
 @dataclass

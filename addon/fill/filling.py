@@ -76,17 +76,7 @@ class Job:
                 edges = tuple(zip(loop, loop[1:] + loop[:1], strict=True))
                 self.found.problems.append(Problem(fill, tuple(loop), edges))
                 continue
-            self.patches.append(
-                Patch(
-                    loops=[loop],
-                    first=len(at.positions),
-                    vertices=fill.vertices @ at.to_local.T,
-                    faces=[*fill.quads.tolist(), *fill.triangles.tolist()],
-                    creases=fill.creases,
-                    poses=[pose @ at.to_local.T for pose in fill.poses],
-                    extend=fill.extend,
-                )
-            )
+            self.patches.append(Patch.of(fill, [loop], at))
             self.reports.append(fill.report)
 
     def name(self, problem: Problem, several: bool) -> str:

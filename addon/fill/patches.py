@@ -156,23 +156,15 @@ def bridge(
     rows : of triangles, None for as many as suit. twist : radians from the best fit. The others are as of `fill`. Raises
     NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
     """
+    options = {"smooth": smooth, "rows": rows, "twist": twist, "polygons": polygons}
+    ends = [np.asarray(it, np.int32) for it in (loop, other)]
     gridmesh = native("bridge")
-    try:
-        with cancelling(gridmesh):
-            made = gridmesh.bridge(
-                vertices,
-                triangles,
-                np.asarray(loop, np.int32),
-                np.asarray(other, np.int32),
-                smooth=smooth,
-                rows=rows,
-                twist=twist,
-                polygons=polygons,
-                progress=progress,
-            )
-            return _filled(gridmesh, made, vertices, poses, progress)
-    except gridmesh.GridMeshError as error:
-        return str(error)
+    return _made(
+        lambda **more: gridmesh.bridge(vertices, triangles, *ends, **options, **more),
+        vertices,
+        poses,
+        progress,
+    )
 
 
 def fill_loops(
@@ -190,20 +182,32 @@ def fill_loops(
     loops : vertex indices in order, of each loop. `extend` of the patch takes values one loop after the other. The others are
     as of `fill`. Raises NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
     """
+    options = {"smooth": smooth, "polygons": polygons}
+    indices = [np.asarray(loop, np.int32) for loop in loops]
     gridmesh = native("fill_hole")
+    return _made(
+        lambda **more: gridmesh.fill_hole(vertices, triangles, indices, **options, **more),
+        vertices,
+        poses,
+        progress,
+        no_patch=NO_PATCH,
+    )
+
+
+def _made(
+    make: Callable[..., Any],
+    vertices: np.ndarray,
+    poses: Sequence[np.ndarray],
+    progress: Progress | None,
+    no_patch: str = "",
+) -> Filled | str:
+    """The patch that a call of the module makes, or the reason why there is none. no_patch : said where the module finds none."""
+    gridmesh = native()
     try:
         with cancelling(gridmesh):
-            made = gridmesh.fill_hole(
-                vertices,
-                triangles,
-                [np.asarray(loop, np.int32) for loop in loops],
-                smooth=smooth,
-                polygons=polygons,
-                progress=progress,
-            )
-            return _filled(gridmesh, made, vertices, poses, progress)
+            return _filled(gridmesh, make(progress=progress), vertices, poses, progress)
     except gridmesh.GridMeshError as error:
-        return NO_PATCH if error.kind == "no_patch" else str(error)
+        return no_patch if no_patch and error.kind == "no_patch" else str(error)
 
 
 def _filled(

@@ -218,25 +218,7 @@ fn rings(local: &Local, triangles: &[u32], count: usize) -> Vec<(u32, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A sheet of squares in two triangles each, with the border fixed.
-    fn sheet(n: u32) -> Local {
-        let inside = |i: u32, j: u32| i > 0 && j > 0 && i < n && j < n;
-        let all = || (0..=n).flat_map(move |i| (0..=n).map(move |j| (i, j)));
-        let order = all().filter(|&(i, j)| !inside(i, j)).chain(all().filter(|&(i, j)| inside(i, j)));
-        let order = order.collect::<Vec<_>>();
-        let number = |p: (u32, u32)| order.iter().position(|&q| q == p).unwrap() as u32;
-        let mut triangles = vec![];
-        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-            let [a, b, c, d] = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(number);
-            triangles.extend([[a, b, c], [a, c, d]]);
-        }
-        let positions = order.iter().map(|&(i, j)| DVec3::new(f64::from(i), f64::from(j), 0.0)).collect();
-        let sides = vec![0; triangles.len()];
-        let mut local = Local::new(positions, triangles, sides, 4 * n as usize);
-        local.sizes.fill(1.0);
-        local
-    }
+    use crate::fill::even::local::tests::sheet;
 
     #[test]
     fn a_fold_is_drawn_flat() {
