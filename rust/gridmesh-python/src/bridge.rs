@@ -3,7 +3,8 @@
 use gridmesh::fill::BridgeOptions;
 use pyo3::prelude::*;
 
-use crate::fill::{Fill, options};
+use crate::fill::options;
+use crate::filled::Fill;
 use crate::input::Argument;
 use crate::mesh::{Mesh, indices, loop_argument};
 use crate::watch::Watch;

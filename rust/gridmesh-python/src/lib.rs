@@ -1,7 +1,7 @@
 //! The Python module `gridmesh._native`: conversions only, no algorithm.
 //!
 //! `input` and `options` read what Python hands over, `watch` carries progress and signals, `process` finds threads after a fork, `arrays`
-//! and `reports` hand results back, `patch`, `surface`, `fill`, `cut`, `piece` and `join` are the classes, `bridge`, `sketch`, `body` and `map` make them
+//! and `reports` hand results back, `patch`, `surface`, `filled`, `cut`, `piece` and `join` are the classes, `bridge`, `sketch`, `body` and `map` make them
 //! of drawings, `batch` is the parallel map, `combine` unites drawings, `thickness` measures them, `picture`
 //! traces them, `decode` reads their files, `harmonic` carries values on, `bones` weighs bones.
 #![forbid(unsafe_code)]
@@ -16,6 +16,7 @@ mod cut;
 mod decode;
 mod error;
 mod fill;
+mod filled;
 mod harmonic;
 mod input;
 mod join;
@@ -61,7 +62,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(picture::trace_image, module)?)?;
     module.add_function(wrap_pyfunction!(decode::decode_image, module)?)?;
     module.add_function(wrap_pyfunction!(bones::bone_weights, module)?)?;
-    module.add_class::<fill::Fill>()?;
+    module.add_class::<filled::Fill>()?;
     module.add_function(wrap_pyfunction!(fill::fill_hole, module)?)?;
     module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;
     module.add_function(wrap_pyfunction!(bridge::bridge, module)?)?;
@@ -76,7 +77,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(join::_joined, module)?)?;
     module.add_function(wrap_pyfunction!(patch::_patch, module)?)?;
     module.add_function(wrap_pyfunction!(surface::_surface, module)?)?;
-    module.add_function(wrap_pyfunction!(fill::_fill, module)?)?;
+    module.add_function(wrap_pyfunction!(filled::_fill, module)?)?;
     module.add_function(wrap_pyfunction!(regrid::_regrid, module)?)?;
     module.add_function(wrap_pyfunction!(cut::_cut, module)?)?;
     module.add_function(wrap_pyfunction!(piece::_piece, module)?)?;

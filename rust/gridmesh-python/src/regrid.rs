@@ -5,7 +5,8 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays;
-use crate::fill::{Fill, options, shape};
+use crate::fill::{options, shape};
+use crate::filled::Fill;
 use crate::input::Argument;
 use crate::mesh::{Mesh, indices};
 use crate::watch::Watch;
