@@ -313,6 +313,14 @@ def test_the_angle_is_checked():
 # ---------------------------------------------------------------- campaigns, a short run of each
 
 
+def test_a_loop_as_thin_as_a_needle_leaves_no_vertex_without_a_face():
+    """A point of the lattice lay inside by its distance from the walls, outside by the triangulation."""
+    case = fills.run(3832, 12_001, "triangles")
+    assert case.outcomes == ["filled"]
+    assert not case.wrong
+
+
+
 @pytest.mark.parametrize("cells", ["triangles", "quads"])
 def test_random_holes(cells):
     cases = fills.campaign(150, seed=11, cells=cells)

@@ -78,6 +78,13 @@ def test_a_spiral_of_many_turns_is_told_a_number_that_works():
     check_patch(gridmesh.mesh_sketch(points, triangles=least), [points])
 
 
+def test_a_hole_is_not_flattened_onto_one_of_its_sides():
+    """All vertices of a hole lay on a straight side of it: apart from each other in f64, on one line in f32."""
+    case = drawings.case(12_004_167)
+    patch = gridmesh.mesh_sketch(case.outline, case.holes, **case.options)
+    check_patch(patch, [case.outline, *case.holes])
+
+
 @pytest.mark.parametrize("seed", [1008472, 1009127])
 def test_a_refusal_takes_a_bounded_amount_of_work(seed):
     """Work, as the number of questions whether to go on: the shifts of the lattice, and the numbers that are tried, end."""

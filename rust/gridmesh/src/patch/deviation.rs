@@ -118,8 +118,14 @@ pub(crate) fn deviation(
     (worst, strays)
 }
 
-/// The boundary edges that cross others, each with the farthest drawn point beside it.
-pub(crate) fn crossings(beside: &[Vec<Beside>], vertices: &[DVec2], arcs: &[Vec<f64>]) -> Vec<Stray> {
+/// How many boundary edges meet others elsewhere than in a shared end (exact), also after rounding to `f32` at
+/// `origin`, and the farthest drawn point beside each that has one.
+pub(crate) fn crossings(
+    beside: &[Vec<Beside>],
+    vertices: &[DVec2],
+    arcs: &[Vec<f64>],
+    origin: DVec2,
+) -> (usize, Vec<Stray>) {
     let mut start = 0;
     let loops = arcs.iter().map(|arcs| {
         start += arcs.len() as u32;
@@ -133,7 +139,13 @@ pub(crate) fn crossings(beside: &[Vec<Beside>], vertices: &[DVec2], arcs: &[Vec<
         let Beside { point, arc, squared, .. } = *stretch.max_by(|a, b| a.squared.total_cmp(&b.squared))?;
         Some(Stray { contour, edge, arc, point, distance: squared.sqrt() })
     };
-    crossing_edges(vertices, &loops).into_iter().filter_map(stray).collect()
+    let rim = loops.last().map_or(0, |last| last.end as usize);
+    let rounded: Vec<DVec2> = vertices[..rim].iter().map(|&p| (p - origin).as_vec2().as_dvec2()).collect();
+    let mut crossing = crossing_edges(&vertices[..rim], &loops);
+    crossing.extend(crossing_edges(&rounded, &loops));
+    crossing.sort_unstable();
+    crossing.dedup();
+    (crossing.len(), crossing.into_iter().filter_map(stray).collect())
 }
 
 /// All boundary edges, to be searched for the nearest.

@@ -225,7 +225,10 @@ where
                     }
                 }
             }
-            let crossing = if options.relax { crossings(&beside, &vertices, &arcs) } else { Vec::new() };
+            let (crossed, crossing) = match options.relax {
+                true => crossings(&beside, &vertices, &arcs, lattice.origin),
+                false => (0, Vec::new()),
+            };
             let n_corners = found.iter().map(Vec::len).sum();
             let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
             let near = farthest.min(CLOSE * h);
@@ -247,7 +250,7 @@ where
                 max_deviation: farthest / h,
                 strayed: strayed / h,
                 bridged_inlets,
-                crossings: crossing.len(),
+                crossings: crossed,
             };
             let first = valid.is_none();
             if valid.as_ref().is_none_or(|best| better(&placed, best)) {

@@ -42,6 +42,7 @@ pub(in crate::fill) fn graded(
         }
         triangles = triangulate(&positions, n, progress)?;
     }
+    drop_unused(&mut positions, n, &mut triangles);
     let mut settled = positions.clone();
     for _ in 0..3 {
         improve_valences(&settled, &mut triangles, wanted, taken, progress)?;
@@ -53,6 +54,27 @@ pub(in crate::fill) fn graded(
         }
     }
     Ok((settled.split_off(n), triangles))
+}
+
+/// Takes away vertices behind the first `n` that no triangle has: in a polygon that is hardly wider than the precision
+/// of its numbers, points of the lattice or midpoints may lie outside or upon others.
+fn drop_unused(positions: &mut Vec<DVec2>, n: usize, triangles: &mut [[u32; 3]]) {
+    let mut is_used = vec![false; positions.len()];
+    is_used[..n].fill(true);
+    for &v in triangles.iter().flatten() {
+        is_used[v as usize] = true;
+    }
+    let mut number = Vec::with_capacity(positions.len());
+    let mut next = 0;
+    for &used in &is_used {
+        number.push(next);
+        next += u32::from(used);
+    }
+    for v in triangles.iter_mut().flatten() {
+        *v = number[*v as usize];
+    }
+    let mut used = is_used.into_iter();
+    positions.retain(|_| used.next() == Some(true));
 }
 
 /// Edges across the patch between loop vertices that are taken, each once, in order.

@@ -144,7 +144,10 @@ impl Both<'_> {
         }
         let found =
             pockets(&beside, &vertices, &mut Fans::new(vertices.len(), &patch.corners()), &arcs, INLET * h);
-        let crossing = if options.relax { crossings(&beside, &vertices, &arcs).len() } else { 0 };
+        let crossed = match options.relax {
+            true => crossings(&beside, &vertices, &arcs, patch.lattice.origin).0,
+            false => 0,
+        };
         let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
         let triangles = patch.triangles.clone();
         Some(Placed {
@@ -160,7 +163,7 @@ impl Both<'_> {
             max_deviation: farthest / h,
             strayed: self.placed.strayed.min(farthest / h),
             bridged_inlets: found.occupied.len(),
-            crossings: crossing,
+            crossings: crossed,
             ..self.placed.clone()
         })
     }
