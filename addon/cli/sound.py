@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+import mmap
 import re
 import struct
 from pathlib import Path
 
-from . import files
+from . import files, ply
 
 _BLOCK = 1 << 20
+_CUT_OFF = "its last line has no end: it may be cut off"
 _FACE = re.compile(rb"[ \t]*f[ \t]")
 
 
@@ -24,8 +26,10 @@ def require_whole(path: Path) -> list[str]:
     suffix = path.suffix.lower()
     if suffix == ".stl":
         return _of_stl(path)
+    if suffix == ".ply":
+        return _of_ply(path)
     if suffix == ".obj" and _end(path, 1) not in (b"", b"\n", b"\r"):
-        return ["its last line has no end: it may be cut off"]
+        return [_CUT_OFF]
     return []
 
 
@@ -59,6 +63,19 @@ def _of_stl(path: Path) -> list[str]:
         )
     if b"endsolid" not in _end(path, 4096).lower():
         return ["it has no 'endsolid': it may be cut off"]
+    return []
+
+
+def _of_ply(path: Path) -> list[str]:
+    size = path.stat().st_size
+    if not size:
+        return []  # the importer says so
+    with files.opened(path) as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        if ply.is_ascii(data) and data[-1:] not in (b"\n", b"\r"):
+            return [_CUT_OFF]
+        wanted = ply.binary_size(data)
+    if wanted is not None and wanted > size:
+        raise files.FileError("load", "it is damaged: it ends before what its header says")
     return []
 
 

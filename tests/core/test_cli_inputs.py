@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from addon.cli import files, inputs, sound
+from addon.cli import files, inputs, ply, sound
 from addon.cli.telling import Teller
 
 
@@ -38,12 +38,69 @@ def test_an_stl_that_is_not_as_long_as_it_says_is_an_error(tmp_path, data):
         ("a.obj", b"v 0 0 0\nf 1 2 3\n", True),
         ("a.obj", b"v 0 0 0\nf 1 2", False),
         ("a.ply", b"ply", True),
+        ("a.ply", b"", True),
+        ("a.ply", b"ply\ncomment a\nformat ascii 1.0\nelement vertex 1\nend_header\n10 20 30\n", True),
+        ("a.ply", b"ply\r\nformat ascii 1.0\r\nelement vertex 1\r\nend_header\r\n10 20 3", False),
     ],
 )
 def test_a_cut_off_text_is_a_warning(tmp_path, name, data, whole):
     path = tmp_path / name
     path.write_bytes(data)
     assert bool(sound.require_whole(path)) != whole
+
+
+def binary_ply(order, polygons, count=None):
+    """Four vertices and these polygons, each with a color."""
+    byte = {"<": "little", ">": "big"}[order]
+    head = (
+        f"ply\nformat binary_{byte}_endian 1.0\ncomment format ascii 1.0\nelement vertex 4\n"
+        "property float x\nproperty double y\nproperty float32 z\n"
+        f"element face {len(polygons) if count is None else count}\n"
+        "property list uchar int vertex_indices\nproperty uchar red\nend_header\n"
+    )
+    if order == "<":
+        head = head.replace("property uchar red\n", "")
+    rows = [
+        struct.pack(f"{order}B{len(one)}i", len(one), *one) + (b"\0" if order == ">" else b"")
+        for one in polygons
+    ]
+    return head.encode(), bytes(4 * 16) + b"".join(rows)
+
+
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("polygons", [[(0, 1, 2)] * 5, [(0, 1, 2), (0, 1, 2), (0, 1, 2, 3), (), (2, 1, 0)]])
+def test_a_binary_ply_that_is_cut_off_anywhere_is_an_error(tmp_path, order, polygons):
+    """Without the last bytes of an index it was read as one that has zeros there."""
+    path = tmp_path / "a.ply"
+    head, rows = binary_ply(order, polygons)
+    for more in (b"", b"x"):
+        path.write_bytes(head + rows + more)
+        assert sound.require_whole(path) == []
+        assert ply.binary_size(head + rows + more) == len(head + rows)
+    for end in range(len(rows)):
+        path.write_bytes(head + rows[:end])
+        with pytest.raises(files.FileError, match="ends before") as error:
+            sound.require_whole(path)
+        assert error.value.kind == "load"
+
+
+@pytest.mark.parametrize("count", [6, 2**31, 10**30])
+def test_a_ply_says_too_much_of_itself(tmp_path, count):
+    path = tmp_path / "a.ply"
+    path.write_bytes(b"".join(binary_ply("<", [(0, 1, 2)] * 5, count)))
+    with pytest.raises(files.FileError, match="ends before"):
+        sound.require_whole(path)
+
+
+def test_a_header_that_is_not_understood_is_left_to_the_importer():
+    head, rows = binary_ply("<", [(0, 1, 2)] * 5)
+    for old, new in [
+        (b"binary_little", b"middle"),
+        (b"double", b"half"),
+        (b"face 5", b"face -5"),
+        (b"end_", b""),
+    ]:
+        assert ply.binary_size(head.replace(old, new) + rows) is None
 
 
 def test_faces_that_were_left_out_are_counted(tmp_path):

@@ -320,7 +320,6 @@ def test_a_loop_as_thin_as_a_needle_leaves_no_vertex_without_a_face():
     assert not case.wrong
 
 
-
 @pytest.mark.parametrize("cells", ["triangles", "quads"])
 def test_random_holes(cells):
     cases = fills.campaign(150, seed=11, cells=cells)
