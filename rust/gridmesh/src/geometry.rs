@@ -2,6 +2,7 @@
 
 pub mod bones;
 pub(crate) mod cholesky;
+pub(crate) mod corner;
 pub(crate) mod disjoint;
 pub mod embed;
 pub(crate) mod facet;
@@ -9,5 +10,6 @@ pub mod harmonic;
 pub(crate) mod laplace;
 pub(crate) mod march;
 pub mod metrics;
+pub(crate) mod quadratic;
 pub(crate) mod segments;
 pub(crate) mod topology;

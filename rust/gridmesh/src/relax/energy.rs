@@ -11,6 +11,7 @@ use std::ops::Mul;
 use glam::DVec2;
 use wide::f64x2;
 
+use crate::geometry::quadratic::Quadratic;
 use crate::path::placement::ROW_HEIGHT;
 
 /// Second derivative of `stretch` in one vertex, times the identity.
@@ -138,10 +139,7 @@ pub(super) fn stretch(a: DVec2, b: DVec2) -> f64 {
 #[derive(Clone, Copy)]
 pub struct Local {
     pub value: f64,
-    pub gradient: DVec2,
-    pub xx: f64,
-    pub xy: f64,
-    pub yy: f64,
+    pub model: Quadratic,
     /// Least `det`.
     pub det: f64,
     /// Greatest squared length of an opposite edge.
@@ -208,35 +206,14 @@ pub(super) fn local<E: Energy>(energy: &E, x: DVec2, ring: &[u32], positions: &[
     let [edge, other_edge] = most.to_array();
     Local {
         value: value.reduce_add(),
-        gradient: DVec2::new(gx.reduce_add(), gy.reduce_add()),
-        xx: xx.reduce_add(),
-        xy: xy.reduce_add(),
-        yy: yy.reduce_add(),
+        model: Quadratic {
+            gradient: DVec2::new(gx.reduce_add(), gy.reduce_add()),
+            xx: xx.reduce_add(),
+            xy: xy.reduce_add(),
+            yy: yy.reduce_add(),
+        },
         det: det.min(other_det),
         edge: edge.max(other_edge),
-    }
-}
-
-impl Local {
-    /// The Newton step; the Hessian is shifted to be positive where it is not.
-    pub fn newton(&self) -> DVec2 {
-        let (mut xx, mut yy) = (self.xx, self.yy);
-        let half = 0.5 * (xx + yy);
-        let radius = (0.25 * (xx - yy) * (xx - yy) + self.xy * self.xy).sqrt();
-        let floor = 1e-3 * (half.abs() + radius);
-        if half - radius < floor {
-            let shift = floor - (half - radius);
-            xx += shift;
-            yy += shift;
-        }
-        let inverse = 1.0 / (xx * yy - self.xy * self.xy);
-        let g = self.gradient;
-        DVec2::new(self.xy * g.y - yy * g.x, self.xy * g.x - xx * g.y) * inverse
-    }
-
-    /// Second derivative along `t`.
-    pub fn along(&self, t: DVec2) -> f64 {
-        t.x * t.x * self.xx + 2.0 * t.x * t.y * self.xy + t.y * t.y * self.yy
     }
 }
 
@@ -266,11 +243,11 @@ pub(super) mod tests {
         let (py, my) = (at(x + DVec2::Y * h), at(x - DVec2::Y * h));
         let close =
             |a: f64, b: f64| assert!((a - b).abs() < tolerance * (1.0 + a.abs().max(b.abs())), "{a} {b}");
-        close(l.gradient.x, (px.value - mx.value) / (2.0 * h));
-        close(l.gradient.y, (py.value - my.value) / (2.0 * h));
-        close(l.xx, (px.gradient.x - mx.gradient.x) / (2.0 * h));
-        close(l.xy, (py.gradient.x - my.gradient.x) / (2.0 * h));
-        close(l.yy, (py.gradient.y - my.gradient.y) / (2.0 * h));
+        close(l.model.gradient.x, (px.value - mx.value) / (2.0 * h));
+        close(l.model.gradient.y, (py.value - my.value) / (2.0 * h));
+        close(l.model.xx, (px.model.gradient.x - mx.model.gradient.x) / (2.0 * h));
+        close(l.model.xy, (py.model.gradient.x - my.model.gradient.x) / (2.0 * h));
+        close(l.model.yy, (py.model.gradient.y - my.model.gradient.y) / (2.0 * h));
     }
 
     fn derivatives_match_differences<E: Energy>(energy: &E, x: DVec2) {
@@ -297,6 +274,6 @@ pub(super) mod tests {
         let ring = [0, 1, 2, 3, 4, 5, 0];
         let l = local(&Power::<2>, DVec2::ZERO, &ring, &hexagon);
         assert!((l.value - 6.0).abs() < 1e-12);
-        assert!(l.gradient.length() < 1e-12);
+        assert!(l.model.gradient.length() < 1e-12);
     }
 }

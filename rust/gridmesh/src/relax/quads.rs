@@ -9,6 +9,7 @@ use wide::f64x2;
 
 use super::band::{Band, Stars};
 use super::energy::{Energy, Local};
+use crate::geometry::quadratic::Quadratic;
 
 impl Stars for Band<4> {
     fn corners<const N: usize>(cells: &[[u32; N]]) -> Vec<[u32; 3]> {
@@ -190,10 +191,12 @@ impl Sum {
         let [edge, other_edge] = self.most.to_array();
         Local {
             value: self.value.reduce_add(),
-            gradient: DVec2::new(self.gradient[0].reduce_add(), self.gradient[1].reduce_add()),
-            xx,
-            xy,
-            yy,
+            model: Quadratic {
+                gradient: DVec2::new(self.gradient[0].reduce_add(), self.gradient[1].reduce_add()),
+                xx,
+                xy,
+                yy,
+            },
             det: det.min(other_det),
             edge: edge.max(other_edge),
         }
@@ -247,7 +250,7 @@ mod tests {
         }
         let l = band.local(&Power::<2>, 8, DVec2::ZERO);
         assert!((l.value - 12.0).abs() < 1e-12);
-        assert!(l.gradient.length() < 1e-12);
+        assert!(l.model.gradient.length() < 1e-12);
     }
 
     #[test]

@@ -119,7 +119,7 @@ where
         let band = &mut self.band;
         let x = band.positions[v];
         let here = band.local(energy, v, x);
-        let mut step = here.newton();
+        let mut step = here.model.descent();
         let mut length = step.length();
         if !length.is_finite() || length < 1e-9 {
             return 0.0;
@@ -130,7 +130,7 @@ where
         }
         // A barrier energy is convex in one vertex: far from the barrier and with little to gain
         // the full step is safe. Everywhere else the energy must fall.
-        let gain = -here.gradient.dot(step);
+        let gain = -here.model.gradient.dot(step);
         let far = length * here.edge.sqrt() < 0.4 * here.det;
         if !(E::BARRIER && far && gain < 0.02 * here.value) {
             let mut tries = 0;
@@ -156,8 +156,8 @@ where
         let (band, slide) = (&mut self.band, &mut self.slide);
         let here = band.local(energy, v, band.positions[v]);
         let tangent = (slide.point(v, s + STRETCH) - slide.point(v, s - STRETCH)) * (0.5 / STRETCH);
-        let gradient = here.gradient.dot(tangent) + 2.0 * self.stiffness * (s - home);
-        let curvature = here.along(tangent) + 2.0 * self.stiffness;
+        let gradient = here.model.gradient.dot(tangent) + 2.0 * self.stiffness * (s - home);
+        let curvature = here.model.along(tangent) + 2.0 * self.stiffness;
         let newton = -gradient / curvature;
         let newton = if newton.is_finite() { newton } else { -gradient.signum() };
         let mut step = newton.clamp(-0.3, 0.3).clamp(-back, ahead);

@@ -6,10 +6,9 @@ use glam::{DVec2, DVec3};
 
 use crate::body::inflate::front::{Front, Guide, project};
 use crate::error::Result;
+use crate::geometry::corner::{Corner, Ideal};
+use crate::geometry::quadratic::Quadratic;
 use crate::progress::Progress;
-
-/// Sum of the squared sides over twice the area of an equilateral triangle.
-const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
 
 /// Cotangent of the angle, 30 degrees, below which [`sharpen`] acts.
 const SHARP: f64 = 1.732_050_807_568_877_2;
@@ -44,49 +43,28 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
         let (e, f) = normal.any_orthonormal_pair();
         let here = front.position(v);
         let fan = guide.around.fan(v);
-        let mut slope = DVec2::ZERO;
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        let mut model = Quadratic::default();
         let mut reach = 0.0;
         for &[i, j] in fan {
             let (a, b) = (front.position(i as usize) - here, front.position(j as usize) - here);
             reach += a.length();
-            let mut sides = a.length_squared() + b.length_squared() + (b - a).length_squared();
-            let cross = a.cross(b);
-            let mut area = cross.length();
-            let mut facing = cross / area;
-            if cross.dot(normal) <= 0.0 {
-                // Folded: seen in the tangent plane, where it has to unfold.
-                facing = normal;
-                area = cross.dot(normal);
-            }
-            area = area.max(0.02 * sides);
-            let widen = (a - b).cross(facing);
-            let mut ds = -2.0 * (a + b);
-            let mut extra = DVec2::ZERO;
+            let mut corner = Corner::new(Ideal::Equilateral, a, b, normal);
+            let mut flat = Quadratic::default();
             if (i as usize) < front.first && (j as usize) < front.first {
                 let flatter = 0.5 * (guide.flatness[i as usize] + guide.flatness[j as usize]);
-                let m = widen.normalize_or_zero();
+                let m = corner.widening.normalize_or_zero();
                 let height = a.dot(m);
-                sides += flatter * height * height;
-                ds -= 2.0 * flatter * height * m;
-                extra = (2.0 * flatter).sqrt() * DVec2::new(m.dot(e), m.dot(f));
+                corner.sides += flatter * height * height;
+                corner.lengthening -= 2.0 * flatter * height * m;
+                let m = DVec2::new(m.dot(e), m.dot(f));
+                let k = 2.0 * flatter / corner.area;
+                flat = Quadratic { xx: k * m.x * m.x, xy: k * m.x * m.y, yy: k * m.y * m.y, ..flat };
             }
-            let ds = DVec2::new(ds.dot(e), ds.dot(f));
-            let da = DVec2::new(widen.dot(e), widen.dot(f));
-            let badness = sides / area / EQUILATERAL;
-            let weight = badness * badness * badness;
-            slope += weight * (ds - da * (sides / area)) / area;
-            let k = weight / area;
-            let (m, n) = (1.0 / area, 2.0 * sides / (area * area));
-            xx += k * (4.0 + extra.x * extra.x - 2.0 * m * ds.x * da.x + n * da.x * da.x);
-            yy += k * (4.0 + extra.y * extra.y - 2.0 * m * ds.y * da.y + n * da.y * da.y);
-            xy += k * (extra.x * extra.y - m * (ds.x * da.y + ds.y * da.x) + n * da.x * da.y);
+            let weight = corner.badness().powi(3);
+            model += corner.model(weight, [e, f]);
+            model += flat.scaled(weight);
         }
-        let determinant = xx * yy - xy * xy;
-        if determinant.is_nan() || determinant <= 0.0 {
-            continue;
-        }
-        let u = -DVec2::new(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
+        let Some(u) = model.minimum() else { continue };
         let u = u.clamp_length_max(0.5 * reach / fan.len() as f64);
         let Some((target, _)) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else {
             continue;

@@ -8,8 +8,10 @@
 
 use glam::DVec2;
 
-use super::stars::{Ideal, Stars};
+use super::stars::Stars;
 use crate::error::Result;
+use crate::geometry::corner::Ideal;
+use crate::geometry::quadratic::Quadratic;
 use crate::progress::Progress;
 
 /// Vertices between two questions whether to go on.
@@ -255,8 +257,8 @@ fn distortion(x: DVec2, stars: &impl Stars, i: usize, positions: &[DVec2]) -> f6
 
 /// One damped Newton step for `distortion`; also the mean squared length of the opposite edges.
 fn evened(x: DVec2, stars: &impl Stars, i: usize, positions: &[DVec2]) -> (DVec2, f64) {
-    let (mut value, mut gradient) = (0.0, DVec2::ZERO);
-    let (mut xx, mut xy, mut yy, mut size, mut count) = (0.0, 0.0, 0.0, 0.0, 0usize);
+    let (mut value, mut model) = (0.0, Quadratic::default());
+    let (mut size, mut count) = (0.0, 0usize);
     for (u, w, ideal) in stars.triangles(i) {
         let (a, b) = (positions[u as usize] - x, positions[w as usize] - x);
         let edge = b - a;
@@ -272,19 +274,17 @@ fn evened(x: DVec2, stars: &impl Stars, i: usize, positions: &[DVec2]) -> (DVec2
         let mxy = -un * (up.x * n.y + up.y * n.x) + nn * n.x * n.y;
         let myy = identity - 2.0 * un * up.y * n.y + nn * n.y * n.y;
         value += m * m;
-        gradient += 2.0 * m * g;
-        xx += 2.0 * (g.x * g.x + m * mxx);
-        xy += 2.0 * (g.x * g.y + m * mxy);
-        yy += 2.0 * (g.y * g.y + m * myy);
+        model += Quadratic {
+            gradient: 2.0 * m * g,
+            xx: 2.0 * (g.x * g.x + m * mxx),
+            xy: 2.0 * (g.x * g.y + m * mxy),
+            yy: 2.0 * (g.y * g.y + m * myy),
+        };
         size += edge.length_squared();
         count += 1;
     }
     size /= count as f64;
-    let inverse = 1.0 / (xx * yy - xy * xy);
-    let mut step = DVec2::new(xy * gradient.y - yy * gradient.x, xy * gradient.x - xx * gradient.y) * inverse;
-    if !step.is_finite() {
-        return (x, size);
-    }
+    let Some(mut step) = model.minimum() else { return (x, size) };
     let length = step.length_squared();
     if length > 0.25 * size {
         step *= (0.25 * size / length).sqrt();
@@ -320,8 +320,7 @@ fn untangled(x: DVec2, stars: &impl Stars, i: usize, positions: &[DVec2]) -> DVe
         }
         sum
     };
-    let (mut value, mut gradient) = (0.0, DVec2::ZERO);
-    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    let (mut value, mut model) = (0.0, Quadratic::default());
     for (u, w, ideal) in stars.triangles(i) {
         let (a, b) = (at(u) - x, at(w) - x);
         let d = ideal.det(a, b);
@@ -332,19 +331,17 @@ fn untangled(x: DVec2, stars: &impl Stars, i: usize, positions: &[DVec2]) -> DVe
         let n = (b - a).perp() / ideal.height();
         let (up, curved) = ideal.slope(a, b);
         value += u / chi;
-        gradient += (up - u * slope / chi * n) / chi;
         // The positive part of the second derivative.
         let identity = curved / chi;
         let along = u * slope * slope / (chi * chi * chi);
-        xx += identity + along * n.x * n.x;
-        xy += along * n.x * n.y;
-        yy += identity + along * n.y * n.y;
+        model += Quadratic {
+            gradient: (up - u * slope / chi * n) / chi,
+            xx: identity + along * n.x * n.x,
+            xy: along * n.x * n.y,
+            yy: identity + along * n.y * n.y,
+        };
     }
-    let inverse = 1.0 / (xx * yy - xy * xy);
-    let mut step = DVec2::new(xy * gradient.y - yy * gradient.x, xy * gradient.x - xx * gradient.y) * inverse;
-    if !step.is_finite() {
-        return x;
-    }
+    let Some(mut step) = model.minimum() else { return x };
     for _ in 0..6 {
         if energy(x + step) < value {
             return x + step;

@@ -1,54 +1,6 @@
 //! The triangles around each interior vertex of a patch that are to be positive, and near to an ideal each.
 
-use glam::DVec2;
-
-use crate::path::placement::ROW_HEIGHT;
-
-/// What a triangle should look like, of which one vertex moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::fill) enum Ideal {
-    /// Equilateral.
-    Equilateral,
-    /// With a right angle between equal edges at the vertex that moves: the corner of a quad.
-    Own,
-    /// The same at the vertex that follows it.
-    Next,
-    /// The same at the vertex before it.
-    Last,
-}
-
-impl Ideal {
-    /// Twice the area over that of the ideal with edges of one; `a` and `b` lead from the vertex that moves to
-    /// the others.
-    pub fn det(self, a: DVec2, b: DVec2) -> f64 {
-        a.perp_dot(b) / self.height()
-    }
-
-    pub fn height(self) -> f64 {
-        if self == Ideal::Equilateral { ROW_HEIGHT } else { 1.0 }
-    }
-
-    /// Half of |J|^2, J the map from the ideal: equals `det` if it is one.
-    pub fn stretch(self, a: DVec2, b: DVec2) -> f64 {
-        let across = || (b - a).length_squared();
-        match self {
-            Ideal::Equilateral => (a.length_squared() + b.length_squared() + across()) / 3.0,
-            Ideal::Own => 0.5 * (a.length_squared() + b.length_squared()),
-            Ideal::Next => 0.5 * (a.length_squared() + across()),
-            Ideal::Last => 0.5 * (b.length_squared() + across()),
-        }
-    }
-
-    /// Gradient of `stretch` as the vertex moves, and its second derivative, times the identity.
-    pub fn slope(self, a: DVec2, b: DVec2) -> (DVec2, f64) {
-        match self {
-            Ideal::Equilateral => ((a + b) * (-2.0 / 3.0), 4.0 / 3.0),
-            Ideal::Own => (-(a + b), 2.0),
-            Ideal::Next => (-a, 1.0),
-            Ideal::Last => (-b, 1.0),
-        }
-    }
-}
+use crate::geometry::corner::Ideal;
 
 /// What is around each interior vertex of a patch.
 pub(in crate::fill) trait Stars {
