@@ -16,7 +16,7 @@ use crate::drawing::union::{nearest_source, outer_outline};
 use crate::error::{Error, Result};
 use crate::options::{SelfCrossing, SketchOptions};
 use crate::patch::Patch;
-use crate::patch::place::min_angle;
+use crate::patch::angles::min_angle;
 use crate::progress::Progress;
 use crate::sketch::{Sketch, mesh_sketch, mesh_sketch_on};
 

@@ -1,5 +1,6 @@
 //! A flat patch: the planar mesh of a drawing.
 
+pub(crate) mod angles;
 pub(crate) mod deviation;
 pub(crate) mod expel;
 pub(crate) mod mirror;

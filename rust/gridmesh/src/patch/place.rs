@@ -8,6 +8,7 @@ use crate::lattice::assemble::assemble_asking;
 use crate::lattice::axial::Axial;
 use crate::lattice::squares::assemble_squares;
 use crate::options::{CellShape, SketchOptions};
+use crate::patch::angles::min_angle;
 use crate::patch::deviation::{Stray, beside, crossings, deviation};
 use crate::patch::expel::expel;
 use crate::patch::pockets::{Fans, pockets};
@@ -150,10 +151,7 @@ where
         (options, blunt): (&SketchOptions, Option<f64>),
         progress: Progress<'_>,
     ) -> Result<Result<Placed, Obstacle>> {
-        let corners = Band::<N>::corners(self.cells);
-        let lattice_positions = &self.positions;
         let h = lattice.edge_length;
-        let is_blunt = blunt.is_some();
         let drawn: Vec<(Vec<DVec2>, Vec<f64>)> = contours
             .iter()
             .map(|contour| {
@@ -165,18 +163,21 @@ where
         let found: Vec<Vec<Corner>> =
             contours.iter().map(|contour| corners_of(contour, options.corner_angle, h)).collect();
         let (mut rims, mut angles) = rims(contours, outline, &found, h);
+        let corners = Band::<N>::corners(self.cells);
         if options.relax && N == 3 {
             settle_corners(&corners, &lines, &mut rims, &mut angles);
         }
-        let lengths: Vec<f64> = contours.iter().map(|contour| contour.length() / h).collect();
         let rings = if N == 4 { QUAD_RINGS } else { RelaxOptions::default().rings };
         let relaxed = RelaxOptions { rings, blunt, ..RelaxOptions::default() };
-        let mut relaxation = Relaxation::<N>::new(self.cells, lattice_positions, &lines, &rims, &relaxed)?;
+        let mut relaxation = Relaxation::<N>::new(self.cells, &self.positions, &lines, &rims, &relaxed)?;
+        let mut fans = Fans::new(self.positions.len(), &corners);
+        let is_blunt = blunt.is_some();
+        let judge =
+            Judge { contours, lattice, lines: &lines, found: &found, corners: &corners, options, is_blunt };
         // A valid patch that bridges an inlet serves if following the inlet leads to none.
         let mut valid: Option<Placed> = None;
         let mut obstacle = Obstacle::new("a part of the drawing is lost", contours[0].points()[0]);
         let mut held: Vec<(usize, f64)> = Vec::new();
-        let mut fans = Fans::new(lattice_positions.len(), &corners);
         for round in 0..ROUNDS {
             let progress = progress.part(round as f64 / ROUNDS as f64, (round + 1) as f64 / ROUNDS as f64);
             if options.relax {
@@ -187,91 +188,136 @@ where
                 }
                 relaxation.store(&mut rims);
             }
-            let mut vertices: Vec<DVec2> =
-                relaxation.positions.iter().map(|&p| lattice.from_units(p)).collect();
-            let (loops, arcs, own) = loops(contours, &rims, &found, h, &mut vertices);
-            if let Some(triangle) = first_inverted(&vertices, &corners, lattice.origin) {
-                let at = vertices[corners[triangle][0] as usize];
-                obstacle = Obstacle {
-                    is_inverted: !options.relax,
-                    ..Obstacle::new("a triangle stays inverted", at)
-                };
-                break;
-            }
-            let beside = beside(contours, &vertices, &arcs);
-            let (farthest, mut strays) = deviation(&beside, &vertices, &arcs, CLOSE * h, STRAY * h);
-            if farthest > STRAY * h {
-                strays.retain(|stray| stray.distance > STRAY * h);
-                obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
-                held = if is_blunt { blunted(&mut strays, &rims, &lines, h) } else { Vec::new() };
-                held.extend(to_hold(&strays, &rims, &lengths, h));
-                if held.is_empty() || !options.relax {
+            let vertices = relaxation.positions.iter().map(|&p| lattice.from_units(p)).collect();
+            held = match judge.judged(vertices, &rims, &mut fans, progress)? {
+                Judgement::Inverted(found) => {
+                    obstacle = found;
                     break;
                 }
-                continue;
-            }
-            let mut pockets_now = pockets(&beside, &vertices, &mut fans, &arcs, INLET * h);
-            let occupied = std::mem::take(&mut pockets_now.occupied);
-            let mut bridged_inlets = occupied.len();
-            if !occupied.is_empty() && options.relax {
-                let mut expelled = vertices.clone();
-                if expel(&pockets_now, &mut expelled, &fans, INLET * h, h, progress)?
-                    && first_inverted(&expelled, &corners, lattice.origin).is_none()
-                {
-                    let left = pockets(&beside, &expelled, &mut fans, &arcs, INLET * h);
-                    if left.occupied.len() < bridged_inlets {
-                        bridged_inlets = left.occupied.len();
-                        vertices = expelled;
-                    }
+                Judgement::Far(strays) => {
+                    obstacle.at = strays.first().map_or(obstacle.at, |stray| stray.point);
+                    judge.to_hold(strays, None, &rims)
                 }
-            }
-            let (crossed, crossing) = match options.relax {
-                true => crossings(&beside, &vertices, &arcs, lattice.origin),
-                false => (0, Vec::new()),
+                Judgement::Valid(mut placed, strays, lost) => {
+                    (placed.patch.triangles, placed.patch.quads) = (self.faces)(self.cells);
+                    let first = valid.is_none();
+                    if valid.as_ref().is_none_or(|best| better(&placed, best)) {
+                        valid = Some(placed);
+                    }
+                    // Following the drawing more closely is worth one more round.
+                    if !first && valid.as_ref().is_some_and(|best| best.lost() == 0) {
+                        break;
+                    }
+                    judge.to_hold(strays, Some(lost), &rims)
+                }
             };
-            let n_corners = found.iter().map(Vec::len).sum();
-            let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
-            let near = farthest.min(CLOSE * h);
-            let strayed = if is_blunt { stray_off_tips(&strays, &lines, h, near) } else { farthest };
-            let (triangles, quads) = (self.faces)(self.cells);
-            let placed = Placed {
-                patch: Patch {
-                    vertices,
-                    triangles,
-                    quads,
-                    loops,
-                    inlets: pockets_now.inlets,
-                    lattice: *lattice,
-                },
-                arcs: own,
-                corners: n_corners,
-                released_corners: n_corners - kept,
-                worn_corners: worn(contours, &beside, &found, h),
-                max_deviation: farthest / h,
-                strayed: strayed / h,
-                bridged_inlets,
-                crossings: crossed,
-            };
-            let first = valid.is_none();
-            if valid.as_ref().is_none_or(|best| better(&placed, best)) {
-                valid = Some(placed);
-            }
-            // Following the drawing more closely is worth one more round.
-            if !options.relax || !first && valid.as_ref().is_some_and(|best| best.lost() == 0) {
-                break;
-            }
-            held = if is_blunt { blunted(&mut strays, &rims, &lines, h) } else { Vec::new() };
-            strays.extend(occupied);
-            strays.extend(crossing);
-            strays.sort_by_key(|stray| (stray.contour, stray.edge));
-            strays.dedup_by_key(|stray| (stray.contour, stray.edge));
-            strays.retain(|stray| !is_chosen(&held, &rims[stray.contour], stray.edge));
-            held.extend(to_hold(&strays, &rims, &lengths, h));
-            if held.is_empty() {
+            if held.is_empty() || !options.relax {
                 break;
             }
         }
         Ok(valid.ok_or(obstacle))
+    }
+}
+
+/// What a placement is held against.
+struct Judge<'a> {
+    contours: &'a [ClosedCurve],
+    lattice: &'a Lattice,
+    /// The contours in units of the lattice.
+    lines: &'a [Contour<'a>],
+    /// Their corners.
+    found: &'a [Vec<Corner>],
+    /// Three vertices of each triangle or of each corner of a quad, to be counter-clockwise.
+    corners: &'a [[u32; 3]],
+    options: &'a SketchOptions,
+    is_blunt: bool,
+}
+
+/// What is said of a placement.
+enum Judgement {
+    Inverted(Obstacle),
+    /// The drawing lies too far from it, in these places.
+    Far(Vec<Stray>),
+    /// It has no faces yet; where the drawing lies outside, and where a part of it is lost.
+    Valid(Placed, Vec<Stray>, Vec<Stray>),
+}
+
+impl Judge<'_> {
+    fn judged(
+        &self,
+        mut vertices: Vec<DVec2>,
+        rims: &[Rim],
+        fans: &mut Fans,
+        progress: Progress<'_>,
+    ) -> Result<Judgement> {
+        let Judge { contours, lattice, options, .. } = *self;
+        let h = lattice.edge_length;
+        let (loops, arcs, own) = loops(contours, rims, self.found, h, &mut vertices);
+        if let Some(triangle) = first_inverted(&vertices, self.corners, lattice.origin) {
+            let at = vertices[self.corners[triangle][0] as usize];
+            let obstacle = Obstacle::new("a triangle stays inverted", at);
+            return Ok(Judgement::Inverted(Obstacle { is_inverted: !options.relax, ..obstacle }));
+        }
+        let beside = beside(contours, &vertices, &arcs);
+        let (farthest, mut strays) = deviation(&beside, &vertices, &arcs, CLOSE * h, STRAY * h);
+        if farthest > STRAY * h {
+            strays.retain(|stray| stray.distance > STRAY * h);
+            return Ok(Judgement::Far(strays));
+        }
+        let mut pockets_now = pockets(&beside, &vertices, fans, &arcs, INLET * h);
+        let mut lost = std::mem::take(&mut pockets_now.occupied);
+        let mut bridged_inlets = lost.len();
+        if !lost.is_empty() && options.relax {
+            let mut expelled = vertices.clone();
+            if expel(&pockets_now, &mut expelled, fans, INLET * h, h, progress)?
+                && first_inverted(&expelled, self.corners, lattice.origin).is_none()
+            {
+                let left = pockets(&beside, &expelled, fans, &arcs, INLET * h);
+                if left.occupied.len() < bridged_inlets {
+                    bridged_inlets = left.occupied.len();
+                    vertices = expelled;
+                }
+            }
+        }
+        let (crossed, crossing) = match options.relax {
+            true => crossings(&beside, &vertices, &arcs, lattice.origin),
+            false => (0, Vec::new()),
+        };
+        lost.extend(crossing);
+        let n_corners = self.found.iter().map(Vec::len).sum();
+        let kept = loops.iter().flat_map(|l| &l.corner).filter(|&&angle| angle != 0.0).count();
+        let near = farthest.min(CLOSE * h);
+        let strayed = if self.is_blunt { stray_off_tips(&strays, self.lines, h, near) } else { farthest };
+        let (triangles, quads) = (Vec::new(), Vec::new());
+        let inlets = pockets_now.inlets;
+        let placed = Placed {
+            patch: Patch { vertices, triangles, quads, loops, inlets, lattice: *lattice },
+            arcs: own,
+            corners: n_corners,
+            released_corners: n_corners - kept,
+            worn_corners: worn(contours, &beside, self.found, h),
+            max_deviation: farthest / h,
+            strayed: strayed / h,
+            bridged_inlets,
+            crossings: crossed,
+        };
+        Ok(Judgement::Valid(placed, strays, lost))
+    }
+
+    /// Which boundary vertices are to be held where, so that less of the drawing lies outside; or is lost, in a
+    /// placement that is valid.
+    fn to_hold(&self, mut strays: Vec<Stray>, lost: Option<Vec<Stray>>, rims: &[Rim]) -> Vec<(usize, f64)> {
+        let h = self.lattice.edge_length;
+        let mut held = if self.is_blunt { blunted(&mut strays, rims, self.lines, h) } else { Vec::new() };
+        if let Some(lost) = lost {
+            strays.extend(lost);
+            strays.sort_by_key(|stray| (stray.contour, stray.edge));
+            strays.dedup_by_key(|stray| (stray.contour, stray.edge));
+            strays.retain(|stray| !is_chosen(&held, &rims[stray.contour], stray.edge));
+        }
+        let lengths: Vec<f64> = self.contours.iter().map(|contour| contour.length() / h).collect();
+        held.extend(to_hold(&strays, rims, &lengths, h));
+        held
     }
 }
 
@@ -375,45 +421,4 @@ fn corners_of(contour: &ClosedCurve, angle: f64, h: f64) -> Vec<Corner> {
 pub(crate) fn nearest_drawn(contour: &ClosedCurve, s: f64) -> f64 {
     let (segment, t) = contour.locate(s);
     contour.arc()[if t < 0.5 { segment } else { segment + 1 }]
-}
-
-/// Smallest angle of any triangle, in radians; of quads the smallest corner, or what the largest one is short of
-/// pi, if that is less.
-pub(crate) fn min_angle(patch: &Patch) -> f64 {
-    sharpest(patch, |_| true)
-}
-
-/// Smallest angle of the triangles that have no vertex on a corner of the drawing, in radians: what
-/// the placement answers for.
-pub(crate) fn min_angle_off_corners(patch: &Patch) -> f64 {
-    let mut on_corner = vec![false; patch.vertices.len()];
-    for l in &patch.loops {
-        for (flag, &turning) in on_corner[l.start as usize..].iter_mut().zip(&l.corner) {
-            *flag = turning != 0.0;
-        }
-    }
-    sharpest(patch, |t| t.iter().all(|&v| !on_corner[v as usize]))
-}
-
-fn sharpest(patch: &Patch, counts: impl Fn(&[u32; 3]) -> bool) -> f64 {
-    // The cotangent of the least angle.
-    let mut most = -f64::INFINITY;
-    // Seen from a corner of a quad: the angle between its sides, or between one and the other drawn on.
-    let bent = |a: DVec2, b: DVec2| a.dot(b).abs() / a.perp_dot(b);
-    for q in patch.quads.iter() {
-        let p = q.map(|v| patch.vertices[v as usize]);
-        for k in 0..4 {
-            let [last, own, next] = [3, 0, 1].map(|ahead| (k + ahead) % 4);
-            if counts(&[q[last], q[own], q[next]]) {
-                most = most.max(bent(p[next] - p[own], p[last] - p[own]));
-            }
-        }
-    }
-    for t in patch.triangles.iter().filter(|t| counts(t)) {
-        let p = t.map(|v| patch.vertices[v as usize]);
-        let [a, b, c] = [p[2] - p[1], p[0] - p[2], p[1] - p[0]];
-        let dot = (-a.dot(b)).max(-b.dot(c)).max(-c.dot(a));
-        most = most.max(dot / a.perp_dot(b));
-    }
-    1f64.atan2(most)
 }
