@@ -13,7 +13,7 @@
     uv run tests/peers/live.py [MOVES]
 
 One point of a stroke of 500 is moved MOVES times (200) by less than an edge: milliseconds from the changed stroke to the end of Blender's update,
-in which a body of 5000 triangles has followed; wall clock and processor time. Then the preview of a stroke of
+in which a body of 5000 triangles has followed, or one of 2500 quads; wall clock and processor time. Then the preview of a stroke of
 2000 triangles for each event of the mouse.
 """
 
@@ -42,7 +42,8 @@ def main():
     addon.register()
     engine.in_background = True
     print(f"Blender {bpy.app.version_string}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}")
-    drag()
+    drag("triangles", 2500)
+    drag("quads", 1250)
     preview()
     sys.stdout.flush()
     os._exit(0)  # Blender 4.5 can crash in its own clean-up
@@ -54,13 +55,16 @@ def outline(n=500):
     return (1.6 * (1 + 0.25 * np.cos(3 * t)))[:, None] * np.stack([np.cos(t), np.sin(t)], axis=1)
 
 
-def drag():
+def drag(cells, count):
     """Move a point, as Edit Mode does it, and let the body follow."""
     points = outline()
     bpy.ops.object.gridmesh_draw(
-        stroke=pack(points, np.ones(len(points))), matrix=np.eye(4).ravel().tolist(), triangles=2500
+        stroke=pack(points, np.ones(len(points))),
+        matrix=np.eye(4).ravel().tolist(),
+        cells=cells.upper(),
+        **{cells: count},
     )
-    (body,) = engine.bodies()
+    body = bpy.context.view_layer.objects.active
     engine.settle()
     edge = body.gridmesh_live.lattice[0]
     drawing = body.gridmesh_live.source.data.layers[0].current_frame().drawing
@@ -81,7 +85,7 @@ def drag():
         cpu.append(1000 * (process_time() - began[1]))
     own = 1000 * np.array(engine.timing)
     print(
-        f"live: {len(body.data.polygons)} triangles, {len(own)} updates for {MOVES} moves; all in: least "
+        f"live: {len(body.data.polygons)} {cells}, {len(own)} updates for {MOVES} moves; all in: least "
         f"{min(wall):.1f} ms, median {np.median(wall):.1f} ms; processor: least {min(cpu):.1f} ms, "
         f"median {np.median(cpu):.1f} ms; GridMesh's part: least {own.min():.1f} ms, median {np.median(own):.1f} ms"
     )

@@ -2,6 +2,7 @@
 
     python tests/window/run.py ZIP [SCENE ...]              # pictures go to out/tests/window/pictures
     python tests/window/run.py ZIP --documentation          # and from there into docs/pictures/windows
+    python tests/window/run.py ZIP SCENE ... --film FILM.webm    # what the window shows meanwhile, without waiting
 
 The window is on a screen in memory (Xvfb). Exit code 77 where there is no real Blender: nothing was tested then.
 """
@@ -31,6 +32,12 @@ trap 'kill $screen' EXIT
 for _ in 1 2 3 4 5 6 7 8 9 10; do [ -s "$1/display" ] && break; sleep 0.5; done
 export DISPLAY=":$(cat "$1/display")"
 shift
+if [ -n "$FRAMES" ]; then
+  mkdir -p "$FRAMES"
+  (k=0; while :; do k=$((k+1)); import -silent -window root -resize 960x600 +set date:create +set date:modify -define png:exclude-chunks=date,time "$FRAMES/$(printf %05d $k).png"; done) &
+  film=$!
+  trap 'kill $film $screen' EXIT
+fi
 "$@"
 """
 
@@ -42,6 +49,7 @@ def main():
     parser.add_argument(
         "--documentation", action="store_true", help="put the pictures into docs/pictures/windows"
     )
+    parser.add_argument("--film", type=Path, help="write what the window shows as a film (.webm)")
     arguments = parser.parse_args()
     shutil.rmtree(SHARE, ignore_errors=True)
     try:
@@ -62,6 +70,7 @@ def main():
         "SCENES": " ".join(arguments.scenes),
         "ZIP": blender.path(package),
         "LIBGL_ALWAYS_SOFTWARE": "1",
+        "FRAMES": blender.path(SHARE / "frames") if arguments.film else "",
     }
     if arguments.scenes and "install" not in arguments.scenes:
         install = ["--command", "extension", "install-file", "-r", "user_default", "-e", settings["ZIP"]]
@@ -81,9 +90,22 @@ def main():
         done = subprocess.run(blender.command(words, **settings), check=False, timeout=2400)
     except subprocess.TimeoutExpired:
         sys.exit("Blender did not come to an end within 40 minutes")
+    if arguments.film and done.returncode == 0:
+        encode(blender, settings, arguments.film)
     if arguments.documentation and done.returncode == 0:
         illustrate(pictures, complete=not arguments.scenes)
     sys.exit(done.returncode)
+
+
+def encode(blender, settings, film):
+    """Write the frames that were taken as a film."""
+    made = SHARE / "film.webm"
+    scripts = ["--python-exit-code", "1", "--python", blender.path(SHARE / "film.py")]
+    words = [blender.program, "--background", "--factory-startup", *scripts, "--"]
+    words += [blender.path(SHARE / "frames"), blender.path(made)]
+    subprocess.run(blender.command(words, **settings), check=True)
+    film.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(made, film)
 
 
 def illustrate(pictures, *, complete):
