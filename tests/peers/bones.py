@@ -17,7 +17,6 @@ The pictures and ARCHIVE are those of `pictures.py`. The bones lie along the lon
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import itertools
 import os
@@ -33,7 +32,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "core"), str(Path(__file__).parent)]
 
-from pictures import packed, pictures  # noqa: E402
+from pictures import asked, packed, pictures  # noqa: E402
 
 from addon.pictures.cutouts import Options, cut_out  # noqa: E402
 
@@ -123,11 +122,7 @@ def quiet():
 
 def main() -> None:
     """Print what was measured."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("archive", nargs="?", type=Path)
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--triangles", type=int, default=500)
-    chosen = parser.parse_args()
+    chosen = asked(__doc__)
     rows, closed = [], []
     with tempfile.TemporaryDirectory() as folder:
         archive = chosen.archive or packed(Path(folder))

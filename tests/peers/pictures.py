@@ -56,6 +56,15 @@ def pictures(archive: Path, count: int, into: Path) -> list[Path]:
     return [into / member.name for member in chosen]
 
 
+def asked(about: str | None) -> argparse.Namespace:
+    """Read the command line of a comparison over these pictures."""
+    parser = argparse.ArgumentParser(description=about)
+    parser.add_argument("archive", nargs="?", type=Path)
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--triangles", type=int, default=500)
+    return parser.parse_args()
+
+
 def measure(pixels: np.ndarray, triangles: int, body: bool) -> dict[str, float]:
     """Mesh a picture, and compare it with its pixels."""
     started = time.perf_counter()
@@ -86,11 +95,7 @@ def measure(pixels: np.ndarray, triangles: int, body: bool) -> dict[str, float]:
 
 def main() -> None:
     """Print what was measured."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("archive", nargs="?", type=Path)
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--triangles", type=int, default=500)
-    chosen = parser.parse_args()
+    chosen = asked(__doc__)
     with tempfile.TemporaryDirectory() as folder:
         into = Path(folder)
         archive = chosen.archive or packed(into)

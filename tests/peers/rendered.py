@@ -19,7 +19,6 @@ more), and the colors where the picture is opaque (mean over channels, of 255).
 
 from __future__ import annotations
 
-import argparse
 import math
 import os
 import sys
@@ -28,7 +27,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from pictures import ROOT, packed, pictures
+from pictures import ROOT, asked, packed, pictures
 
 sys.path[:0] = [str(ROOT)]
 
@@ -107,11 +106,7 @@ def measured(scene: bpy.types.Scene, eye: bpy.types.Object, file: Path, triangle
 
 def main() -> None:
     """Print what was measured."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("archive", nargs="?", type=Path)
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--triangles", type=int, default=500)
-    chosen = parser.parse_args()
+    chosen = asked(__doc__)
     bpy.ops.wm.read_factory_settings(use_empty=True)
     addon.register()
     scene = bpy.context.scene
