@@ -11,6 +11,7 @@ import pytest
 from checks import check_patch
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
+import bodies
 import drawings
 
 CIRCLE = drawings.circle(60) * [1, 0.7]
@@ -388,3 +389,14 @@ def test_random_drawings(start):
         case.options["least"] = False
         _, wrong, _ = drawings.check(case)
         assert wrong is None, f"seed {seed}: {wrong}"
+
+
+def test_random_bodies():
+    """A short run of `tests/campaign/bodies.py`."""
+    outcomes = []
+    for seed in range(60):
+        outcome, wrong = bodies.outcome_of(*bodies.case(seed))
+        assert wrong is None, (seed, outcome, wrong)
+        outcomes.append(outcome)
+    assert outcomes.count("triangles") > 10
+    assert outcomes.count("quads") > 2
