@@ -175,7 +175,7 @@ where
         let judge =
             Judge { contours, lattice, lines: &lines, found: &found, corners: &corners, options, is_blunt };
         // A valid patch that bridges an inlet serves if following the inlet leads to none.
-        let mut valid: Option<Placed> = None;
+        let mut valid: Option<Box<Placed>> = None;
         let mut obstacle = Obstacle::new("a part of the drawing is lost", contours[0].points()[0]);
         let mut held: Vec<(usize, f64)> = Vec::new();
         for round in 0..ROUNDS {
@@ -215,7 +215,7 @@ where
                 break;
             }
         }
-        Ok(valid.ok_or(obstacle))
+        Ok(valid.map(|placed| *placed).ok_or(obstacle))
     }
 }
 
@@ -239,7 +239,7 @@ enum Judgement {
     /// The drawing lies too far from it, in these places.
     Far(Vec<Stray>),
     /// It has no faces yet; where the drawing lies outside, and where a part of it is lost.
-    Valid(Placed, Vec<Stray>, Vec<Stray>),
+    Valid(Box<Placed>, Vec<Stray>, Vec<Stray>),
 }
 
 impl Judge<'_> {
@@ -301,7 +301,7 @@ impl Judge<'_> {
             bridged_inlets,
             crossings: crossed,
         };
-        Ok(Judgement::Valid(placed, strays, lost))
+        Ok(Judgement::Valid(Box::new(placed), strays, lost))
     }
 
     /// Which boundary vertices are to be held where, so that less of the drawing lies outside; or is lost, in a
