@@ -59,13 +59,19 @@ class Job:
         faulty = [self.edited.faulty(hole, self.snapshot.positions) for hole in self.loops]
         self.problems += [problem for problem in faulty if problem is not None]
 
-    def bridge(self, smooth: str, rows: int, twist: float, progress: Progress) -> None:
-        """Make the patch, without touching the mesh. rows : 0 for as many as suit; these and twist count for two loops."""
+    def bridge(
+        self, smooth: str, rows: int, twist: float, progress: Progress, *, cells: str = "triangles"
+    ) -> None:
+        """Make the patch, without touching the mesh.
+
+        rows : 0 for as many as suit; these and twist count for two loops. cells : "triangles" or "quads".
+        """
         if self.problems or self.snapshot is None:
             return
         at = self.snapshot
         loops = [hole.vertices for hole in self.loops]
-        options = {"smooth": smooth, "polygons": at.polygons, "poses": at.poses, "progress": progress}
+        options = {"smooth": smooth, "polygons": at.polygons, "poses": at.poses, "cells": cells}
+        options["progress"] = progress
         if self.is_tube:
             made = patches.bridge(
                 at.positions, at.triangles, *loops, rows=rows or None, twist=twist, **options

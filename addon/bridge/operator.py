@@ -13,14 +13,14 @@ from ..fill.editmesh import EditMesh
 from ..fill.filling import add_all
 from ..text.messages import counted, listed
 from ..text.telling import told
-from ..ui.patching import PatchOptions, faces_made
+from ..ui.patching import PatchFaces, faces_made
 from ..ui.progress import Pointer
 from .bridging import Job, summary
 
 ONLY_TWO = "Rows and Twist are for two loops"
 
 
-class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
+class MESH_OT_gridmesh_bridge(PatchFaces, bpy.types.Operator):  # noqa: N801
     """Join two selected loops by a regular tube, or more by one smooth patch, whatever their numbers of edges"""  # noqa: D400 (the tooltip)
 
     bl_idname = "mesh.gridmesh_bridge"
@@ -29,7 +29,7 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
 
     rows: IntProperty(
         name="Rows",
-        description="Rows of triangles between two loops; 0 for as many as the lengths of the edges ask for",
+        description="Rows of faces between two loops; 0 for as many as the lengths of the edges ask for",
         default=0,
         min=0,
         soft_max=100,
@@ -58,12 +58,6 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
     has_tube: BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
     """Whether a tube was made: only that has rows and a twist."""
 
-    use_quads: BoolProperty(
-        name="Quads",
-        description="Join pairs of triangles to quads where that gives good ones",
-        default=False,
-    )
-
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Ask for a mesh in Edit Mode."""
@@ -85,7 +79,7 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
                 for index, job in enumerate(jobs):
                     job.find()
                     part = pointer.part(index / len(jobs), (index + 1) / len(jobs))
-                    job.bridge(self.smooth.lower(), self.rows, self.twist, part)
+                    job.bridge(self.smooth.lower(), self.rows, self.twist, part, cells=self.cells.lower())
         except api.CancelledError:
             self.report({"WARNING"}, told("Cancelled; nothing was joined"))
             return {"CANCELLED"}
@@ -96,7 +90,7 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
                 job.edited.point_out(job.problems)
             self.report({"ERROR"}, told(listed(problems)))
             return {"CANCELLED"}
-        add_all(made, join=self.use_quads)
+        add_all(made)
         self._tell(made, problems, perf_counter() - started)
         return {"FINISHED"}
 
@@ -128,6 +122,7 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the redo panel."""
         layout = self.draw_result()
+        layout.prop(self, "cells")
         layout.prop(self, "smooth")
         tube = layout.column()
         tube.active = self.has_tube
@@ -135,7 +130,6 @@ class MESH_OT_gridmesh_bridge(PatchOptions, bpy.types.Operator):  # noqa: N801
         tube.prop(self, "twist")
         if not self.has_tube:
             tube.label(text=told(ONLY_TWO, "interface"), icon="INFO")
-        layout.prop(self, "use_quads")
 
 
 classes = (MESH_OT_gridmesh_bridge,)

@@ -168,21 +168,11 @@ class EditMesh:
                 if isinstance(element, kind):
                     elements.remove(element)
 
-    def finish(self, added: Added, *, join: bool = False) -> None:
-        """Select what was made, its triangles joined to quads where asked for, and hand it to Blender."""
+    def finish(self, added: Added) -> None:
+        """Select what was made, and hand it to Blender."""
         self.deselect()
         for edge in added.hard:
             edge.smooth = False
-        if join:
-            joined = bmesh.ops.join_triangles(
-                self.bm,
-                faces=added.faces,
-                cmp_sharp=bool(added.hard),
-                angle_face_threshold=_BENT,
-                angle_shape_threshold=_SKEW,
-            )
-            faces = dict.fromkeys((*added.faces, *joined["faces"]))
-            added.faces = [face for face in faces if face.is_valid]
         for face in added.faces:
             face.normal_update()
         for vertex in dict.fromkeys(vertex for face in added.faces for vertex in face.verts):
@@ -259,11 +249,6 @@ class EditMesh:
         """Hand changes to Blender."""
         self.bm.select_flush_mode()
         bmesh.update_edit_mesh(self.mesh, loop_triangles=True, destructive=True)
-
-
-_BENT = np.radians(40.0)
-_SKEW = np.radians(60.0)
-"""Triangles are joined to quads up to this angle between their faces, and between a corner and a right angle."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -85,8 +85,8 @@ class Job:
         return f"{own}: {problem.reason}" if several and own not in problem.reason else problem.reason
 
 
-def add_all(jobs: list[Job], *, join: bool = False) -> None:
-    """Put all patches into their meshes; if one fails, no mesh keeps any. join : triangles to quads where that gives good ones."""
+def add_all(jobs: list[Job]) -> None:
+    """Put all patches into their meshes; if one fails, no mesh keeps any."""
     try:
         for job in jobs:
             job.edited.add(job.patches, job.added)
@@ -95,7 +95,7 @@ def add_all(jobs: list[Job], *, join: bool = False) -> None:
             job.edited.take_back(job.added)
         raise
     for job in jobs:
-        job.edited.finish(job.added, join=join)
+        job.edited.finish(job.added)
 
 
 def forgive_unselected(jobs: list[Job]) -> None:

@@ -149,14 +149,15 @@ def bridge(
     twist: float = 0.0,
     polygons: np.ndarray | None = None,
     poses: Sequence[np.ndarray] = (),
+    cells: str = "triangles",
     progress: Progress | None = None,
 ) -> Filled | str:
     """Join two loops of a mesh by a tube: the patch, or the reason why there is none.
 
-    rows : of triangles, None for as many as suit. twist : radians from the best fit. The others are as of `fill`. Raises
+    rows : of faces, None for as many as suit. twist : radians from the best fit. The others are as of `fill`. Raises
     NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
     """
-    options = {"smooth": smooth, "rows": rows, "twist": twist, "polygons": polygons}
+    options = {"smooth": smooth, "rows": rows, "twist": twist, "polygons": polygons, "cells": cells}
     ends = [np.asarray(it, np.int32) for it in (loop, other)]
     gridmesh = native("bridge")
     return _made(
@@ -175,6 +176,7 @@ def fill_loops(
     smooth: str,
     polygons: np.ndarray | None = None,
     poses: Sequence[np.ndarray] = (),
+    cells: str = "triangles",
     progress: Progress | None = None,
 ) -> Filled | str:
     """Join loops of a mesh by one patch that has them all as its boundary: the patch, or the reason why there is none.
@@ -182,7 +184,7 @@ def fill_loops(
     loops : vertex indices in order, of each loop. `extend` of the patch takes values one loop after the other. The others are
     as of `fill`. Raises NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
     """
-    options = {"smooth": smooth, "polygons": polygons}
+    options = {"smooth": smooth, "polygons": polygons, "cells": cells}
     indices = [np.asarray(loop, np.int32) for loop in loops]
     gridmesh = native("fill_hole")
     return _made(

@@ -588,8 +588,8 @@ GERMAN = {
         "Kanten sie auch haben"
     ),
     "Rows": "Reihen",
-    "Rows of triangles between two loops; 0 for as many as the lengths of the edges ask for": (
-        "Reihen von Dreiecken zwischen zwei Schleifen; 0 für so viele, wie zu den Längen der Kanten passen"
+    "Rows of faces between two loops; 0 for as many as the lengths of the edges ask for": (
+        "Reihen von Flächen zwischen zwei Schleifen; 0 für so viele, wie zu den Längen der Kanten passen"
     ),
     "Straight from loop to loop": "Gerade von Schleife zu Schleife",
     "Turn of one of two loops against the other, from where they fit best": (
@@ -678,9 +678,6 @@ GERMAN = {
         "Löcher mit mehr Kanten bleiben offen; 0 füllt Löcher jeder Größe, auch den äußeren Rand"
     ),
     "How a patch continues the surface around it": "Wie ein Flicken die Fläche um ihn herum fortsetzt",
-    "Join pairs of triangles to quads where that gives good ones": (
-        "Je zwei Dreiecke zu einem Viereck verbinden, wo das gute gibt"
-    ),
     "Keep Hard Edges": "Harte Kanten erhalten",
     "Quads, four around almost every vertex, that go on from those around; one triangle where the number of edges "
     "is odd": (

@@ -75,14 +75,21 @@ def test_a_single_edge_of_each_rim_is_enough_and_rows_are_kept():
     assert is_closed_but_for(ob, 40)
 
 
-def test_quads():
-    ob = two_pipes(16, 16)
+@pytest.mark.parametrize(("n", "m", "poles"), [(16, 16, 0), (16, 20, 2), (16, 21, 1)])
+def test_quads_join_two_rims(n, m, poles, capfd):
+    ob = two_pipes(n, m)
     bm = edit(ob)
     select(ob, facing(bm))
     n_faces = len(bm.faces)
-    bridge(use_quads=True)
+    bridge(cells="QUADS", rows=6)
     leave()
-    assert any(len(face) == 4 for face in faces_of(ob.data)[n_faces:])
+    assert is_closed_but_for(ob, n + m)
+    new = [len(face) for face in faces_of(ob.data)[n_faces:]]
+    assert new.count(3) == (n + m) % 2
+    assert new.count(4) == len(new) - (n + m) % 2
+    told = capfd.readouterr().out
+    assert "Joined by 6 rows: " in told
+    assert f" {poles} irregular vert" in told
 
 
 def test_twist_is_of_use():
@@ -276,15 +283,14 @@ def test_three_loops_with_vertices_selected():
     check_patch(ob, before, loops)
 
 
-def test_pairs_of_triangles_between_three_loops_become_quads():
+def test_quads_join_three_loops():
     ob, loops = trousers()
     before = Before(ob)
     choose(ob, loops)
-    bridge(use_quads=True)
+    bridge(cells="QUADS")
     leave()
     patch = check_patch(ob, before, loops, triangles=False)
-    quads = sum(len(face) == 4 for face in patch)
-    assert 2 * quads > 0.5 * (2 * quads + sum(len(face) == 3 for face in patch))
+    assert all(len(face) == 4 for face in patch)
 
 
 def test_three_holes_of_a_plate():

@@ -184,7 +184,7 @@ def test_numbers_in_redo_panels_are_translated_as_a_whole(monkeypatch):
 @pytest.mark.parametrize("has_tube", [True, False])
 def test_redo_panel_of_bridge_says_what_two_loops_alone_have(has_tube):
     drawn = options(MESH_OT_gridmesh_bridge, has_tube=has_tube)
-    assert {"rows", "smooth", "twist", "use_quads"} <= set(drawn)
+    assert {"rows", "smooth", "twist", "cells"} <= set(drawn)
     assert ("Rows and Twist are for two loops" in drawn) != has_tube
 
 

@@ -1,7 +1,7 @@
 """Random pairs of loops joined by tubes, checked without the library's own code.
 
-`python tests/campaign/bridges.py --cases 500 --seed 1` prints how regular and well shaped the tubes are, and the slowest. Case k of
-a seed is always the same; `--only K` runs it alone.
+`python tests/campaign/bridges.py --cases 500 --seed 1` prints how regular and well shaped the tubes are, and the slowest; with
+`--cells quads` those of quads. Case k of a seed is always the same; `--only K` runs it alone.
 """
 
 from __future__ import annotations
@@ -90,27 +90,33 @@ def case(seed, number):
 # ---------------------------------------------------------------------------------------------------- checks
 
 
+def half_edges(*faces):
+    """The directed sides of triangles or quads."""
+    return np.concatenate([np.stack([f, np.roll(f, -1, axis=1)], axis=2).reshape(-1, 2) for f in faces])
+
+
 def faults(case, fill):
     """What a tube breaks of what is promised of it."""
     n, found = len(case.vertices), []
     one, two = case.loops
     if not np.array_equal(fill.loop, np.r_[one, two]):
         found.append("the loops are not those given")
-    everything = np.r_[case.triangles, fill.triangles].astype(np.int64)
-    sides = everything[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    if len(fill.quads) and len(fill.triangles) != (len(one) + len(two)) % 2:
+        found.append("not one triangle for an odd sum and none for an even one")
+    new = half_edges(fill.triangles, fill.quads)
+    sides = np.r_[half_edges(case.triangles), new].astype(np.int64)
     _, counts = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
-    own = np.sort(fill.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    own, times = np.unique(own, axis=0, return_counts=True)
+    own, times = np.unique(np.sort(new, axis=1), axis=0, return_counts=True)
     wanted = np.sort(np.vstack([np.c_[loop, np.roll(loop, -1)] for loop in case.loops]), axis=1)
     if not np.array_equal(own[times == 1], np.unique(wanted, axis=0)) or times.max() > 2:
-        found.append("a loop edge has not one new triangle, or another not two")
+        found.append("a loop edge has not one new face, or another not two")
     if counts.max() > 2:
         found.append("an edge is repeated")
     if len(np.unique(sides, axis=0)) != len(sides):
         found.append("wound against a neighbour")
-    if set(fill.triangles.ravel()) != set(one) | set(two) | set(range(n, n + len(fill.vertices))):
+    if set(new.ravel()) != set(one) | set(two) | set(range(n, n + len(fill.vertices))):
         found.append("vertices are not the loops' and the new ones")
-    if len(one) + len(two) + len(fill.vertices) - len(own) + len(fill.triangles) != 0:
+    if len(one) + len(two) + len(fill.vertices) - len(own) + len(fill.triangles) + len(fill.quads) != 0:
         found.append("not an annulus")
     if not np.isfinite(fill.vertices).all():
         found.append("not finite")
@@ -132,6 +138,8 @@ class Measure:
 
 def measure(case, fill, seconds):
     """Regularity and shape, from the mesh alone."""
+    if len(fill.quads):
+        return measure_quads(case, fill, seconds)
     loops = np.concatenate(case.loops)
     valence = np.bincount(
         np.unique(np.sort(all_sides(case.triangles, fill.triangles), axis=1), axis=0).ravel()
@@ -162,24 +170,45 @@ def measure(case, fill, seconds):
     )
 
 
+def measure_quads(case, fill, seconds):
+    """Poles inside, and how far the loops' vertices are from two new quads; the corners' distance from a right angle as `angle`
+    (least) and `ratio` (mean, as a share of a right angle that is left).
+    """
+    at = np.bincount(np.r_[fill.quads.ravel(), fill.triangles.ravel()], minlength=len(case.vertices))
+    inner = at[len(case.vertices) :]
+    points = np.vstack([case.vertices, fill.vertices])[fill.quads]
+    ahead, back = np.roll(points, -1, axis=1) - points, np.roll(points, 1, axis=1) - points
+    cross = np.linalg.norm(np.cross(ahead, back), axis=2)
+    corners = np.degrees(np.arctan2(cross, (ahead * back).sum(axis=2)))
+    return Measure(
+        irregular=float((inner != 4).mean()) if len(inner) else 0.0,
+        excess=float(np.abs(at[np.concatenate(case.loops)] - 2).mean()),
+        angle=float(corners.min()),
+        ratio=float(1 - np.abs(corners - 90).mean() / 90),
+        meetings=fill.report["self_intersections"],
+        seconds=seconds,
+        grid=fill.report["grid"],
+    )
+
+
 def all_sides(*faces):
     """The sides of triangles."""
     return np.concatenate(faces)[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
 
 
-def run(case):
+def run(case, cells="triangles"):
     """The tube and its measure."""
     start = time.process_time()
-    fill = gridmesh.bridge(case.vertices, case.triangles, *case.loops, smooth=case.smooth)
+    fill = gridmesh.bridge(case.vertices, case.triangles, *case.loops, smooth=case.smooth, cells=cells)
     return fill, measure(case, fill, time.process_time() - start)
 
 
-def campaign(cases, seed):
+def campaign(cases, seed, cells="triangles"):
     """What is wrong, by case, and the measures."""
     wrong, measures = {}, []
     for number in range(cases):
         it = case(seed, number)
-        fill, found = run(it)
+        fill, found = run(it, cells)
         measures.append(found)
         if bad := faults(it, fill):
             wrong[number] = bad
@@ -192,14 +221,15 @@ def main():
     parser.add_argument("--cases", type=int, default=500)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", type=int)
+    parser.add_argument("--cells", choices=["triangles", "quads"], default="triangles")
     options = parser.parse_args()
     if options.only is not None:
         it = case(options.seed, options.only)
-        fill, found = run(it)
+        fill, found = run(it, options.cells)
         print([len(loop) for loop in it.loops], it.smooth, len(it.triangles) > 0, found)
         print(faults(it, fill), fill.report)
         return
-    wrong, measures = campaign(options.cases, options.seed)
+    wrong, measures = campaign(options.cases, options.seed, options.cells)
     print(f"{options.cases} pairs of loops, seed {options.seed}: {len(wrong)} broken {wrong or ''}")
     for name, best in [
         ("irregular", 0),

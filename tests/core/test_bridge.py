@@ -89,6 +89,101 @@ def test_a_campaign_of_random_loops():
     assert np.median(of("ratio")) >= 0.88
 
 
+# ----------------------------------------------------------------------------------------------------- quads
+
+
+def quads_at(n_loops, fill):
+    """How many new faces each vertex of the loops has, and each new one."""
+    faces = np.bincount(np.r_[fill.quads.ravel(), fill.triangles.ravel()], minlength=n_loops)
+    return faces[:n_loops], faces[n_loops:]
+
+
+def quad_tube(one, two, **options):
+    """A tube of quads between two rings of points without a mesh, checked."""
+    loops = np.arange(len(one)), len(one) + np.arange(len(two))
+    case = Case(np.vstack([one, two]), NO_FACES, loops, options.get("smooth", "tangent"))
+    fill = gridmesh.bridge(case.vertices, NO_FACES, *loops, cells="quads", **options)
+    assert not faults(case, fill)
+    assert len(fill.triangles) == (len(one) + len(two)) % 2
+    at_loops, inner = quads_at(len(case.vertices), fill)
+    assert fill.report["irregular"] == (inner != 4).sum()
+    assert fill.report["irregular_loop"] == (at_loops != 2).sum()
+    return fill
+
+
+@pytest.mark.parametrize("n", [3, 5, 12, 60, 200])
+@pytest.mark.parametrize("height", [0.05, 1.0, 4.0])
+def test_equal_coaxial_loops_are_joined_by_quads_without_a_pole(n, height):
+    fill = quad_tube(circle(n), circle(n, z=height))
+    assert (fill.report["irregular"], fill.report["irregular_loop"]) == (0, 0)
+    assert len(fill.quads) == n * fill.report["rows"]
+    assert np.degrees(fill.report["min_angle"]) > 85
+    assert np.linalg.norm(fill.vertices[:, :2], axis=1) == pytest.approx(1, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    ("n", "m", "rows", "poles"),
+    [(24, 30, 5, 2), (24, 36, 8, 2), (24, 31, 5, 1), (24, 25, 5, 1), (40, 10, 7, 6), (30, 30, 7, 0)],
+)
+def test_poles_of_quads_come_in_pairs_for_twice_the_rows_and_lie_off_the_loops(n, m, rows, poles):
+    fill = quad_tube(circle(n), circle(m, m / n, z=0.7), rows=rows)
+    assert fill.report["rows"] == rows
+    assert (fill.report["irregular"], fill.report["irregular_loop"]) == (poles, 0)
+    _, inner = quads_at(n + m, fill)
+    assert set(inner) <= {3, 4, 5}
+
+
+def test_a_campaign_of_random_loops_in_quads():
+    """A short run of the campaign; `python tests/campaign/bridges.py --cells quads` makes longer ones."""
+    wrong, measures = bridges.campaign(40, seed=1, cells="quads")
+    assert not wrong
+    of = lambda name: np.array([getattr(it, name) for it in measures])  # noqa: E731
+    assert np.median(of("irregular")) <= 0.01
+    assert of("excess").mean() <= 0.05
+    assert of("meetings").max() == 0
+    assert np.median(of("angle")) >= 40
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    n=st.integers(3, 70),
+    m=st.integers(3, 70),
+    radius=st.floats(0.05, 20),
+    height=st.floats(0.01, 8),
+    start=st.floats(0, TAU),
+    twist=st.floats(-8, 8),
+    rows=st.none() | st.integers(1, 12),
+    smooth=st.sampled_from(["flat", "tangent", "curvature"]),
+)
+def test_any_two_loops_in_quads(n, m, radius, height, start, twist, rows, smooth):
+    quad_tube(circle(n), circle(m, radius, height, start), twist=twist, rows=rows, smooth=smooth)
+
+
+def test_quads_of_a_pipe_go_on_through_the_tube():
+    vertices, triangles, one, two = pipe(gap=2.0)
+    polygons = np.concatenate([np.r_[np.arange(16), np.arange(16)] + 16 * k for k in range(4)])
+    order = np.argsort(polygons, kind="stable")
+    options = {"polygons": polygons[order], "cells": "quads"}
+    fill = gridmesh.bridge(vertices, triangles[order], one, two, **options)
+    assert (fill.report["irregular"], fill.report["irregular_loop"]) == (0, 0)
+    assert np.linalg.norm(fill.vertices[:, :2], axis=1) == pytest.approx(1, abs=0.02)
+    # Rows of quads that are level, as those of the pipe are.
+    heights = fill.vertices[:, 2].reshape(-1, 16)
+    assert np.ptp(heights, axis=1).max() < 0.05
+
+
+def test_quads_are_stored_refitted_and_extended():
+    vertices, triangles, one, two = pipe(n=16)
+    fill = gridmesh.bridge(vertices, triangles, one, two, cells="quads", smooth="curvature")
+    again = pickle.loads(pickle.dumps(fill))
+    assert again.quads.tobytes() == fill.quads.tobytes()
+    moved = 2 * vertices[:, [1, 2, 0]] + 0.5
+    assert again.refit(moved) == pytest.approx(2 * fill.vertices[:, [1, 2, 0]] + 0.5, abs=1e-6)
+    values = np.r_[np.zeros(16), np.ones(16)][:, None]
+    carried = again.extend(values)
+    assert 0 <= carried.min() < 0.4 < 0.6 < carried.max() <= 1
+
+
 # --------------------------------------------------------------------------------------------------- validity
 
 

@@ -89,6 +89,8 @@ fn filled(fill: &Fill, loops: usize, edges: usize) {
         let check = check_mesh(n, &fill.triangles);
         assert_eq!((check.bad_edges, check.bad_vertices, check.bad_triangles), (0, 0, 0));
         assert_eq!((check.components, check.boundaries, check.genus), (1, loops, 0));
+    } else {
+        assert_eq!(fill.triangles.len(), edges % 2);
     }
 }
 
@@ -100,8 +102,10 @@ pub fn several(data: &[u8]) {
     found.truncate(2 + case.below(4));
     let edges = found.iter().map(Vec::len).sum();
     let smooth = case.smooth();
+    let cells = if case.chance() { CellShape::Quad } else { CellShape::Triangle };
     if let ([one, other], true) = (&found[..], case.chance()) {
         let options = BridgeOptions {
+            cells,
             smooth,
             rows: case.chance().then(|| case.below(12)),
             twist: case.share(),
@@ -113,7 +117,7 @@ pub fn several(data: &[u8]) {
         }
         return;
     }
-    let options = FillOptions { smooth, ..FillOptions::default() };
+    let options = FillOptions { cells, smooth, ..FillOptions::default() };
     if let Some(fill) = bounded(|progress| fill_loops(&vertices, &triangles, &found, &options, progress)) {
         filled(&fill, found.len(), edges);
     }

@@ -3,7 +3,7 @@
 use gridmesh::fill::BridgeOptions;
 use pyo3::prelude::*;
 
-use crate::fill::options;
+use crate::fill::{options, shape};
 use crate::filled::Fill;
 use crate::input::Argument;
 use crate::mesh::{Mesh, indices, loop_argument};
@@ -21,7 +21,7 @@ use crate::watch::Watch;
 ///     "flat": straight from loop to loop. "tangent": leaves both loops with the slope of the surface there.
 ///     "curvature": with its slope and curvature.
 /// rows : int, optional
-///     Rows of triangles between the loops, at least one. None: as many as the lengths of the edges ask for, more
+///     Rows of faces between the loops, at least one. None: as many as the lengths of the edges ask for, more
 ///     where the loops are further apart.
 /// twist : float
 ///     By how much the other loop is turned on against the best fit, in radians; more than a whole turn
@@ -30,6 +30,8 @@ use crate::watch::Watch;
 ///     True: a tube that meets itself or the mesh is refused. False: this is counted in the report.
 /// polygons : (m,) array of int, optional
 ///     As in `fill_hole`.
+/// cells : {"triangles", "quads"}
+///     "quads": all new faces are quads if the loops have an even number of edges in sum; if it is odd one is a triangle.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1, which never falls; cancels by returning False. What it raises is
 ///     raised here.
@@ -38,11 +40,12 @@ use crate::watch::Watch;
 /// -------
 /// Fill
 ///     Its `loop` is `loop` followed by `other`. No vertex of them is moved and none is added; each of their edges
-///     gets exactly one new triangle, wound against its neighbour (against most of them where the two sides
+///     gets exactly one new face, wound against its neighbour (against most of them where the two sides
 ///     disagree: report["winding_conflicts"]); the patch is an annulus; no new edge or face repeats one of the
 ///     mesh. Inside it is a piece of the lattice on a cylinder or a cone, so that every new vertex has six
-///     neighbours; report["grid"] is "graded", and report["irregular"] above 0, where the counts allow no such piece. The
-///     same input gives the same bytes, for any number of threads. Time grows with the size of the tube.
+///     neighbours; report["grid"] is "graded", and report["irregular"] above 0, where the counts allow no such piece. Of quads every new
+///     vertex has four where the counts are equal; where they are not there are two poles, of three and five quads, for
+///     as many vertices as twice the rows between. The same input gives the same bytes, for any number of threads. Time grows with the size of the tube.
 ///
 /// Raises
 /// ------
@@ -68,8 +71,8 @@ use crate::watch::Watch;
 /// (0, True)
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, triangles, r#loop, other, *, smooth = None, rows = None, twist = None, strict = None, polygons = None, progress = None),
-    text_signature = "(vertices, triangles, loop, other, *, smooth='tangent', rows=None, twist=0.0, strict=False, polygons=None, progress=None)"
+    signature = (vertices, triangles, r#loop, other, *, smooth = None, rows = None, twist = None, strict = None, polygons = None, cells = None, progress = None),
+    text_signature = "(vertices, triangles, loop, other, *, smooth='tangent', rows=None, twist=0.0, strict=False, polygons=None, cells='triangles', progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn bridge(
@@ -83,6 +86,7 @@ pub fn bridge(
     twist: Option<&Bound<'_, PyAny>>,
     strict: Option<&Bound<'_, PyAny>>,
     polygons: Option<&Bound<'_, PyAny>>,
+    cells: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Fill> {
     let mesh = Mesh::read(vertices, triangles)?;
@@ -92,6 +96,7 @@ pub fn bridge(
     let mut options = BridgeOptions {
         smooth: rest.smooth,
         strict: rest.strict,
+        cells: shape(cells)?,
         polygons: rest.polygons,
         ..BridgeOptions::default()
     };

@@ -33,7 +33,6 @@ pub use crate::fill::filled::{Bridged, Fill};
 use crate::fill::job::Job;
 pub use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::holes;
-use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Fills one hole of a mesh, or a loop of edges without a mesh.
@@ -98,8 +97,9 @@ pub fn fill_loops(
             Err(Error::InvalidOption { name: "loops", value: "none".into(), allowed })
         }
         [single] => fill_hole(vertices, triangles, single, options, progress),
-        [one, other] if options.cells == CellShape::Triangle => {
+        [one, other] => {
             let options = BridgeOptions {
+                cells: options.cells,
                 smooth: options.smooth,
                 strict: options.strict,
                 polygons: options.polygons.clone(),

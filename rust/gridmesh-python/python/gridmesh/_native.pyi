@@ -281,6 +281,7 @@ def bridge(
     twist: float = 0.0,
     strict: bool = False,
     polygons: npt.ArrayLike | None = None,
+    cells: Literal["triangles", "quads"] = "triangles",
     progress: _Progress | None = None,
 ) -> Fill: ...
 def regrid(

@@ -1,8 +1,9 @@
 //! A tube between two loops, with every vertex of both.
 //!
-//! A tube needs no irregular vertex: it is a piece of the lattice on a cylinder or a cone (`rings`). The loops are closed
+//! Of triangles, a tube needs no irregular vertex: it is a piece of the lattice on a cylinder or a cone (`rings`). The loops are closed
 //! paths on it (`route`), chosen with the cone (`choose`), what lies between them is triangulated (`tube`), placed on a surface
-//! that goes on from both sides (`loft`) and moved within it to where triangles are good (`settle`).
+//! that goes on from both sides (`loft`) and moved within it to where faces are good (`settle`). Of quads it is rings of
+//! squares (`squares`), placed in the same way.
 
 pub(in crate::fill) mod align;
 mod choose;
@@ -12,6 +13,7 @@ mod rings;
 mod route;
 mod settle;
 mod span;
+mod squares;
 mod tube;
 
 use glam::DVec3;
@@ -32,11 +34,13 @@ use self::span::Span;
 /// Joins two loops of a mesh by a tube.
 ///
 /// Each of `loop_` and `other` is as for [`fill_hole`](super::fill_hole); they must have no vertex in common. The result's boundary is
-/// exactly the two loops: no vertex of them is moved and none is added, each of their edges gets one new triangle, wound against
+/// exactly the two loops: no vertex of them is moved and none is added, each of their edges gets one new face, wound against
 /// its neighbour. Where the surfaces at the two loops do not agree on the winding the larger number of edges decides and the report counts the
 /// others; a loop without faces is taken the way round that does not turn the tube inside out. The tube is an annulus, and
 /// no new edge or face repeats one of the mesh. Inside, every vertex has six neighbours wherever the counts allow: the
-/// report says how many do not. The loop of the [`Fill`] is `loop_` followed by `other`.
+/// report says how many do not. With [`cells`](BridgeOptions::cells) for quads the new faces are quads, and one triangle if the sum
+/// of the counts is odd; every vertex inside has four of them where the counts are equal, and where they are not two poles, of
+/// three and five, for as many vertices as two for each row. The loop of the [`Fill`] is `loop_` followed by `other`.
 ///
 /// The same input gives the same output for any number of threads.
 ///
@@ -74,6 +78,7 @@ fn bridged(
         return Err(Error::InvalidOption { name: "twist", value: options.twist.to_string(), allowed });
     }
     let rest = FillOptions {
+        cells: options.cells,
         smooth: options.smooth,
         strict: options.strict,
         polygons: options.polygons.clone(),

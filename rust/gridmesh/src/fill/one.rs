@@ -125,19 +125,11 @@ impl Task<'_> {
         let Attempt { unrolled, patch, mut shape, solved } = attempt;
         let checked = self.checked;
         let loop_ = &checked.vertices;
-        let n = loop_.len();
         shape.positions = solved.positions;
         let work = &shape.work;
         let [min_angle, max_angle] = work.corner_range(&shape.positions);
-        let valence = |v: &usize| work.range(*v).len() != 6;
-        let (irregular, irregular_loop) = if work.quads > 0 {
-            let faces = work.faces_at();
-            let room = room(loop_, self.rim, &self.job.options.polygons);
-            let off = room.iter().zip(&faces).filter(|(room, faces)| (*room - **faces as f64).abs() > 0.5);
-            (work.inner().filter(|&v| faces[v] != 4).count(), off.count())
-        } else {
-            (work.inner().filter(valence).count(), (0..n).filter(valence).count())
-        };
+        let loops = std::iter::once(loop_.as_slice());
+        let [irregular, irregular_loop] = work.irregular(loops, self.rim, &self.job.options.polygons);
         let report = FillReport {
             triangles: work.single().len(),
             quads: work.quads,

@@ -92,7 +92,6 @@ impl Fill {
             && loop_.iter().chain(&outer).all(known)
             && patch <= triangles.len()
             && quads <= patch / 2
-            && (bridged.is_empty() || quads == 0)
             && triangles[..2 * quads].chunks_exact(2).all(|t| t[0][0] == t[1][0] && t[0][2] == t[1][1])
             && triangles.iter().all(|t| within(t, positions.len()))
             && triangles[..patch].iter().all(|t| within(t, end))

@@ -4,8 +4,10 @@ use super::align::Ring;
 use super::loft::Loft;
 use super::rings::Rings;
 use super::route::{NEVER, Path, Side, Target, Wishes, route, straight};
+use super::squares::{Plan, squares};
 use super::tube::{Bound, Tube, is_tube, stacked, tube};
 use crate::error::{Error, Result};
+use crate::options::CellShape;
 use crate::path::placement::ROW_HEIGHT;
 use crate::progress::Progress;
 
@@ -99,6 +101,8 @@ pub(super) struct Chooser<'a> {
     rows: Vec<f64>,
     /// Rows between the loops at least.
     least: i64,
+    /// There are as many rows as were asked for.
+    exact: bool,
 }
 
 /// One lattice to try.
@@ -122,14 +126,17 @@ impl<'a> Chooser<'a> {
         loft: &Loft,
         rows: Option<usize>,
         least: usize,
+        cells: CellShape,
     ) -> Result<Chooser<'a>> {
+        let height = if cells == CellShape::Quad { 1.0 } else { ROW_HEIGHT };
         let suiting = |k: usize| {
             let around = k as f64 / SAMPLES as f64;
             let (a, b) = (lower.edge(around), upper.edge(around));
             // Edges grow evenly from one loop to the other.
             let edge = if (a - b).abs() > 1e-3 * a { (a - b) / (a / b).ln() } else { a };
-            loft.length(around) / (edge * ROW_HEIGHT)
+            loft.length(around) / (edge * height)
         };
+        let exact = rows.is_some();
         let found = match rows {
             Some(rows) => vec![rows as f64; SAMPLES],
             None => smoothed(&(0..SAMPLES).map(suiting).collect::<Vec<_>>()),
@@ -141,7 +148,7 @@ impl<'a> Chooser<'a> {
         }
         let rows = found.into_iter().map(|rows| rows.max(least as f64)).collect();
         let places = upper.around.iter().map(|&around| lower.before(around) / lower.len() as f64).collect();
-        Ok(Chooser { lower, upper, places, rows, least: least as i64 })
+        Ok(Chooser { lower, upper, places, rows, least: least as i64, exact })
     }
 
     fn mean(&self) -> f64 {
@@ -208,6 +215,17 @@ impl<'a> Chooser<'a> {
             *around = low + height * (high - low);
         }
         Chosen { tube, lattice: false }
+    }
+
+    /// Rings of squares, as many all around.
+    pub fn squares(&self) -> Chosen {
+        let (m, n) = (self.lower.len(), self.upper.len());
+        let rows = (self.mean().round() as usize).max(self.least as usize);
+        let plan = Plan::new(m, n - m, rows, self.exact);
+        let mut part = 0;
+        let mut tube = squares(&plan, &self.places, |gain| self.reached(gain, &mut part));
+        tube.around.iter_mut().for_each(|around| *around = self.lower.after(*around * m as f64));
+        Chosen { tube, lattice: true }
     }
 
     fn candidates(&self) -> Vec<Candidate> {
@@ -321,17 +339,10 @@ impl<'a> Chooser<'a> {
         let k = it.growth;
         let more = (self.upper.len() - m) as f64;
         // Corners where the upper loop gains on the lower one; ascending, also where it falls back.
-        let ahead = |x: f64| self.upper.before(self.lower.after(x * m as f64)) - x * m as f64;
-        let start = ahead(0.0);
-        let parts = 4 * self.upper.len().max(SAMPLES);
         let (mut corners, mut rays) = (Vec::with_capacity(k), Vec::with_capacity(k));
         let mut part = 0;
         for a in 0..k {
-            let level = (a as f64 + 0.5) * more / k as f64;
-            while part < parts && ahead(part as f64 / parts as f64) - start < level {
-                part += 1;
-            }
-            let ray = part as f64 / parts as f64;
+            let ray = self.reached((a as f64 + 0.5) * more / k as f64, &mut part);
             rays.push(ray);
             corners.push((ray * length as f64).round() as i64);
         }
@@ -346,6 +357,19 @@ impl<'a> Chooser<'a> {
             rays.insert(0, ray);
         }
         Some(Rings::new(length, corners, rays))
+    }
+
+    /// The first place around the axis by which the upper loop has gained so many vertices on the lower one; also where it
+    /// falls back later. `part`: where to look from, and where it was found.
+    fn reached(&self, gain: f64, part: &mut usize) -> f64 {
+        let m = self.lower.len() as f64;
+        let ahead = |x: f64| self.upper.before(self.lower.after(x * m)) - x * m;
+        let start = ahead(0.0);
+        let parts = 4 * self.upper.len().max(SAMPLES);
+        while *part < parts && ahead(*part as f64 / parts as f64) - start < gain {
+            *part += 1;
+        }
+        *part as f64 / parts as f64
     }
 
     fn rows_at(&self, around: f64) -> f64 {

@@ -1,23 +1,21 @@
-//! The vertices of a bridge moved within its surface to where their triangles are good.
+//! The vertices of a bridge moved within its surface to where their faces are good.
 
 use glam::{DVec2, DVec3};
 
 use super::loft::Loft;
 use crate::error::Result;
 use crate::fill::surface::patchwork::Patchwork;
-use crate::fill::surface::sweep::shape;
+use crate::geometry::corner::{Corner, Ideal};
+use crate::geometry::quadratic::Quadratic;
 use crate::progress::Progress;
-
-/// Sum of the squared sides over twice the area of an equilateral triangle.
-const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
 
 /// Steps are halved this often before a vertex stays where it is.
 const HALVINGS: usize = 4;
 
-/// Sweeps end when a mean vertex gains less than this share of a good triangle.
+/// Sweeps end when a mean vertex gains less than this share of a good corner.
 const SETTLED: f64 = 1e-3;
 
-/// The badness of a triangle counts to this power, and one: the worst ones most.
+/// The badness of a corner counts to this power, and one: the worst ones most.
 const POWER: i32 = 6;
 
 /// Moves the vertices between the loops. `flat`: where all vertices are on the loft; those of the loops stay.
@@ -29,11 +27,13 @@ pub(super) fn settle(
     sweeps: usize,
     progress: Progress<'_>,
 ) -> Result<()> {
+    let mut star = vec![];
     for _ in 0..sweeps {
         progress.report(0.0)?;
         let mut gain = 0.0;
         for v in work.inner() {
-            gain += moved(work, loft, flat, positions, v);
+            work.star(v, &mut star);
+            gain += moved(loft, flat, positions, &star, v);
         }
         if gain < SETTLED * work.inner().len() as f64 {
             break;
@@ -42,16 +42,18 @@ pub(super) fn settle(
     Ok(())
 }
 
-/// Moves one vertex; how much less bad its triangles are then.
-fn moved(work: &Patchwork, loft: &Loft, flat: &mut [DVec2], positions: &mut [DVec3], v: usize) -> f64 {
-    let fan = work.fan(v);
+/// Moves one vertex; how much less bad its faces are then.
+fn moved(
+    loft: &Loft,
+    flat: &mut [DVec2],
+    positions: &mut [DVec3],
+    star: &[(u32, u32, Ideal)],
+    v: usize,
+) -> f64 {
     let here = positions[v];
     let spot = loft.at(flat[v].x, flat[v].y);
-    let own = |fan: &&[u32; 3]| (fan[0] as usize) < work.n_patch;
-    let normals = fan
-        .iter()
-        .filter(own)
-        .map(|&[_, i, j]| (positions[i as usize] - here).cross(positions[j as usize] - here));
+    let own = star.iter().filter(|(.., ideal)| ideal.is_own());
+    let normals = own.map(|&(i, j, _)| (positions[i as usize] - here).cross(positions[j as usize] - here));
     let mut normal = spot.along.cross(spot.across).normalize_or_zero();
     if normal.dot(normals.sum::<DVec3>()) < 0.0 {
         normal = -normal;
@@ -61,44 +63,33 @@ fn moved(work: &Patchwork, loft: &Loft, flat: &mut [DVec2], positions: &mut [DVe
     }
     let e = spot.along.normalize();
     let f = normal.cross(e);
-    let mut slope = DVec2::ZERO;
-    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    let seen = |(i, j, ideal): (u32, u32, Ideal), from: DVec3, positions: &[DVec3]| {
+        Corner::new(ideal, positions[i as usize] - from, positions[j as usize] - from, normal)
+    };
+    let mut model = Quadratic::default();
     let mut reach = f64::INFINITY;
     let mut present = 0.0;
-    for &[_, i, j] in fan.iter().filter(own) {
-        let (a, b) = (positions[i as usize] - here, positions[j as usize] - here);
-        reach = reach.min(a.length());
-        let (sides, area, widen) = shape(a, b, normal);
-        let ds = -2.0 * (a + b);
-        let (ds, da) = (DVec2::new(ds.dot(e), ds.dot(f)), DVec2::new(widen.dot(e), widen.dot(f)));
-        let badness = sides / area / EQUILATERAL;
-        present += badness.powi(POWER + 1);
-        let weight = badness.powi(POWER) / area;
-        slope += weight * (ds - da * (sides / area));
-        let (m, n) = (1.0 / area, 2.0 * sides / (area * area));
-        xx += weight * (4.0 - 2.0 * m * ds.x * da.x + n * da.x * da.x);
-        yy += weight * (4.0 - 2.0 * m * ds.y * da.y + n * da.y * da.y);
-        xy += weight * (n * da.x * da.y - m * (ds.x * da.y + ds.y * da.x));
+    for &at in star {
+        reach = reach.min(here.distance(positions[at.0 as usize]));
+        let corner = seen(at, here, positions);
+        let weight = corner.badness().powi(POWER);
+        present += weight * corner.badness();
+        model += corner.model(weight, [e, f]);
     }
-    let determinant = xx * yy - xy * xy;
     // The loft's derivatives in the same frame.
     let (p, q) = (spot.along.dot(e), DVec2::new(spot.across.dot(e), spot.across.dot(f)));
     let area = p * q.y;
-    if determinant.is_nan() || determinant <= 0.0 || area.is_nan() || area.abs() < 1e-12 * p * p {
+    if area.is_nan() || area.abs() < 1e-12 * p * p {
         return 0.0;
     }
-    let u = -DVec2::new(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
-    let mut step = u.clamp_length_max(reach);
+    let Some(step) = model.minimum() else { return 0.0 };
+    let mut step = step.clamp_length_max(reach);
     for _ in 0..HALVINGS {
         let height = step.y / q.y;
         let there = flat[v] + DVec2::new((step.x - height * q.x) / p, height);
         if (0.001..0.999).contains(&there.y) {
             let point = loft.at(there.x, there.y).point;
-            let sum = fan.iter().filter(own).map(|&[_, i, j]| {
-                let (sides, area, _) =
-                    shape(positions[i as usize] - point, positions[j as usize] - point, normal);
-                (sides / area / EQUILATERAL).powi(POWER + 1)
-            });
+            let sum = star.iter().map(|&at| seen(at, point, positions).badness().powi(POWER + 1));
             let sum = sum.sum::<f64>();
             if sum < present {
                 flat[v] = there;

@@ -20,7 +20,7 @@ use crate::fill::surface::fair::Bending;
 use crate::fill::surface::fair::Membrane;
 use crate::fill::surface::fit::{SEAM_OF_CURVATURE, curvature_target, folds, rim_angle};
 use crate::fill::surface::patchwork::Patchwork;
-use crate::geometry::metrics::min_angle;
+use crate::options::CellShape;
 use crate::progress::{Clock, Progress};
 
 /// Sweeps within the surface at most.
@@ -83,7 +83,7 @@ impl<'a> Span<'a> {
         let apart = |tube: &Chosen| {
             let m = lower.around.len() as u32;
             let both = m + upper.around.len() as u32;
-            let sides = tube.tube.triangles.iter().flat_map(edges);
+            let sides = tube.tube.facets().flat_map(|t| edges(&t));
             !sides.filter(|[a, b]| *a < m && *b >= m && *b < both).any(|[a, b]| joined.contains(&[a, b - m]))
         };
         let onward = self.onward();
@@ -93,8 +93,14 @@ impl<'a> Span<'a> {
         let mut chosen = None;
         // Where the mesh joins the loops already, a row more keeps them apart.
         for least in [1, 2] {
-            let chooser = Chooser::new(lower, upper, &loft, self.options.rows, least)?;
-            let found = chooser.lattice(progress.part(0.0, 0.6))?.unwrap_or_else(|| chooser.stacked());
+            let cells = self.options.cells;
+            let chooser = Chooser::new(lower, upper, &loft, self.options.rows, least, cells)?;
+            let found = match cells {
+                CellShape::Quad => chooser.squares(),
+                CellShape::Triangle => {
+                    chooser.lattice(progress.part(0.0, 0.6))?.unwrap_or_else(|| chooser.stacked())
+                }
+            };
             if apart(&found) {
                 chosen = Some((chooser, found));
                 break;
@@ -108,7 +114,7 @@ impl<'a> Span<'a> {
         };
         clock.stage("grid");
         let mut best = self.placed(&banks, &loft, &found, progress.part(0.6, 0.9))?;
-        if best.lattice && best.min_angle < THIN {
+        if self.options.cells == CellShape::Triangle && best.lattice && best.min_angle < THIN {
             let other = chooser.stacked();
             if apart(&other) {
                 let other = self.placed(&banks, &loft, &other, progress.part(0.9, 1.0))?;
@@ -197,12 +203,8 @@ impl<'a> Span<'a> {
             };
             place as u32
         };
-        let triangles = tube.triangles.iter().map(|t| t.map(number)).collect::<Vec<_>>();
         let loop_ = self.loops.iter().flat_map(|l| l.vertices.iter().copied()).collect::<Vec<_>>();
-        let rings = if self.options.smooth == Smooth::Curvature { 2 } else { 1 };
-        let mut work = Patchwork::new(&loop_, tube.around.len(), &triangles, self.rim, rings)?;
-        work.later = vec![first];
-        let mut flat = vec![DVec2::ZERO; work.end];
+        let mut flat = vec![DVec2::ZERO; m + n + tube.around.len()];
         for (k, &around) in lower.around.iter().chain(&upper.around).enumerate() {
             flat[number(k as u32) as usize] = DVec2::new(around, if k < m { 0.0 } else { 1.0 });
         }
@@ -213,10 +215,19 @@ impl<'a> Span<'a> {
             let height = if even { height } else { (grow.powf(height) - 1.0) / (grow - 1.0) };
             flat[m + n + v] = DVec2::new(around, height);
         }
+        let inner = flat[m + n..].iter().map(|p| loft.at(p.x, p.y).point).collect::<Vec<_>>();
+        let at = |v: u32| {
+            let v = v as usize;
+            loop_.get(v).map_or_else(|| inner[v - m - n], |&name| self.vertices[name as usize])
+        };
+        let halves = tube.quads.iter().flat_map(|quad| cut(quad.map(number), at));
+        let triangles = halves.chain(tube.triangles.iter().map(|t| t.map(number))).collect::<Vec<_>>();
+        let rings = if self.options.smooth == Smooth::Curvature { 2 } else { 1 };
+        let mut work = Patchwork::new(&loop_, inner.len(), &triangles, self.rim, rings)?;
+        work.later = vec![first];
+        let work = work.of_quads(tube.quads.len());
         let mut positions = work_positions(&work, &loop_, self.vertices);
-        for v in work.inner() {
-            positions[v] = loft.at(flat[v].x, flat[v].y).point;
-        }
+        positions[m + n..work.end].copy_from_slice(&inner);
         settle(&work, loft, &mut flat, &mut positions, SWEEPS, progress)?;
         let mut shape = Shape {
             work,
@@ -235,21 +246,21 @@ impl<'a> Span<'a> {
         if shape.positions.iter().any(|p| !p.is_finite()) {
             return Err(Error::Solver { stage: "bridge", reason: "a vertex is not finite".into() });
         }
-        let least = min_angle(&shape.positions, &shape.work.triangles[..shape.work.n_patch]);
+        let [least, _] = shape.work.corner_range(&shape.positions);
         Ok(Attempt { shape, lattice: chosen.lattice, rows: tube.rows, min_angle: least })
     }
 
     fn finish(&self, attempt: Attempt, clock: Clock) -> Fill {
         let Attempt { shape, lattice, rows, min_angle } = attempt;
         let work = &shape.work;
-        let own = &work.triangles[..work.n_patch];
-        let irregular = |v: &usize| work.range(*v).len() != 6;
+        let loops = self.loops.iter().map(|l| l.vertices.as_slice());
+        let [irregular, irregular_loop] = work.irregular(loops, self.rim, &self.options.polygons);
         let report = FillReport {
-            triangles: own.len(),
-            quads: 0,
+            triangles: work.single().len(),
+            quads: work.quads,
             vertices: work.inner().len(),
-            irregular: work.inner().filter(irregular).count(),
-            irregular_loop: (0..work.n).filter(irregular).count(),
+            irregular,
+            irregular_loop,
             grid: if lattice { Grid::Lattice } else { Grid::Graded },
             rows: rows.round() as usize,
             folded: false,
@@ -324,11 +335,25 @@ impl Shape {
         Ok(positions)
     }
 
+    /// [`Shape::curved`] for quads: four triangles around the middle of each bend the same in all directions.
+    fn centred_curved(&self, mut start: Vec<DVec3>, progress: Progress<'_>) -> Result<Vec<DVec3>> {
+        let (end, quads) = (self.work.end, self.work.quads);
+        let middle = |q: [u32; 4]| q.iter().map(|&v| start[v as usize]).sum::<DVec3>() / 4.0;
+        let middles = self.work.quads().map(middle).collect::<Vec<_>>();
+        start.splice(end..end, middles);
+        let mut curved = self.centred()?.curved(start, progress)?;
+        curved.drain(end..end + quads);
+        Ok(curved)
+    }
+
     /// Moves the vertices of a bridge along their normals towards the curvature of the surroundings.
     fn curved(&self, start: Vec<DVec3>, progress: Progress<'_>) -> Result<Vec<DVec3>> {
         let work = &self.work;
         if work.inner().is_empty() || !work.closed[..work.n].contains(&true) {
             return Ok(start);
+        }
+        if work.quads > 0 {
+            return self.centred_curved(start, progress);
         }
         let steps = || {
             let (bending, membrane) = (Bending::new(work, progress)?, Membrane::new(work, progress)?);
@@ -344,6 +369,15 @@ impl Shape {
             Err(Error::Solver { .. }) => Ok(start),
             other => other,
         }
+    }
+}
+
+/// Two triangles of a quad, cut where it is shorter.
+fn cut([a, b, c, d]: [u32; 4], at: impl Fn(u32) -> DVec3) -> [[u32; 3]; 2] {
+    if at(a).distance_squared(at(c)) <= at(b).distance_squared(at(d)) {
+        [[a, b, c], [a, c, d]]
+    } else {
+        [[b, c, d], [b, d, a]]
     }
 }
 

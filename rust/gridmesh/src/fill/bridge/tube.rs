@@ -11,11 +11,13 @@ pub(super) struct Bound<'a> {
     pub shifts: Vec<f64>,
 }
 
-/// A triangulated tube: the vertices of the lower path, those of the upper one, then those between.
-#[derive(Clone, Debug)]
+/// The faces of a tube: the vertices of the lower path, those of the upper one, then those between.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Tube {
     /// Counter-clockwise where the paths run to the right and rings follow each other upwards.
     pub triangles: Vec<[u32; 3]>,
+    /// The same; of a tube of triangles none.
+    pub quads: Vec<[u32; 4]>,
     /// Where each vertex between lies around the axis: the difference to any neighbour is less than half a round.
     pub around: Vec<f64>,
     /// How far each vertex between is from the lower path, 0, to the upper one, 1.
@@ -83,8 +85,7 @@ pub(super) fn tube(rings: &Rings, lower: &Bound<'_>, upper: &Bound<'_>) -> Resul
     }
     let least = lower.iter().map(|node| node.ring).min().unwrap_or(0);
     let most = upper.iter().map(|node| node.ring).max().unwrap_or(0);
-    let mut tube =
-        Tube { triangles: vec![], around: vec![], height: vec![], rows: 0.0, least: 0.0, most: 0.0 };
+    let mut tube = Tube::default();
     for ring in least..most {
         let (under, over) = (Below::new(rings, lower, ring), Below::new(rings, upper, ring));
         let mut enter = |corners: [Node; 3]| {
@@ -167,14 +168,7 @@ impl Profile {
 pub(super) fn stacked(lengths: &[usize], shift: usize) -> Tube {
     let (m, n) = (lengths[0], lengths[lengths.len() - 1]);
     let rows = lengths.len() - 1;
-    let mut tube = Tube {
-        triangles: vec![],
-        around: vec![],
-        height: vec![],
-        rows: rows as f64,
-        least: rows as f64,
-        most: rows as f64,
-    };
+    let mut tube = Tube { rows: rows as f64, least: rows as f64, most: rows as f64, ..Tube::default() };
     let mut first = vec![0u32];
     for (row, &length) in lengths.iter().enumerate().take(rows).skip(1) {
         first.push((m + n + tube.around.len()) as u32);
@@ -205,17 +199,26 @@ pub(super) fn stacked(lengths: &[usize], shift: usize) -> Tube {
     tube
 }
 
-/// True if the triangles form a tube over `m` and `n` vertices of two loops, the lower one running to the right,
+impl Tube {
+    /// The faces as triangles, two for each quad.
+    pub fn facets(&self) -> impl Iterator<Item = [u32; 3]> {
+        let halves = self.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        halves.chain(self.triangles.iter().copied())
+    }
+}
+
+/// True if the faces form a tube over `m` and `n` vertices of two loops, the lower one running to the right,
 /// and over others of which none is missing: each loop edge in one triangle, all others in two, no triangle
 /// or edge twice.
 pub(super) fn is_tube(tube: &Tube, m: usize, n: usize) -> bool {
     let end = m + n + tube.around.len();
-    if tube.triangles.len() + m + n != 2 * end {
+    let facets = tube.facets().collect::<Vec<_>>();
+    if facets.len() + m + n != 2 * end {
         return false;
     }
-    let mut sides = Vec::with_capacity(3 * tube.triangles.len());
+    let mut sides = Vec::with_capacity(3 * facets.len());
     let mut used = vec![false; end];
-    for t in &tube.triangles {
+    for t in &facets {
         for k in 0..3 {
             sides.push([t[k], t[(k + 1) % 3]]);
             used[t[k] as usize] = true;

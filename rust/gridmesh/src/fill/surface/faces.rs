@@ -7,8 +7,11 @@ use super::fit::{Faults, SEAM, SEAM_OF_CURVATURE, Solved, TANGLED, curvature_tar
 use super::patchwork::Patchwork;
 use crate::error::{Error, Result};
 use crate::fill::filled::Shape;
+use crate::fill::loops::mesh::Rim;
+use crate::fill::loops::reserve::room;
 use crate::fill::options::Smooth;
-use crate::fill::planar::stars::CornerStars;
+use crate::fill::planar::stars::{CornerStars, Stars};
+use crate::geometry::corner::Ideal;
 use crate::progress::Progress;
 
 /// Share of the last step that is taken: with all of it patches of few quads bulge, since diagonals stand for curved
@@ -18,7 +21,7 @@ const POLISH: f64 = 0.6;
 impl Shape {
     /// The same with a vertex in the middle of each quad, and four triangles around it: bent, it is the same in all
     /// directions, where a diagonal would make a difference.
-    fn centred(&self) -> Result<Shape> {
+    pub(in crate::fill) fn centred(&self) -> Result<Shape> {
         let work = &self.work;
         let (end, more) = (work.end, work.quads);
         let quads = work.quads().collect::<Vec<_>>();
@@ -119,12 +122,39 @@ impl Patchwork {
         &self.triangles[2 * self.quads..self.n_patch]
     }
 
+    /// The corners that a new vertex should make good, into `star`.
+    pub fn star(&self, v: usize, star: &mut Vec<(u32, u32, Ideal)>) {
+        star.clear();
+        match &self.corners {
+            Some(corners) => star.extend(corners.triangles(v - self.n)),
+            None => star.extend(self.fan(v).iter().map(|&[_, i, j]| (i, j, Ideal::Equilateral))),
+        }
+    }
+
     /// How many faces of the patch each vertex of it has.
     pub fn faces_at(&self) -> Vec<usize> {
         let mut faces = vec![0; self.end];
         self.quads().flatten().for_each(|v| faces[v as usize] += 1);
         self.single().iter().flatten().for_each(|&v| faces[v as usize] += 1);
         faces
+    }
+
+    /// New vertices that have another number of neighbours, or of quads, than regular ones; and those of the loops with
+    /// other faces than the mesh leaves room for. `loops`: as the patch's boundary runs.
+    pub fn irregular<'a>(
+        &self,
+        loops: impl Iterator<Item = &'a [u32]>,
+        rim: &Rim,
+        polygons: &[u32],
+    ) -> [usize; 2] {
+        if self.quads == 0 {
+            let valence = |v: &usize| self.range(*v).len() != 6;
+            return [self.inner().filter(valence).count(), (0..self.n).filter(valence).count()];
+        }
+        let faces = self.faces_at();
+        let room = loops.flat_map(|loop_| room(loop_, rim, polygons));
+        let off = room.zip(&faces).filter(|(room, faces)| (*room - **faces as f64).abs() > 0.5);
+        [self.inner().filter(|&v| faces[v] != 4).count(), off.count()]
     }
 
     /// How many corners of quads are beyond a straight angle, seen along the normal.

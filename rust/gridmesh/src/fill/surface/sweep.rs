@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use super::patchwork::Patchwork;
-use crate::fill::planar::stars::Stars;
 use crate::geometry::corner::{Corner, Ideal};
 use crate::geometry::quadratic::Quadratic;
 
@@ -16,11 +15,7 @@ use crate::geometry::quadratic::Quadratic;
 pub(crate) fn sweep(work: &Patchwork, positions: &mut [DVec3]) {
     let mut star: Vec<(u32, u32, Ideal)> = vec![];
     for v in work.inner() {
-        star.clear();
-        match &work.corners {
-            Some(corners) => star.extend(corners.triangles(v - work.n)),
-            None => star.extend(work.fan(v).iter().map(|&[_, i, j]| (i, j, Ideal::Equilateral))),
-        }
+        work.star(v, &mut star);
         let here = positions[v];
         let own = star.iter().filter(|(.., ideal)| ideal.is_own());
         let normal = own
@@ -52,12 +47,4 @@ pub(crate) fn sweep(work: &Patchwork, positions: &mut [DVec3]) {
             step *= 0.5;
         }
     }
-}
-
-/// Of the triangle with the sides `a` and `b`: the sum of the squared sides, twice the area, and the
-/// gradient of the latter as their common corner moves. Folded triangles are seen in the tangent
-/// plane, where they have to unfold; their area counts as small.
-pub(crate) fn shape(a: DVec3, b: DVec3, normal: DVec3) -> (f64, f64, DVec3) {
-    let corner = Corner::new(Ideal::Equilateral, a, b, normal);
-    (corner.sides, corner.area, corner.widening)
 }
