@@ -242,11 +242,25 @@ def check(case: Case) -> tuple[str, str | None, float]:
     except gridmesh.GridMeshError as refused:
         seconds = time.process_time() - since
         wrong = None if refused.kind in EXPECTED else str(refused)
-        return refused.kind, wrong or too_long(case, seconds), seconds
+        return refused.kind, wrong or too_long(case, seconds) or untrue(case, refused), seconds
     seconds = time.process_time() - since
     if fractions != sorted(fractions):
         return "patch", "progress runs backwards", seconds
     return "patch", fault(case, patch) or too_long(case, seconds), seconds
+
+
+def untrue(case: Case, refused: gridmesh.GridMeshError) -> str | None:
+    """What is wrong with the number that a refusal says works, if it says one."""
+    number = str(refused).partition("; ")[2].split(" work")[0]
+    if refused.kind != "too_coarse" or not number.isdecimal():
+        return None
+    advised = Case(case.kind, case.outline, case.holes, case.options | {"triangles": int(number)})
+    try:
+        patch = gridmesh.mesh_sketch(advised.outline, advised.holes, **advised.options)
+    except gridmesh.GridMeshError as again:
+        return f"{number} do not work: {again}"
+    wrong = fault(advised, patch)
+    return None if wrong is None else f"at {number}, which are said to work: {wrong}"
 
 
 def too_long(case: Case, seconds: float) -> str | None:

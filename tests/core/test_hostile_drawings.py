@@ -109,6 +109,17 @@ def test_the_search_for_a_number_does_not_dwell_on_those_that_fail(seed, most):
     check_patch(gridmesh.mesh_sketch(case.outline, **case.options), [case.outline])
 
 
+@pytest.mark.parametrize("seed", [12_004_172, 13_000_249, 13_005_311, 13_005_582, 13_004_194])
+def test_a_boundary_in_conflict_nearly_everywhere_is_given_up(seed):
+    """It asked up to 5,700 times: fourteen million states for each of four angles and two bends, four seconds and more."""
+    case = drawings.case(seed)
+    questions = []
+    error = refused(case.outline, progress=questions.append, **case.options)
+    assert error.kind == "too_coarse"
+    assert len(questions) < 2600
+    assert drawings.untrue(case, error) is None
+
+
 def test_without_least_nothing_is_searched_for():
     error = refused(spiral(8, 0.2), triangles=500, least=False)
     assert error.kind == "too_coarse"

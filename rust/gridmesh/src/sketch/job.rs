@@ -339,7 +339,7 @@ const TURNS_OF_CORNER: f64 = 12.0;
 pub(crate) const TURNS_OF_ANGLE: f64 = 16.0;
 
 /// After so many states no more shifts of the lattice are tried.
-const STATES_BEFORE_SHIFTS: u64 = 15_000_000;
+const STATES_BEFORE_SHIFTS: u64 = 8_000_000;
 
 /// A flat patch with the numbers of its making.
 #[derive(Clone, Debug)]

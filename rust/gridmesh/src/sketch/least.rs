@@ -13,16 +13,16 @@ use crate::sketch::job::{Asked, Effort, Job};
 
 /// Work that the search may take, in triangles; an edge of the boundary counts as `EDGE` of them. Some
 /// seconds, whatever the drawing. Where walls get in each other's way the states that searches take count, so many
-/// as a triangle: sixteen million at most, a second or two.
+/// as a triangle: eight million at most, less than a second.
 const WORK: f64 = 2e6;
 const EDGE: f64 = 20.0;
-const STATES: f64 = 8.0;
+const STATES: f64 = 4.0;
 
 /// States that one search may take, and more for each triangle: where a drawing has no mesh most are spent to find out, and a
 /// larger number is found sooner than it is shown that a smaller one fails. A number that is said to work does so with
 /// more effort too. And beyond what the search took that worked, where a smaller number is looked for after it.
 const MOST: u64 = 400_000;
-const MOST_EACH: u64 = 300;
+const MOST_EACH: u64 = 200;
 
 /// Sizes are tried in steps of this factor.
 const STEP: f64 = 1.1;

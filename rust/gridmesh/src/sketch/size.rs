@@ -10,10 +10,10 @@ use crate::path::placement::Lattice;
 use crate::progress::{Meter, Progress};
 use crate::sketch::job::{Asked, Effort, Job, Miss};
 
-/// States that pricing conflicts may take on one lattice, over all corrections of its edge length, beside six for each
-/// state there is: a second or two. And before a proof on a shifted lattice.
-const MOST_STATES: u64 = 14_000_000;
-const MOST_STATES_SHIFTED: u64 = 4_000_000;
+/// States that pricing conflicts may take on one lattice, over all corrections of its edge length, and more for each
+/// cell asked for: a fifth of a second. Where more are needed, nearly every vertex is in conflict with another.
+const MOST_STATES: u64 = 1_500_000;
+const MOST_STATES_EACH: f64 = 100.0;
 
 impl Job<'_> {
     /// The outline for one placement, its work noted.
@@ -25,13 +25,23 @@ impl Job<'_> {
         shift: DVec2,
         progress: Progress<'_>,
     ) -> Result<Result<(Lattice, Outline), Miss>> {
+        let most = self.most_states(asked);
         let meter = Meter::new(match effort {
-            Effort::Full => MOST_STATES,
-            Effort::Quick(most) => most,
+            Effort::Full => most,
+            Effort::Quick(less) => less.min(most),
         });
         let found = self.sized(asked, effort, angle, shift, progress.metered(&meter));
         self.states.add(meter.taken());
         found
+    }
+
+    /// States that the search on one lattice may take.
+    fn most_states(&self, asked: Asked) -> u64 {
+        let cells = match asked {
+            Asked::EdgeLength(h) => self.area / (self.options.cells.area() * h * h),
+            Asked::Cells(n) => n as f64,
+        };
+        MOST_STATES + (MOST_STATES_EACH * cells) as u64
     }
 
     /// The outline for one placement; with a number of triangles asked for, the edge length is
@@ -55,14 +65,18 @@ impl Job<'_> {
         let mut obstacle =
             Obstacle::new("the number of triangles is not reached", self.contours[0].points()[0]);
         let mut before = None;
+        let is_spent = || progress.meter().is_some_and(|meter| meter.left() == 0);
         for _ in 0..CORRECTIONS {
             progress.report(0.0)?;
+            if before.is_some() && is_spent() {
+                break;
+            }
             let lattice = self.lattice(edge_length, angle, shift);
             let outline = match self.path(&lattice, &unproved, progress)? {
                 Ok(outline) => outline,
                 Err(found) => {
                     obstacle = found;
-                    if effort != Effort::Full && progress.meter().is_some_and(|meter| meter.left() == 0) {
+                    if effort != Effort::Full && is_spent() {
                         // With more effort it may end otherwise.
                         best = None;
                     }
@@ -125,7 +139,7 @@ impl Job<'_> {
         progress: Progress<'_>,
     ) -> Result<Result<(Lattice, Outline), Miss>> {
         if effort == Effort::Full && self.options.proof_nodes > 0 {
-            let unproved = self.outline(asked, Effort::Quick(MOST_STATES_SHIFTED), angle, shift, progress)?;
+            let unproved = self.outline(asked, Effort::Quick(u64::MAX), angle, shift, progress)?;
             let Ok((lattice, outline)) = &unproved else { return Ok(unproved) };
             let placed = self.place(None, lattice, outline, progress)?;
             if !placed.is_ok_and(|(placed, _)| placed.fault(self.options).is_none()) {
