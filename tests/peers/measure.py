@@ -10,34 +10,46 @@ def measure(vertices: np.ndarray, triangles: np.ndarray, drawing: Drawing, edge:
     """The numbers of one mesh; lengths in units of `edge`, angles in degrees."""
     used, flat = np.unique(triangles, return_inverse=True)
     vertices, triangles = vertices[used], flat.reshape(-1, 3)
-    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    edges, uses = np.unique(sides, axis=0, return_counts=True)
-    rim = edges[uses == 1]
+    numbers, rim = connectivity(triangles)
     on_rim = np.zeros(len(vertices), bool)
     on_rim[rim] = True
-
-    # Two copies glued along the boundary: an interior vertex is there twice, a boundary vertex of
-    # valence v becomes one of valence 2 v - 2.
-    valence = np.bincount(edges.ravel(), minlength=len(vertices))
-    irregular = (valence[on_rim] != 4).sum() + 2 * (valence[~on_rim] != 6).sum()
-    chords = (uses == 2) & on_rim[edges].all(axis=1)
-
     angle, ratio = shapes(vertices, triangles)
     spacing = edge / 16
     curve = segments(drawing.contours)
     boundary = vertices[rim]
     return {
-        "irregular": 100 * irregular / (on_rim.sum() + 2 * (~on_rim).sum()),
-        "excess": 1000
-        * (np.abs(2 * valence[on_rim] - 8).sum() + 2 * np.abs(valence[~on_rim] - 6).sum())
-        / (on_rim.sum() + 2 * (~on_rim).sum()),
-        "chords": float(chords.sum()),
+        **numbers,
         "angle": angle,
         "ratio": ratio,
         "mesh_to_curve": distances(samples(boundary, spacing), curve).max() / edge,
         "curve_to_mesh": distances(samples(curve, spacing), boundary).max() / edge,
         "on_curve": 100 * (distances(vertices[on_rim], curve) < 1e-9 * drawing.size).mean(),
     }
+
+
+def connectivity(triangles: np.ndarray) -> tuple[dict[str, float], np.ndarray]:
+    """What depends on the triangles alone, every vertex used, and the edges of the boundary.
+
+    The numbers are those of two copies glued along the boundary: an interior vertex is there twice, a
+    boundary vertex of valence v becomes one of valence 2 v - 2.
+    """
+    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, uses = np.unique(sides, axis=0, return_counts=True)
+    rim = edges[uses == 1]
+    valence = np.bincount(edges.ravel())
+    on_rim = np.zeros(len(valence), bool)
+    on_rim[rim] = True
+    count = on_rim.sum() + 2 * (~on_rim).sum()
+    irregular = (valence[on_rim] != 4).sum() + 2 * (valence[~on_rim] != 6).sum()
+    excess = np.abs(2 * valence[on_rim] - 8).sum() + 2 * np.abs(valence[~on_rim] - 6).sum()
+    chords = (uses == 2) & on_rim[edges].all(axis=1)
+    numbers = {
+        "number": float(irregular),
+        "irregular": 100 * irregular / count,
+        "excess": 1000 * excess / count,
+        "chords": float(chords.sum()),
+    }
+    return numbers, rim
 
 
 def shapes(vertices: np.ndarray, triangles: np.ndarray) -> tuple[float, float]:
