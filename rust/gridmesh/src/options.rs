@@ -158,6 +158,10 @@ impl Default for SketchOptions {
     }
 }
 
+fn refuse(name: &'static str, value: f64, allowed: &'static str) -> Result<()> {
+    Err(Error::InvalidOption { name, value: format!("{value}"), allowed })
+}
+
 impl SketchOptions {
     /// The defaults for quads.
     pub fn quads() -> Self {
@@ -169,9 +173,44 @@ impl SketchOptions {
     /// # Errors
     /// [`Error::InvalidOption`].
     pub fn check(&self) -> Result<()> {
-        let refuse = |name, value: f64, allowed| {
-            Err(Error::InvalidOption { name, value: format!("{value}"), allowed })
-        };
+        self.check_size()?;
+        if !(0.5..=4.0).contains(&self.max_distance) {
+            return refuse("max_distance", self.max_distance, "0.5 to 4 edge lengths");
+        }
+        if !(0.0..=100.0).contains(&self.closeness) {
+            return refuse("closeness", self.closeness, "0 to 100");
+        }
+        if !(0.0..=1.0).contains(&self.bend) {
+            return refuse("bend", self.bend, "0 to 1");
+        }
+        self.check_density()?;
+        self.check_place()?;
+        if !(0.0..=std::f64::consts::PI).contains(&self.corner_angle) {
+            return refuse("corner_angle", self.corner_angle, "0 to pi radians");
+        }
+        if self.cells == CellShape::Quad {
+            self.check_quads()?;
+        }
+        if self.mirror.is_some() && self.boundary == BoundaryMethod::Grown {
+            return Err(Error::InvalidOption {
+                name: "mirror",
+                value: "given, with boundary grown".to_owned(),
+                allowed: "none, or boundary optimal: growth has no symmetric form",
+            });
+        }
+        if self.mirror.is_some() && self.proof_nodes > 0 {
+            return Err(Error::InvalidOption {
+                name: "proof_nodes",
+                value: format!("{}, beside mirror", self.proof_nodes),
+                allowed: "0, or no mirror: symmetric boundaries are proved only where none conflicts",
+            });
+        }
+        Ok(())
+    }
+
+    /// # Errors
+    /// [`Error::InvalidOption`] or [`Error::TooLarge`] for the size of the cells or their number.
+    fn check_size(&self) -> Result<()> {
         if self.edge_length.is_some() && self.triangles.is_some() {
             return Err(Error::InvalidOption {
                 name: "triangles",
@@ -208,15 +247,12 @@ impl SketchOptions {
                 return Err(Error::TooLarge { triangles: n as f64, limit: MAX_TRIANGLES });
             }
         }
-        if !(0.5..=4.0).contains(&self.max_distance) {
-            return refuse("max_distance", self.max_distance, "0.5 to 4 edge lengths");
-        }
-        if !(0.0..=100.0).contains(&self.closeness) {
-            return refuse("closeness", self.closeness, "0 to 100");
-        }
-        if !(0.0..=1.0).contains(&self.bend) {
-            return refuse("bend", self.bend, "0 to 1");
-        }
+        Ok(())
+    }
+
+    /// # Errors
+    /// [`Error::InvalidOption`] for wishes of density that no lattice, or no drawing, can have.
+    fn check_density(&self) -> Result<()> {
         if self.density.is_some() && self.bend == 0.0 {
             return Err(Error::InvalidOption {
                 name: "density",
@@ -239,6 +275,12 @@ impl SketchOptions {
                 return Err(Error::InvalidOption { name: "density", value, allowed });
             }
         }
+        Ok(())
+    }
+
+    /// # Errors
+    /// [`Error::InvalidOption`] for the lattice's angle or origin.
+    fn check_place(&self) -> Result<()> {
         if let Some(angle) = self.angle
             && !angle.is_finite()
         {
@@ -254,26 +296,6 @@ impl SketchOptions {
                 let allowed = "none, with mirror: the lattice lies on the axis";
                 return Err(Error::InvalidOption { name: "origin", value: value(), allowed });
             }
-        }
-        if !(0.0..=std::f64::consts::PI).contains(&self.corner_angle) {
-            return refuse("corner_angle", self.corner_angle, "0 to pi radians");
-        }
-        if self.cells == CellShape::Quad {
-            self.check_quads()?;
-        }
-        if self.mirror.is_some() && self.boundary == BoundaryMethod::Grown {
-            return Err(Error::InvalidOption {
-                name: "mirror",
-                value: "given, with boundary grown".to_owned(),
-                allowed: "none, or boundary optimal: growth has no symmetric form",
-            });
-        }
-        if self.mirror.is_some() && self.proof_nodes > 0 {
-            return Err(Error::InvalidOption {
-                name: "proof_nodes",
-                value: format!("{}, beside mirror", self.proof_nodes),
-                allowed: "0, or no mirror: symmetric boundaries are proved only where none conflicts",
-            });
         }
         Ok(())
     }

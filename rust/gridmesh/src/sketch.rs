@@ -141,6 +141,22 @@ fn mesh(
         Some(h) => Asked::EdgeLength(h),
         None => Asked::Cells(triangles),
     };
+    let mut sketch = attempted(&mut job, asked, expected, progress)?;
+    if let Some((_, slivers)) = union {
+        // The sources so far lead to the outer outline.
+        let Patch { vertices, loops, .. } = &mut sketch.patch;
+        for (source, &vertex) in loops[0].source.iter_mut().zip(&*vertices) {
+            *source = nearest_source(outline, vertex);
+        }
+        sketch.report.repaired += slivers;
+    }
+    progress.report(1.0)?;
+    Ok(sketch)
+}
+
+/// The sketch of a job; where its number was chosen and is too small, with the least that works. `expected` cells.
+fn attempted(job: &mut Job<'_>, asked: Asked, expected: f64, progress: Progress<'_>) -> Result<Sketch> {
+    let options = job.options;
     let mut attempt = job.attempt_unless_hopeless(asked, expected, progress)?;
     if let (true, Err(obstacle)) = (options.automatic, &attempt)
         && !obstacle.is_inverted
@@ -153,29 +169,15 @@ fn mesh(
             refused => return Err(refused),
         }
     }
-    let mut sketch = match attempt {
-        Ok(sketch) => sketch,
-        Err(Obstacle { at, is_inverted: true, .. }) => return Err(Error::Inverted { at: at.to_array() }),
+    match attempt {
+        Ok(sketch) => Ok(sketch),
+        Err(Obstacle { at, is_inverted: true, .. }) => Err(Error::Inverted { at: at.to_array() }),
         Err(_) if !options.least => {
             let triangles = expected.round().max(1.0) as usize;
-            return Err(Error::TooCoarse {
-                triangles,
-                cells: options.cells.plural(),
-                needed: Needed::Unknown,
-            });
+            Err(Error::TooCoarse { triangles, cells: options.cells.plural(), needed: Needed::Unknown })
         }
-        Err(obstacle) => return Err(job.least_that_works(expected, obstacle, progress)?),
-    };
-    if let Some((_, slivers)) = union {
-        // The sources so far lead to the outer outline.
-        let Patch { vertices, loops, .. } = &mut sketch.patch;
-        for (source, &vertex) in loops[0].source.iter_mut().zip(&*vertices) {
-            *source = nearest_source(outline, vertex);
-        }
-        sketch.report.repaired += slivers;
+        Err(obstacle) => Err(job.least_that_works(expected, obstacle, progress)?),
     }
-    progress.report(1.0)?;
-    Ok(sketch)
 }
 
 /// The number of cells where it is left to the drawing.

@@ -38,30 +38,12 @@ pub fn check_mesh(n_vertices: usize, triangles: &[[u32; 3]]) -> MeshCheck {
         t.iter().all(|&v| (v as usize) < n_vertices) && t[0] != t[1] && t[1] != t[2] && t[2] != t[0]
     };
     check.bad_triangles = triangles.iter().filter(|t| !sound(t)).count();
-    // Around each vertex, its triangles as pairs (next, previous) of their other corners.
-    let mut start = vec![0u32; n_vertices + 1];
-    for v in triangles.iter().filter(|t| sound(t)).flatten() {
-        start[*v as usize + 1] += 1;
-    }
-    for v in 0..n_vertices {
-        start[v + 1] += start[v];
-    }
-    let mut fill = start.clone();
-    let mut wedges = vec![(0u32, 0u32); start[n_vertices] as usize];
-    for t in triangles.iter().filter(|t| sound(t)) {
-        for k in 0..3 {
-            let slot = &mut fill[t[k] as usize];
-            wedges[*slot as usize] = (t[(k + 1) % 3], t[(k + 2) % 3]);
-            *slot += 1;
-        }
-    }
-    let around = |v: u32| &wedges[start[v as usize] as usize..start[v as usize + 1] as usize];
-
+    let wedges = Wedges::new(n_vertices, triangles.iter().filter(|t| sound(t)));
     let mut pieces = Disjoint::new(n_vertices);
     let mut next_boundary = vec![u32::MAX; n_vertices];
     let (mut used, mut edges) = (0i64, 0i64);
     for v in 0..n_vertices as u32 {
-        let fan = around(v);
+        let fan = wedges.around(v);
         if fan.is_empty() {
             continue;
         }
@@ -93,20 +75,11 @@ pub fn check_mesh(n_vertices: usize, triangles: &[[u32; 3]]) -> MeshCheck {
             }
         }
         check.irregular += usize::from(valence != if open { 4 } else { 6 });
-        // Walk the fan: from the open end, if there is one.
-        let begin = fan.iter().find(|w| arriving(w.0) == 0).unwrap_or(&fan[0]).0;
-        let (mut at, mut steps) = (begin, 0);
-        while let Some(wedge) = fan.iter().find(|w| w.0 == at) {
-            at = wedge.1;
-            steps += 1;
-            if at == begin || steps > fan.len() {
-                break;
-            }
-        }
-        check.bad_vertices += usize::from(steps != fan.len());
+        check.bad_vertices += usize::from(!is_fan(fan));
     }
     for v in 0..n_vertices {
-        check.components += usize::from(!around(v as u32).is_empty() && pieces.root(v as u32) == v as u32);
+        check.components +=
+            usize::from(!wedges.around(v as u32).is_empty() && pieces.root(v as u32) == v as u32);
         let mut at = v;
         while next_boundary[at] != u32::MAX {
             let next = next_boundary[at] as usize;
@@ -123,6 +96,53 @@ pub fn check_mesh(n_vertices: usize, triangles: &[[u32; 3]]) -> MeshCheck {
         && check.bad_vertices == 0
         && check.bad_triangles == 0;
     check
+}
+
+/// The triangles around each vertex as pairs of their other corners: next, previous.
+struct Wedges {
+    start: Vec<u32>,
+    pairs: Vec<(u32, u32)>,
+}
+
+impl Wedges {
+    fn new<'a>(n_vertices: usize, triangles: impl Iterator<Item = &'a [u32; 3]> + Clone) -> Self {
+        let mut start = vec![0u32; n_vertices + 1];
+        for v in triangles.clone().flatten() {
+            start[*v as usize + 1] += 1;
+        }
+        for v in 0..n_vertices {
+            start[v + 1] += start[v];
+        }
+        let mut fill = start.clone();
+        let mut pairs = vec![(0u32, 0u32); start[n_vertices] as usize];
+        for t in triangles {
+            for k in 0..3 {
+                let slot = &mut fill[t[k] as usize];
+                pairs[*slot as usize] = (t[(k + 1) % 3], t[(k + 2) % 3]);
+                *slot += 1;
+            }
+        }
+        Self { start, pairs }
+    }
+
+    fn around(&self, v: u32) -> &[(u32, u32)] {
+        &self.pairs[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
+    }
+}
+
+/// True if a walk from wedge to wedge, from the open end if there is one, meets all of them.
+fn is_fan(wedges: &[(u32, u32)]) -> bool {
+    let is_first = |w: &&(u32, u32)| wedges.iter().all(|x| x.1 != w.0);
+    let begin = wedges.iter().find(is_first).unwrap_or(&wedges[0]).0;
+    let (mut at, mut steps) = (begin, 0);
+    while let Some(wedge) = wedges.iter().find(|w| w.0 == at) {
+        at = wedge.1;
+        steps += 1;
+        if at == begin || steps > wedges.len() {
+            break;
+        }
+    }
+    steps == wedges.len()
 }
 
 /// Signed volume within a closed mesh; positive if its triangles face outward.

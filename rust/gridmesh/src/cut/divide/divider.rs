@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
+use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use crate::cut::divide::locate::Met;
@@ -101,63 +102,10 @@ impl Divider<'_> {
         ring: &[(u32, bool)],
         chains: &Chains,
     ) -> Result<()> {
-        let [x, y, z] = corners.map(|v| self.vertices[v as usize]);
-        let u = (y - x).normalize_or(DVec3::X);
-        let normal = (y - x).cross(z - x);
-        let v = normal.cross(u).normalize_or_zero();
-        let size = x.distance(y).max(y.distance(z)).max(z.distance(x));
-        let flat = |p: DVec3| DVec2::new((p - x).dot(u), (p - x).dot(v)) / size;
-        let centre = flat((x + y + z) / 3.0);
+        let points = self.flat_points(corners, ring, chains);
+        let Divided { mesh, number, handles, odd } =
+            Divided::new(points, ring, chains).map_err(|reason| self.failed(corners, reason))?;
         let failed = |reason| self.failed(corners, reason);
-
-        // Points on an edge are moved inwards by next to nothing, so that rounding makes no triangle of three of them.
-        const BEND: f64 = 1e-9;
-        let mut points: Vec<(u32, DVec2)> = vec![];
-        let mut side = 0;
-        for &(node, _) in ring {
-            let p = flat(self.position(node));
-            if let Some(k) = corners.iter().position(|&c| c == node) {
-                side = k;
-                points.push((node, p));
-                continue;
-            }
-            let [a, b] = [side, (side + 1) % 3].map(|k| flat(self.vertices[corners[k] as usize]));
-            let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-            let foot = a.lerp(b, t);
-            points.push((node, foot + 4.0 * t * (1.0 - t) * BEND * (centre - foot).normalize_or_zero()));
-        }
-        let known = points.iter().map(|p| p.0).collect::<FxHashSet<_>>();
-        let mut inner = chains.iter().flat_map(|c| c.0).filter(|v| !known.contains(v)).collect::<Vec<_>>();
-        inner.sort_unstable();
-        inner.dedup();
-        points.extend(inner.into_iter().map(|node| (node, flat(self.position(node)))));
-
-        let mut mesh: ConstrainedDelaunayTriangulation<Point2<f64>> = ConstrainedDelaunayTriangulation::new();
-        let mut number: Vec<u32> = vec![];
-        let mut handles = FxHashMap::default();
-        for (node, p) in points {
-            let handle = mesh.insert(Point2::new(p.x, p.y)).map_err(|_| failed("a face has no area"))?;
-            if handle.index() < number.len() {
-                return Err(failed("two points of the cut coincide"));
-            }
-            number.push(node);
-            handles.insert(node, handle);
-        }
-        let mut odd = FxHashSet::default();
-        let edges = (0..ring.len()).map(|k| ([ring[k].0, ring[(k + 1) % ring.len()].0], false));
-        let all = edges.chain(chains.iter().map(|c| (c.0, c.2)));
-        for (ends, is_odd) in all {
-            let [a, b] = ends.map(|v| handles.get(&v).copied());
-            let (Some(a), Some(b)) = (a, b) else { return Err(failed("a point of the cut is missing")) };
-            if mesh.get_edge_from_neighbors(a, b).is_none_or(|e| !e.is_constraint_edge())
-                && (mesh.try_add_constraint(a, b).is_empty() || mesh.get_edge_from_neighbors(a, b).is_none())
-            {
-                return Err(failed("stretches of the cut meet where they should not"));
-            }
-            if is_odd {
-                odd.insert((ends[0].min(ends[1]), ends[0].max(ends[1])));
-            }
-        }
         // Flood from the boundary.
         let is_odd = |a: u32, b: u32| odd.contains(&(a.min(b), a.max(b)));
         let mut sides: Vec<Option<bool>> = vec![None; mesh.num_all_faces()];
@@ -196,6 +144,82 @@ impl Divider<'_> {
         }
         self.parts.extend(new);
         Ok(())
+    }
+
+    /// The nodes of a triangle's `ring` and of the chains inside in the triangle's plane, its longest side 1.
+    fn flat_points(&self, corners: [u32; 3], ring: &[(u32, bool)], chains: &Chains) -> Vec<(u32, DVec2)> {
+        let [x, y, z] = corners.map(|v| self.vertices[v as usize]);
+        let u = (y - x).normalize_or(DVec3::X);
+        let normal = (y - x).cross(z - x);
+        let v = normal.cross(u).normalize_or_zero();
+        let size = x.distance(y).max(y.distance(z)).max(z.distance(x));
+        let flat = |p: DVec3| DVec2::new((p - x).dot(u), (p - x).dot(v)) / size;
+        let centre = flat((x + y + z) / 3.0);
+        // Points on an edge are moved inwards by next to nothing, so that rounding makes no triangle of three of them.
+        const BEND: f64 = 1e-9;
+        let mut points: Vec<(u32, DVec2)> = vec![];
+        let mut side = 0;
+        for &(node, _) in ring {
+            let p = flat(self.position(node));
+            if let Some(k) = corners.iter().position(|&c| c == node) {
+                side = k;
+                points.push((node, p));
+                continue;
+            }
+            let [a, b] = [side, (side + 1) % 3].map(|k| flat(self.vertices[corners[k] as usize]));
+            let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            let foot = a.lerp(b, t);
+            points.push((node, foot + 4.0 * t * (1.0 - t) * BEND * (centre - foot).normalize_or_zero()));
+        }
+        let known = points.iter().map(|p| p.0).collect::<FxHashSet<_>>();
+        let mut inner = chains.iter().flat_map(|c| c.0).filter(|v| !known.contains(v)).collect::<Vec<_>>();
+        inner.sort_unstable();
+        inner.dedup();
+        points.extend(inner.into_iter().map(|node| (node, flat(self.position(node)))));
+        points
+    }
+}
+
+/// A triangle's nodes triangulated in its plane.
+struct Divided {
+    mesh: ConstrainedDelaunayTriangulation<Point2<f64>>,
+    /// The node of each point.
+    number: Vec<u32>,
+    handles: FxHashMap<u32, FixedVertexHandle>,
+    /// Edges, smaller node first, along which the line runs an odd number of times.
+    odd: FxHashSet<(u32, u32)>,
+}
+
+impl Divided {
+    /// The error says why there is none.
+    fn new(points: Vec<(u32, DVec2)>, ring: &[(u32, bool)], chains: &Chains) -> Result<Self, &'static str> {
+        let mut mesh: ConstrainedDelaunayTriangulation<Point2<f64>> = ConstrainedDelaunayTriangulation::new();
+        let mut number: Vec<u32> = vec![];
+        let mut handles = FxHashMap::default();
+        for (node, p) in points {
+            let handle = mesh.insert(Point2::new(p.x, p.y)).map_err(|_| "a face has no area")?;
+            if handle.index() < number.len() {
+                return Err("two points of the cut coincide");
+            }
+            number.push(node);
+            handles.insert(node, handle);
+        }
+        let mut odd = FxHashSet::default();
+        let edges = (0..ring.len()).map(|k| ([ring[k].0, ring[(k + 1) % ring.len()].0], false));
+        let all = edges.chain(chains.iter().map(|c| (c.0, c.2)));
+        for (ends, is_odd) in all {
+            let [a, b] = ends.map(|v| handles.get(&v).copied());
+            let (Some(a), Some(b)) = (a, b) else { return Err("a point of the cut is missing") };
+            if mesh.get_edge_from_neighbors(a, b).is_none_or(|e| !e.is_constraint_edge())
+                && (mesh.try_add_constraint(a, b).is_empty() || mesh.get_edge_from_neighbors(a, b).is_none())
+            {
+                return Err("stretches of the cut meet where they should not");
+            }
+            if is_odd {
+                odd.insert((ends[0].min(ends[1]), ends[0].max(ends[1])));
+            }
+        }
+        Ok(Self { mesh, number, handles, odd })
     }
 }
 
