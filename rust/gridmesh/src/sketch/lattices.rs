@@ -18,6 +18,13 @@ const SHIFTS: [[f64; 2]; 6] =
 /// Of the lattices laid on a mirror axis, so many are tried first.
 const MIRROR_CANDIDATES: usize = 4;
 
+/// Triangles for each edge length of a drawing that is as narrow as patches get: median of 1400 patches of spirals,
+/// combs and the like.
+const LEAST_EACH: f64 = 1.9;
+
+/// The guess for narrow drawings is taken where it is so many times the other: three rows of triangles and less.
+const NARROW: f64 = 1.05;
+
 impl Job<'_> {
     /// The lattices to try: angles, and shifts of the origin in edges.
     pub(super) fn placements_to_try(&self, asked: Asked, effort: Effort) -> Vec<(f64, DVec2)> {
@@ -64,10 +71,38 @@ impl Job<'_> {
         if angles.is_empty() { vec![0.0] } else { angles }
     }
 
-    /// The edge length at which a patch has about `n` cells. The lattice path cuts off what it
+    /// The edge length at which a patch has about `n` cells.
+    pub(super) fn first_guess(&self, n: usize) -> f64 {
+        let ample = self.of_ample(n);
+        if self.options.cells == CellShape::Quad || self.options.boundary == BoundaryMethod::Grown {
+            return ample;
+        }
+        let narrow = self.of_narrow(n);
+        if narrow > NARROW * ample { narrow } else { ample }
+    }
+
+    /// Where the drawing is so narrow that its walls get in each other's way there is no patch with fewer than two
+    /// triangles for each edge of boundary. So of patches with that few `n^3 = (area / h^2)^3 + (least * length / h)^3`.
+    fn of_narrow(&self, n: usize) -> f64 {
+        let of_area = (self.area / (self.options.cells.area() * n as f64)).sqrt();
+        let length = self.contours.iter().map(ClosedCurve::length).sum::<f64>();
+        let crowded = (LEAST_EACH * length / (n as f64 * of_area)).powi(3);
+        of_area * (0.5 * crowded + (0.25 * crowded * crowded + 1.0).sqrt()).cbrt()
+    }
+
+    /// How many times as many cells there are where edges are so many times shorter, as a power.
+    pub(super) fn power(&self, n: usize) -> f64 {
+        let h = self.first_guess(n);
+        if h == self.of_ample(n) {
+            return 2.0;
+        }
+        1.0 + (self.area / (self.options.cells.area() * h * h * n as f64)).powi(3).min(1.0)
+    }
+
+    /// The edge length where the drawing is wide enough for `n` cells. The lattice path cuts off what it
     /// cannot follow, and growth stops inside the curve: on average a patch is so many triangles for
     /// each edge length of curve short of its area. That of quads covers it.
-    pub(super) fn first_guess(&self, n: usize) -> f64 {
+    pub(super) fn of_ample(&self, n: usize) -> f64 {
         let area = self.area / self.options.cells.area();
         let short = match (self.options.cells, self.options.boundary) {
             (CellShape::Quad, _) => 0.0,

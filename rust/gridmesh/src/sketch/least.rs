@@ -138,7 +138,7 @@ impl Job<'_> {
 
     /// Length of the drawing in edges at about `n` triangles.
     fn boundary_edges(&self, n: usize) -> f64 {
-        self.contours.iter().map(ClosedCurve::length).sum::<f64>() / self.first_guess(n)
+        self.contours.iter().map(ClosedCurve::length).sum::<f64>() / self.of_ample(n)
     }
 
     /// True if `n` cells cannot follow the drawing: a chord-free lattice patch with `b` boundary
@@ -146,7 +146,7 @@ impl Job<'_> {
     /// than they are.
     pub(super) fn is_hopeless(&self, n: usize) -> bool {
         const SHORTER: f64 = 0.7;
-        let lattice = self.lattice(self.first_guess(n), 0.0, DVec2::ZERO);
+        let lattice = self.lattice(self.of_ample(n), 0.0, DVec2::ZERO);
         // The number of samples alone shows the worst cases; no need to take them.
         let edges = self.boundary_edges(n);
         let needed = |edges: f64| match self.options.cells {

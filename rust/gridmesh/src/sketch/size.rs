@@ -97,7 +97,8 @@ impl Job<'_> {
             }
             // Of a drawing that is all outline the number changes less than by the square.
             let here = (edge_length.ln(), ratio.ln());
-            let power = before.map_or(2.0, |(h, r): (f64, f64)| (r - here.1) / (here.0 - h));
+            let power =
+                before.map_or_else(|| self.power(n), |(h, r): (f64, f64)| (r - here.1) / (here.0 - h));
             edge_length *= ratio.powf(1.0 / power.clamp(1.0, 2.0)).clamp(0.7, 1.4);
             before = Some(here);
         }
