@@ -13,7 +13,7 @@ use crate::cover::outside::LoopEdges;
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::union::{nearest_source, outer_outline};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, told};
 use crate::options::{SelfCrossing, SketchOptions};
 use crate::patch::Patch;
 use crate::patch::angles::min_angle;
@@ -62,7 +62,7 @@ pub fn cover_sketch(
 ) -> Result<Covering> {
     if !(slack.is_finite() && slack >= 0.0) {
         let allowed = "a finite length, at least 0";
-        return Err(Error::InvalidOption { name: "slack", value: slack.to_string(), allowed });
+        return Err(Error::InvalidOption { name: "slack", value: told(slack), allowed });
     }
     let part = |k: usize| progress.part(k as f64 / (ROUNDS + 1) as f64, (k + 1) as f64 / (ROUNDS + 1) as f64);
     let first = mesh_sketch(outline, holes, options, part(0))?;

@@ -512,3 +512,13 @@ fn too_coarse(triangles: &usize, cells: &str, needed: &Needed, f: &mut fmt::Form
         Needed::Unknown => write!(f, "use more (or a smaller edge length)"),
     }
 }
+
+/// A number without a hundred zeros.
+pub(crate) fn told(value: f64) -> String {
+    if value == 0.0 || (1e-6..1e9).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
+/// The numbers of a vector.
+pub(crate) fn told_all(values: &[f64]) -> String {
+    format!("[{}]", values.iter().map(|&value| told(value)).collect::<Vec<_>>().join(", "))
+}

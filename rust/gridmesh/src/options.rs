@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, told};
 
 /// The largest mesh that is supported, in triangles of the flat patch.
 pub const MAX_TRIANGLES: f64 = 20e6;
@@ -159,7 +159,7 @@ impl Default for SketchOptions {
 }
 
 fn refuse(name: &'static str, value: f64, allowed: &'static str) -> Result<()> {
-    Err(Error::InvalidOption { name, value: format!("{value}"), allowed })
+    Err(Error::InvalidOption { name, value: told(value), allowed })
 }
 
 impl SketchOptions {
@@ -287,7 +287,7 @@ impl SketchOptions {
             return refuse("angle", angle, "a finite angle in radians, or none");
         }
         if let Some(origin) = self.origin {
-            let value = || format!("{}, {}", origin.x, origin.y);
+            let value = || format!("{}, {}", told(origin.x), told(origin.y));
             if !origin.is_finite() {
                 let allowed = "a point with finite coordinates, or none";
                 return Err(Error::InvalidOption { name: "origin", value: value(), allowed });

@@ -23,7 +23,7 @@ mod threshold;
 use rayon::prelude::*;
 
 pub use crate::drawing::combine::Part;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, told};
 pub use crate::picture::field::{MAX_PIXELS, Picture};
 use crate::picture::islands::Island;
 use crate::progress::{Progress, Rising};
@@ -112,8 +112,7 @@ pub fn trace_image(picture: &Picture, options: &TraceOptions, progress: Progress
 }
 
 fn check(options: &TraceOptions) -> Result<()> {
-    let invalid =
-        |name, value: f64, allowed| Err(Error::InvalidOption { name, value: value.to_string(), allowed });
+    let invalid = |name, value: f64, allowed| Err(Error::InvalidOption { name, value: told(value), allowed });
     if let Threshold::At(value) = options.threshold
         && !(value > 0.0 && value < 1.0)
     {

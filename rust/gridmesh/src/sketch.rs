@@ -17,7 +17,7 @@ use crate::drawing::symmetry::Symmetry;
 use crate::drawing::thickness;
 use crate::drawing::thickness::Limb;
 use crate::drawing::union::{nearest_source, outer_outline};
-use crate::error::{Error, Needed, Result};
+use crate::error::{Error, Needed, Result, told};
 use crate::options::{
     BoundaryMethod, CellShape, DEFAULT_QUADS, DEFAULT_TRIANGLES, Density, LEAST_CHOSEN, MAX_TRIANGLES,
     SelfCrossing, SketchOptions,
@@ -199,7 +199,7 @@ fn check_origin(options: &SketchOptions, outline: &ClosedCurve, edge_length: f64
     let Some(origin) = options.origin.filter(far) else {
         return Ok(());
     };
-    let value = format!("{}, {}", origin.x, origin.y);
+    let value = format!("{}, {}", told(origin.x), told(origin.y));
     let allowed = "a point within a million edge lengths of the outline, or none";
     Err(Error::InvalidOption { name: "origin", value, allowed })
 }

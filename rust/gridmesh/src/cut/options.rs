@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, told, told_all};
 use crate::fill::options::Smooth;
 
 /// Which pieces to return.
@@ -97,16 +97,16 @@ impl CutOptions {
     pub(super) fn check(&self) -> Result<()> {
         let invalid = |name, value: String, allowed| Err(Error::InvalidOption { name, value, allowed });
         match self.sweep {
-            Sweep::Along(d) if !(d.is_finite() && d.length_squared() > 1e-200) => {
-                return invalid("direction", format!("{d}"), "three finite numbers, not all zero");
+            Sweep::Along(d) if !(d.is_finite() && d != DVec3::ZERO) => {
+                return invalid("direction", told_all(&d.to_array()), "three finite numbers, not all zero");
             }
             Sweep::Through(eye) if !eye.is_finite() => {
-                return invalid("eye", format!("{eye}"), "three finite numbers");
+                return invalid("eye", told_all(&eye.to_array()), "three finite numbers");
             }
             _ => {}
         }
         if let Some(length) = self.edge_length.filter(|l| !(l.is_finite() && *l > 0.0)) {
-            return invalid("edge_length", length.to_string(), "a finite number above 0, or None");
+            return invalid("edge_length", told(length), "a finite number above 0, or None");
         }
         if let Some(m) = self.mirrors.iter().find(|m| !m.is_sound()) {
             return invalid(
@@ -116,7 +116,7 @@ impl CutOptions {
             );
         }
         if !(self.gap.is_finite() && self.gap >= 0.0) {
-            return invalid("gap", self.gap.to_string(), "a finite number, 0 or more");
+            return invalid("gap", told(self.gap), "a finite number, 0 or more");
         }
         Ok(())
     }

@@ -87,7 +87,9 @@ impl View {
 
 /// Right and up for a view along `direction`: right x up points back to the viewer.
 fn axes(direction: DVec3) -> [DVec3; 3] {
-    let away = direction.normalize_or(DVec3::Z);
+    // The squares of the least and greatest lengths vanish or overflow.
+    let scaled = || (direction / direction.abs().max_element()).normalize_or(DVec3::Z);
+    let away = direction.try_normalize().unwrap_or_else(scaled);
     let (right, up) = (-away).any_orthonormal_pair();
     [right, up, away]
 }
@@ -252,11 +254,7 @@ impl Sheet {
         self.arc = vec![0.0];
         for k in 0..self.n_segments() {
             let [a, b] = self.segment(k);
-            at += if self.view.central {
-                self.view.ray(a).angle_between(self.view.ray(b))
-            } else {
-                a.distance(b)
-            };
+            at += self.view.apart(a, b);
             self.arc.push(at);
         }
     }
@@ -275,12 +273,7 @@ impl Sheet {
     /// The place on the unrolled line of the point at the share `s` of segment `k`.
     pub fn place(&self, k: usize, s: f64) -> f64 {
         let [a, b] = self.segment(k);
-        let within = if self.view.central {
-            self.view.ray(a).angle_between(self.view.ray(a.lerp(b, s)))
-        } else {
-            s * a.distance(b)
-        };
-        (self.arc[k] + within).min(self.arc[k + 1])
+        (self.arc[k] + self.view.apart(a, a.lerp(b, s))).min(self.arc[k + 1])
     }
 
     /// The point in the plane at a place on the unrolled line.
@@ -314,6 +307,14 @@ impl Sheet {
         side_moved(p, q, v)
     }
 
+    /// True if all these points of the plane lie on the straight line through one segment.
+    pub fn is_along(&self, points: impl Iterator<Item = DVec2> + Clone) -> bool {
+        (0..self.n_segments()).any(|k| {
+            let [a, b] = self.segment(k);
+            points.clone().all(|p| orient(a, b, p) == 0.0)
+        })
+    }
+
     /// True if a vertex seen at `v` is on the left of the line.
     pub fn is_left(&self, v: DVec2) -> bool {
         let mut left = false;
@@ -339,6 +340,17 @@ impl Sheet {
 }
 
 impl View {
+    /// Distance of two points of the plane on the unrolled surface: with an eye the angle between their rays, to all digits
+    /// however small it is.
+    fn apart(&self, a: DVec2, b: DVec2) -> f64 {
+        if !self.central {
+            return a.distance(b);
+        }
+        let step = b - a;
+        let across = step.length_squared() + a.perp_dot(step).powi(2);
+        across.sqrt().atan2(1.0 + a.dot(b))
+    }
+
     /// Length of the ray to the point of the plane at `q`, at depth 1.
     fn stretch(&self, q: DVec2) -> f64 {
         (1.0 + q.length_squared()).sqrt()

@@ -1,6 +1,6 @@
 //! What can be chosen about a fill.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, told};
 use crate::options::CellShape;
 
 /// How a patch continues the surface around its loop.
@@ -42,7 +42,7 @@ impl FillOptions {
     pub(super) fn check(&self, triangles: &[[u32; 3]]) -> Result<()> {
         if let Some(angle) = self.sharp.filter(|angle| !(0.0..=std::f64::consts::PI).contains(angle)) {
             let allowed = "an angle from 0 to pi, in radians, or nothing";
-            return Err(Error::InvalidOption { name: "sharp", value: angle.to_string(), allowed });
+            return Err(Error::InvalidOption { name: "sharp", value: told(angle), allowed });
         }
         if self.polygons.is_empty() || self.polygons.len() == triangles.len() {
             return Ok(());

@@ -1,6 +1,6 @@
 //! What can be chosen about a joint, and what is told of it.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, told};
 
 /// Options of [`join`](super::join()).
 #[derive(Clone, Debug, PartialEq)]
@@ -28,11 +28,11 @@ impl JoinOptions {
     pub(super) fn check(&self) -> Result<()> {
         if !(0.0..=WIDEST).contains(&self.blend) {
             let allowed = "a number from 0 to 1000, of edge lengths";
-            return Err(Error::InvalidOption { name: "blend", value: self.blend.to_string(), allowed });
+            return Err(Error::InvalidOption { name: "blend", value: told(self.blend), allowed });
         }
         if let Some(length) = self.edge_length.filter(|l| !(l.is_finite() && *l > 0.0)) {
             let allowed = "a number above 0, or nothing";
-            return Err(Error::InvalidOption { name: "edge_length", value: length.to_string(), allowed });
+            return Err(Error::InvalidOption { name: "edge_length", value: told(length), allowed });
         }
         Ok(())
     }

@@ -11,12 +11,12 @@ use crate::path::target::Target;
 use crate::progress::Progress;
 use crate::sketch::job::{Asked, Effort, Job};
 
-/// Work that the search may take, in triangles; an edge of the boundary counts as `EDGE` of them. Some
-/// seconds, whatever the drawing. Where walls get in each other's way the states that searches take count, so many
+/// Work that the search may take, in triangles; an edge of the boundary counts as `EDGE` of them. A second or
+/// two, whatever the drawing. Where walls get in each other's way the states that searches take count, so many
 /// as a triangle: eight million at most, less than a second.
-const WORK: f64 = 2e6;
+const WORK: f64 = 8e5;
 const EDGE: f64 = 20.0;
-const STATES: f64 = 4.0;
+const STATES: f64 = 10.0;
 
 /// States that one search may take, and more for each triangle: where a drawing has no mesh most are spent to find out, and a
 /// larger number is found sooner than it is shown that a smaller one fails. A number that is said to work does so with

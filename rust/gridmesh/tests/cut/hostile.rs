@@ -123,6 +123,44 @@ fn holes_are_punched_in_perspective() {
 }
 
 #[test]
+fn small_holes_are_punched_in_perspective() {
+    // Angles between rays came from their cosines: of a hundredth of a degree only a few digits are left.
+    let mesh = ball(24);
+    for (eye, r) in [(4.0, 0.01), (4.0, 0.001), (40.0, 0.01), (40.0, 0.001)] {
+        let eye = DVec3::new(0.1, 0.05, eye);
+        for edge_length in [None, Some(0.5), Some(0.05)] {
+            let options = CutOptions { edge_length, ..CutOptions::new(Sweep::Through(eye)) };
+            let done = mesh.cut(&circle(0.0, 0.0, r, 40), &options).unwrap();
+            assert_closed(&done);
+            assert_eq!(done.report.loops, 2, "eye {eye} radius {r} {edge_length:?}");
+        }
+    }
+}
+
+#[test]
+fn a_face_that_lies_in_the_cut_is_no_piece() {
+    for y in [0.0, 1.0] {
+        let along = cube().cut(&line(&[(-1.0, y), (2.0, y)]), &down());
+        assert_eq!(along.err().map(|error| error.kind()), Some("stroke_misses"), "{y}");
+        let beside = line(&[(-1.0, y), (2.0, y + 0.2 - 0.4 * y)]);
+        assert_closed(&cube().cut(&beside, &down()).unwrap());
+    }
+}
+
+#[test]
+fn directions_are_of_any_length() {
+    // The squares of these vanish or overflow; the second was taken for that of z.
+    let stroke: Vec<DVec3> = vec![DVec3::new(0.5, -1.0, 0.4), DVec3::new(0.5, 2.0, 0.4)];
+    let pieces = |length: f64| {
+        let done = cube().cut(&stroke, &CutOptions::new(Sweep::Along(length * DVec3::X))).unwrap();
+        assert_closed(&done);
+        let above = |p: &DVec3| p.z > 0.4 - 1e-9;
+        assert!(done.pieces.iter().any(|piece| piece.vertices.iter().all(above)), "{length}");
+    };
+    [1e-300, 1e-200, 1e-100, 1.0, 1e100, 1e200, 1e300].map(pieces);
+}
+
+#[test]
 fn bulging_caps_stay_inside_the_piece() {
     for smooth in [Smooth::Tangent, Smooth::Curvature] {
         for y in [0.5, 0.9, 0.98, 0.999] {

@@ -69,8 +69,3 @@ pub enum Side {
 pub(crate) const RANGE: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 pub(crate) const ALLOWED: &str = "a number from 1e-9 to 1e9";
-
-/// A number without a hundred zeros.
-pub(crate) fn told(value: f64) -> String {
-    if value == 0.0 || (1e-6..1e9).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
-}

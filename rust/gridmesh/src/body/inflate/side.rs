@@ -2,8 +2,8 @@
 
 use super::height::Flat;
 use super::section;
-use crate::body::inflate::options::{ALLOWED, InflateOptions, RANGE, Side, told};
-use crate::error::{Error, Result};
+use crate::body::inflate::options::{ALLOWED, InflateOptions, RANGE, Side};
+use crate::error::{Error, Result, told};
 
 /// Depth of both sides at every vertex of the flat patch.
 pub(crate) struct Scales {

@@ -193,7 +193,7 @@ impl Tube {
 
     /// Two lines from the lower to the upper loop that meet nothing, about half around apart: lengths and places.
     fn links(&self, holes: &[Vec<Spot>]) -> Option<[Link; 2]> {
-        let Tube { low, high, n, m, width } = self;
+        let Tube { low, high, n, .. } = self;
         let mut walls = edges_open(low);
         walls.extend(edges_open(high));
         for h in holes {
@@ -213,11 +213,22 @@ impl Tube {
             let best = near.into_iter().find(|&j| is_clear(&walls, low[i].at, high[j].at))?;
             Some((off(i, best).sqrt(), i, best))
         };
+        // Of a long narrow tube one vertex may be the nearest to all: those straight above are not.
+        let above = |i: usize| {
+            let aside = |j: usize| (high[j].at.x - low[i].at.x).abs();
+            let best = (0..high.len()).min_by(|&a, &b| aside(a).total_cmp(&aside(b)))?;
+            is_clear(&walls, low[i].at, high[best].at).then(|| (off(i, best).sqrt(), i, best))
+        };
+        let each = *n..2 * n;
+        self.two_of(&each.clone().filter_map(nearest).collect::<Vec<_>>())
+            .or_else(|| self.two_of(&each.clone().filter_map(in_sight).collect::<Vec<_>>()))
+            .or_else(|| self.two_of(&each.filter_map(above).collect::<Vec<_>>()))
+    }
+
+    /// The shortest of these lines, and one about half around from it that does not cross it.
+    fn two_of(&self, links: &[Link]) -> Option<[Link; 2]> {
+        let Tube { low, high, m, width, .. } = self;
         let apart = |l: &Link, other: &Link| l.1 != other.1 && l.2 % m != other.2 % m;
-        let mut links = (*n..2 * n).filter_map(nearest).collect::<Vec<_>>();
-        if !links.iter().any(|l| apart(l, &links[0])) {
-            links = (*n..2 * n).filter_map(in_sight).collect();
-        }
         let first = *links.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         let middle = low[first.1].at.x + 0.5 * width;
         // Another one about half around.

@@ -63,9 +63,14 @@ pub(in crate::cut) fn split(
     let Divider { nodes, parts, cut, .. } = divider;
     let parted =
         Parted { n_old: vertices.len(), nodes, left, divided, parts, cut, cut_faces, alone: met.alone };
+    // Faces that only touch the swept surface, lying in it, are no piece.
+    let touches = |f: usize| {
+        let corners = faces.face(f).iter().map(|&v| sheet.view.project(vertices[v as usize]));
+        sheet.is_along(corners.map(Option::unwrap_or_default))
+    };
     let has = |side: bool| {
         parted.parts.iter().any(|p| p.left == side)
-            || parted.left.iter().zip(&parted.divided).any(|(&l, &d)| !d && l == side)
+            || (0..faces.len()).any(|f| !parted.divided[f] && parted.left[f] == side && !touches(f))
     };
     if !has(true) || !has(false) {
         return Err((Error::StrokeMisses, None));
