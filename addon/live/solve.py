@@ -15,7 +15,7 @@ import numpy as np
 from ..api import Body, faces_of, native, reason_of
 from ..bodies.outlines import Plane, Sketch, project
 
-ALGORITHM = 3
+ALGORITHM = 4
 """Raised when the same stroke and options give another body. A body made by another one is left alone until asked."""
 
 TILTED = 0.9999

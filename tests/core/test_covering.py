@@ -100,3 +100,16 @@ def test_slack_is_a_length():
     outline = np.asarray(DRAWINGS[NAMES[0]]["points"], float)
     with pytest.raises(gridmesh.GridMeshError, match="slack"):
         gridmesh.cover_sketch(outline, slack=-1.0)
+
+
+def lengths_of(cutout):
+    edges = np.sort(np.concatenate([cutout.faces[:, [k, k - 1]] for k in range(3)]), axis=1)
+    ends = cutout.vertices[np.unique(edges, axis=0)]
+    return np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("body", [None, {}])
+def test_no_edge_is_shorter_than_a_third_of_the_mean(name, body):
+    lengths = lengths_of(sprite(alpha_of(name), margin=1.0, body=body))
+    assert lengths.min() >= lengths.mean() / 3

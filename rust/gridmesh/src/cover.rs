@@ -77,11 +77,12 @@ pub fn cover_sketch(
     let patch = &mut best.patch;
     // Boundary vertices may move where no more is cut off by that than could stay outside anyway.
     let most = least.max(ENOUGH * edge_length);
-    short::lengthened(patch, |patch, vertex| {
+    let may = |patch: &Patch, vertex: usize| {
         let k = patch.loops.iter().rposition(|contour| contour.start as usize <= vertex).unwrap_or(0);
         let edges = LoopEdges::new(patch, k);
         fine[k].iter().all(|&point| edges.outside(point, slack) <= most)
-    });
+    };
+    short::lengthened(patch, may, progress.part(1.0, 1.0))?;
     least = largest(&needs(&fine, patch, slack));
     if least > ENOUGH * edge_length {
         least = tips::moved(patch, &fine, slack);

@@ -8,6 +8,7 @@ pub mod embed;
 pub(crate) mod facet;
 pub mod harmonic;
 pub(crate) mod laplace;
+pub(crate) mod lengthen;
 pub(crate) mod march;
 pub mod metrics;
 pub(crate) mod quadratic;

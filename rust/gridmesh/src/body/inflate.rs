@@ -5,6 +5,7 @@ mod field;
 mod front;
 mod height;
 mod inlets;
+mod lengthen;
 mod options;
 mod polish;
 mod section;

@@ -1,91 +1,137 @@
 //! Ends of short edges moved apart.
 
-use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 
 use glam::DVec2;
 
+use crate::error::Result;
+use crate::geometry::lengthen::{THIN, Visit, lack, visit_crowded};
+use crate::geometry::topology::Topology;
 use crate::patch::Patch;
+use crate::progress::Progress;
 
 /// Edges shorter than this, in mean lengths of the patch's edges, are made longer: a third shows in a texture.
-const SHORT: f64 = 0.36;
+const SHORT: f64 = 0.37;
 
-/// How often all short edges are gone through.
-const PASSES: usize = 3;
+/// The same for edges of the boundary, whose length a body keeps, while its other edges become longer: the mean of a
+/// sphere's is that of its silhouette's disk times the square root of two.
+const SHORT_OF_BOUNDARY: f64 = 0.37 * std::f64::consts::SQRT_2;
 
-/// Corners of faces may become as small as this (15 degrees) for a longer edge, or stay as small as they are.
-const THINNEST: f64 = 0.26;
+/// Stages of [`THIN`] that are gone through.
+const STAGES: usize = 3;
 
-/// Directions of moves, in radians from straight away.
-const ASIDE: [f64; 5] = [0.0, 0.6, -0.6, 1.2, -1.2];
+/// Lengths of moves tried, in lengths wanted.
+const REACHES: [f64; 3] = [0.5, 0.2, 0.07];
 
-/// Steps of a move that is too large, each half as long as the one before.
-const HALVINGS: usize = 3;
+/// Directions of moves tried.
+const DIRECTIONS: usize = 12;
 
-/// Moves the ends of short edges apart where no face suffers, interior ones rather than those of the boundary.
-///
-/// `may` decides about moves of boundary vertices, after they were made.
-pub(super) fn lengthened(patch: &mut Patch, mut may: impl FnMut(&Patch, usize) -> bool) {
-    let n_boundary = patch.n_boundary();
-    let edges: Vec<[usize; 2]> = sides(patch).collect::<BTreeSet<_>>().into_iter().collect();
-    let length = |patch: &Patch, [a, b]: [usize; 2]| patch.vertices[a].distance(patch.vertices[b]);
-    let mean = edges.iter().map(|&edge| length(patch, edge)).sum::<f64>() / edges.len().max(1) as f64;
-    let wanted = SHORT * mean;
-    for _ in 0..PASSES {
-        let short: Vec<[usize; 2]> =
-            edges.iter().copied().filter(|&edge| length(patch, edge) < wanted).collect();
-        if short.is_empty() {
-            break;
-        }
-        for edge in short {
-            let mut ends = [edge, [edge[1], edge[0]]];
-            ends.sort_by_key(|&[moved, _]| moved < n_boundary);
-            for [moved, other] in ends {
-                let missing = 1.01 * wanted - length(patch, edge);
-                if missing <= 0.0 {
-                    break;
-                }
-                let before = patch.vertices[moved];
-                let away = (before - patch.vertices[other]).normalize_or(DVec2::X);
-                let (thinnest, shortest) = around(patch, moved);
-                let moves = (0..HALVINGS).flat_map(|step| {
-                    let far = missing * 0.5f64.powi(step as i32);
-                    ASIDE.map(|turn| far * DVec2::from_angle(turn).rotate(away))
-                });
-                for by in moves {
-                    patch.vertices[moved] = before + by;
-                    let (thin, short) = around(patch, moved);
-                    let is_sound = thin >= thinnest.min(THINNEST) && short >= shortest.min(wanted);
-                    let is_longer = patch.vertices[moved].distance(patch.vertices[other])
-                        > before.distance(patch.vertices[other]);
-                    if is_sound && is_longer && (moved >= n_boundary || may(patch, moved)) {
-                        break;
-                    }
-                    patch.vertices[moved] = before;
-                }
-            }
-        }
+/// The lengths that the edges of a patch should have at least.
+pub(super) struct Lengths {
+    topology: Topology,
+    n_boundary: usize,
+    inner: f64,
+    rim: f64,
+}
+
+impl Lengths {
+    pub fn new(patch: &Patch) -> Self {
+        let topology = Topology::new(patch.vertices.len(), &patch.corners());
+        let mean = mean_side(patch);
+        let n_boundary = patch.n_boundary();
+        Self { topology, n_boundary, inner: SHORT * mean, rim: SHORT_OF_BOUNDARY * mean }
+    }
+
+    fn near(&self, vertex: usize) -> &[u32] {
+        &self.topology.near[self.topology.range(vertex)]
+    }
+
+    fn wanted(&self, a: usize, b: usize) -> f64 {
+        if a < self.n_boundary && b < self.n_boundary { self.rim } else { self.inner }
+    }
+
+    /// What the edges at a vertex lack.
+    pub fn lacking(&self, patch: &Patch, vertex: usize) -> f64 {
+        let here = patch.vertices[vertex];
+        let lack = |&other: &u32| {
+            let other = other as usize;
+            lack(here.distance(patch.vertices[other]), self.wanted(vertex, other))
+        };
+        self.near(vertex).iter().map(lack).sum()
+    }
+
+    /// Cotangent of the least angle of the triangles at a vertex; infinite if one of them is inverted.
+    pub fn sharpest(&self, patch: &Patch, vertex: usize) -> f64 {
+        let here = patch.vertices[vertex];
+        let largest = |&[i, j]: &[u32; 2]| {
+            let (a, b) = (patch.vertices[i as usize] - here, patch.vertices[j as usize] - here);
+            let (c, doubled) = (b - a, a.perp_dot(b));
+            if doubled > 0.0 { a.dot(b).max(b.dot(c)).max(-a.dot(c)) / doubled } else { f64::INFINITY }
+        };
+        self.topology.fan(vertex).iter().map(largest).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
-/// Least corner (radians; below 0 if one is inverted or concave) of the faces at a vertex, and their shortest side at it.
-pub(super) fn around(patch: &Patch, vertex: usize) -> (f64, f64) {
-    let (mut thinnest, mut shortest) = (f64::INFINITY, f64::INFINITY);
-    for face in faces(patch).filter(|face| face.contains(&(vertex as u32))) {
-        let n = face.len();
-        let place = |k: usize| patch.vertices[face[k % n] as usize];
-        for (k, &corner) in face.iter().enumerate() {
-            let (ahead, back) = (place(k + 1) - place(k), place(k + n - 1) - place(k));
-            thinnest = thinnest.min(ahead.angle_to(back));
-            if corner as usize == vertex {
-                shortest = shortest.min(ahead.length()).min(back.length());
+/// Moves vertices until the edges at them are as long as they should be, as far as the corners of faces allow, in stages
+/// that are ever more lenient.
+///
+/// `may` decides about moves of boundary vertices, after they were made.
+pub(super) fn lengthened(
+    patch: &mut Patch,
+    mut may: impl FnMut(&Patch, usize) -> bool,
+    progress: Progress<'_>,
+) -> Result<()> {
+    let lengths = Lengths::new(patch);
+    for thin in &THIN[..STAGES] {
+        visit_crowded(&lengths.topology, 0, progress, |v, turn| {
+            if lengths.lacking(patch, v) == 0.0 {
+                Visit::Long
+            } else if moved(patch, &lengths, v, (*thin, turn), &mut may) {
+                Visit::Moved
+            } else {
+                Visit::Stuck
+            }
+        })?;
+    }
+    Ok(())
+}
+
+/// Moves a vertex to the best of a few places around it; false if none is better.
+fn moved(
+    patch: &mut Patch,
+    lengths: &Lengths,
+    v: usize,
+    (thin, turn): (f64, f64),
+    may: &mut impl FnMut(&Patch, usize) -> bool,
+) -> bool {
+    let start = patch.vertices[v];
+    let present = lengths.lacking(patch, v);
+    let thin = lengths.sharpest(patch, v).max(thin);
+    let mut places = vec![];
+    for reach in REACHES {
+        for k in 0..DIRECTIONS {
+            let way = DVec2::from_angle(TAU * k as f64 / DIRECTIONS as f64 + turn);
+            let place = start + reach * lengths.inner * way;
+            patch.vertices[v] = place;
+            let lack = lengths.lacking(patch, v);
+            if lack < 0.999 * present && lengths.sharpest(patch, v) <= thin {
+                places.push((lack, place));
             }
         }
     }
-    (thinnest, shortest)
+    places.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    for (_, place) in places {
+        patch.vertices[v] = place;
+        if v >= lengths.n_boundary || may(patch, v) {
+            return true;
+        }
+    }
+    patch.vertices[v] = start;
+    false
 }
 
 /// Mean length of the sides of all faces.
-pub(super) fn mean_side(patch: &Patch) -> f64 {
+fn mean_side(patch: &Patch) -> f64 {
     let (mut sum, mut count) = (0.0, 0usize);
     for [a, b] in sides(patch) {
         sum += patch.vertices[a].distance(patch.vertices[b]);
@@ -98,12 +144,8 @@ fn faces(patch: &Patch) -> impl Iterator<Item = &[u32]> {
     patch.triangles.iter().map(|t| &t[..]).chain(patch.quads.iter().map(|q| &q[..]))
 }
 
-/// The sides of all faces, the smaller vertex first.
+/// The sides of all faces, those between two faces twice.
 fn sides(patch: &Patch) -> impl Iterator<Item = [usize; 2]> + '_ {
-    faces(patch).flat_map(|face| {
-        (0..face.len()).map(|k| {
-            let (a, b) = (face[k] as usize, face[(k + 1) % face.len()] as usize);
-            [a.min(b), a.max(b)]
-        })
-    })
+    faces(patch)
+        .flat_map(|face| (0..face.len()).map(|k| [face[k] as usize, face[(k + 1) % face.len()] as usize]))
 }

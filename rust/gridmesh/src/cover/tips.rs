@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::cover::outside::LoopEdges;
-use crate::cover::short::{around, mean_side};
+use crate::cover::short::Lengths;
 use crate::geometry::segments::nearest_on_segment;
 use crate::patch::Patch;
 
@@ -13,17 +13,14 @@ const MOVES: usize = 12;
 /// How far outside a point is, in edge lengths, for which a vertex is moved.
 const WORTH: f64 = 0.03;
 
-/// Corners of faces may become as small as this for a tip's sake (12 degrees).
-const THINNEST: f64 = 0.21;
-
-/// Edges may become as short as this, in mean lengths of the patch's own.
-const SHORTEST: f64 = 0.37;
+/// Cotangent of the angle, 12 degrees, to which corners of faces may fall for a tip's sake.
+const THINNEST: f64 = 4.704_630_109_478_455;
 
 /// Moves vertices so that less of the contours lies outside, where no face becomes thin and no edge short by that;
 /// returns how far the farthest point still is outside.
 pub(super) fn moved(patch: &mut Patch, fine: &[Vec<DVec2>], slack: f64) -> f64 {
     let worth = WORTH * patch.lattice.edge_length;
-    let shortest = SHORTEST * mean_side(patch);
+    let lengths = Lengths::new(patch);
     let mut left = 0.0f64;
     for (k, contour) in fine.iter().enumerate() {
         let edges = LoopEdges::new(patch, k);
@@ -34,9 +31,10 @@ pub(super) fn moved(patch: &mut Patch, fine: &[Vec<DVec2>], slack: f64) -> f64 {
             let Some(at) = open.max_by(|&i, &j| need[i].total_cmp(&need[j]).then(j.cmp(&i))) else { break };
             tried[at] = true;
             for vertex in nearest_ends(patch, k, contour[at]) {
-                let before = patch.vertices[vertex];
+                let (before, lacked) = (patch.vertices[vertex], lengths.lacking(patch, vertex));
                 patch.vertices[vertex] = contour[at];
-                if is_sound(around(patch, vertex), shortest)
+                if lengths.sharpest(patch, vertex) <= THINNEST
+                    && lengths.lacking(patch, vertex) <= lacked
                     && let Some(after) = better(patch, k, contour, slack, &need)
                 {
                     need = after;
@@ -49,10 +47,6 @@ pub(super) fn moved(patch: &mut Patch, fine: &[Vec<DVec2>], slack: f64) -> f64 {
         left = need.iter().copied().fold(left, f64::max);
     }
     left
-}
-
-fn is_sound((corner, side): (f64, f64), shortest: f64) -> bool {
-    corner >= THINNEST && side >= shortest
 }
 
 /// The needs of a contour, if their sum of squares is less by a tenth.

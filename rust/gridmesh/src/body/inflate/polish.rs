@@ -14,7 +14,7 @@ use crate::progress::Progress;
 const SHARP: f64 = 1.732_050_807_568_877_2;
 
 /// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
-const LEVEL: f64 = 0.7;
+pub(super) const LEVEL: f64 = 0.7;
 
 /// Vertices between two questions whether to go on.
 pub(super) const ASK_EVERY: usize = 1 << 11;
@@ -182,13 +182,13 @@ fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reac
 }
 
 /// Unit normal of the surface `z^2 = f` where it has this height, from the gradient of `f`.
-fn surface_normal(gradient: DVec2, height: f64) -> DVec3 {
+pub(super) fn surface_normal(gradient: DVec2, height: f64) -> DVec3 {
     (-gradient).extend(2.0 * height).normalize_or(DVec3::Z)
 }
 
 /// Least cosine between the surface's normal at a vertex at `point` and the triangles around it: how
 /// well they stand for the surface. A vertex that leaves a narrow ridge cuts it off.
-fn facing(front: &Front, fan: &[[u32; 2]], point: DVec3, normal: DVec3) -> f64 {
+pub(super) fn facing(front: &Front, fan: &[[u32; 2]], point: DVec3, normal: DVec3) -> f64 {
     let cosine = |&[a, b]: &[u32; 2]| {
         let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
         a.cross(b).normalize_or_zero().dot(normal)
@@ -197,7 +197,7 @@ fn facing(front: &Front, fan: &[[u32; 2]], point: DVec3, normal: DVec3) -> f64 {
 }
 
 /// Largest cotangent of the triangles around a vertex at `point`.
-fn sharpest(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
+pub(super) fn sharpest(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
     let largest = |&[a, b]: &[u32; 2]| {
         let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
         let c = b - a;

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::lengthen::lengthen;
 use super::polish::{ASK_EVERY, sharpen, sweep};
 use crate::body::inflate::front::{Front, Guide};
 use crate::error::Result;
@@ -33,6 +34,8 @@ pub(crate) fn spread(
     if cells == CellShape::Triangle {
         sharpen(front, guide, progress)?;
     }
+    progress.report(0.9)?;
+    lengthen(front, guide, progress)?;
     progress.report(1.0)
 }
 

@@ -1,0 +1,149 @@
+//! Ends of a front's short edges moved apart.
+
+use std::f64::consts::FRAC_PI_4;
+
+use glam::{DVec2, DVec3};
+
+use super::polish::{LEVEL, facing, sharpest, surface_normal};
+use crate::body::inflate::front::{Front, Guide, project};
+use crate::error::Result;
+use crate::geometry::lengthen::{THIN, Visit, lack, visit_crowded};
+use crate::progress::Progress;
+
+/// For each stage the length wanted, in mean lengths of the body's edges (a third shows in a texture), and the cosine
+/// up to which moves may not turn the triangles around a vertex further from the surface.
+const STAGES: [(f64, f64); 4] = [(0.36, LEVEL), (0.36, LEVEL), (0.345, 0.3), (0.336, -1.0)];
+
+/// Lengths of moves tried, in lengths wanted.
+const REACHES: [f64; 4] = [1.0, 0.5, 0.2, 0.07];
+
+/// Moves interior vertices along the surface until the edges at them are as long as [`STAGES`] says, as far as the
+/// corners of triangles allow.
+///
+/// Stages are ever more lenient: in each a vertex is left where it is if a corner around it would become both smaller
+/// than the smallest there and smaller than [`THIN`] says. Every triangle stays positive in projection; where that
+/// holds a vertex fast, its neighbours make room. Near-linear.
+pub(crate) fn lengthen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
+    let mean = mean_length(front, guide);
+    for ((share, level), thin) in STAGES.into_iter().zip(THIN) {
+        let wanted = share * mean;
+        visit_crowded(guide.around, front.first, progress, |v, turn| {
+            let limits = Limits { wanted, level, thin, turn };
+            if lacking(front, guide, v, front.position(v), wanted) == 0.0 {
+                Visit::Long
+            } else if moved_apart(front, guide, v, &limits) || has_made_room(front, guide, v, &limits) {
+                Visit::Moved
+            } else {
+                Visit::Stuck
+            }
+        })?;
+    }
+    Ok(())
+}
+
+/// What moves are tried.
+struct Limits {
+    /// The length wanted.
+    wanted: f64,
+    /// See [`STAGES`].
+    level: f64,
+    /// See [`THIN`].
+    thin: f64,
+    /// Of the directions.
+    turn: f64,
+}
+
+/// Mean length of the edges of the body: those of the silhouette count once, others for the back as well.
+fn mean_length(front: &Front, guide: &Guide<'_>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for v in 0..front.flat.len() {
+        let here = front.position(v);
+        for &u in guide.around.near[guide.around.range(v)].iter().filter(|&&u| u as usize > v) {
+            let times = if (u as usize) < front.first { 1.0 } else { 2.0 };
+            sum += times * here.distance(front.position(u as usize));
+            count += times;
+        }
+    }
+    sum / f64::max(count, 1.0)
+}
+
+/// What the edges at a vertex lack at `point`.
+fn lacking(front: &Front, guide: &Guide<'_>, v: usize, point: DVec3, wanted: f64) -> f64 {
+    let near = &guide.around.near[guide.around.range(v)];
+    near.iter().map(|&u| lack(point.distance(front.position(u as usize)), wanted)).sum()
+}
+
+/// Moves a vertex to where the edges at it lack less.
+fn moved_apart(front: &mut Front, guide: &Guide<'_>, v: usize, limits: &Limits) -> bool {
+    let cost = |front: &Front, point: DVec3| lacking(front, guide, v, point, limits.wanted);
+    let present = 0.999 * cost(front, front.position(v));
+    moved(front, guide, v, limits, present, cost)
+}
+
+/// Moves the neighbours of a vertex to where its triangles are larger in projection.
+fn has_made_room(front: &mut Front, guide: &Guide<'_>, v: usize, limits: &Limits) -> bool {
+    let mut has_moved = false;
+    for &u in &guide.around.near[guide.around.range(v)] {
+        if u as usize >= front.first {
+            let lacked = lacking(front, guide, u as usize, front.position(u as usize), limits.wanted);
+            let cost = |front: &Front, point: DVec3| {
+                let is_worse = lacking(front, guide, u as usize, point, limits.wanted) > lacked;
+                if is_worse { f64::INFINITY } else { -room(front, guide, v, u, point.truncate()) }
+            };
+            let present = -1.001 * room(front, guide, v, u, front.flat[u as usize]);
+            has_moved |= moved(front, guide, u as usize, limits, present, cost);
+        }
+    }
+    has_moved
+}
+
+/// Twice the least area in projection of the triangles at `v`, were its neighbour `u` at `point`.
+fn room(front: &Front, guide: &Guide<'_>, v: usize, u: u32, point: DVec2) -> f64 {
+    let place = |w: u32| if w == u { point } else { front.flat[w as usize] } - front.flat[v];
+    let areas = guide.around.fan(v).iter().map(|&[a, b]| place(a).perp_dot(place(b)));
+    areas.fold(f64::INFINITY, f64::min)
+}
+
+/// Moves a vertex to the best of a few places around it; false if none costs less than `present`.
+fn moved(
+    front: &mut Front,
+    guide: &Guide<'_>,
+    v: usize,
+    limits: &Limits,
+    present: f64,
+    cost: impl Fn(&Front, DVec3) -> f64,
+) -> bool {
+    let field = guide.field;
+    let slot = v - front.first;
+    let fan = guide.around.fan(v);
+    let (here, start, from) = (front.position(v), front.flat[v], front.place[slot]);
+    let normal = surface_normal(field.at(start, from).1, front.height[v]);
+    let (e, f) = normal.any_orthonormal_pair();
+    let level = facing(front, fan, here, normal).min(limits.level);
+    let thin = sharpest(front, fan, here).max(limits.thin);
+    let mut best = present;
+    let mut is_moved = false;
+    for reach in REACHES {
+        for k in 0..8 {
+            let (sin, cos) = (f64::from(k) * FRAC_PI_4 + limits.turn).sin_cos();
+            let target = here + reach * limits.wanted * (cos * e + sin * f);
+            let Some((point, place)) = project(field, target, from.triangle) else { continue };
+            let (value, gradient) = field.at(point, place);
+            let height = value.sqrt();
+            let there = point.extend(height);
+            let costs = cost(front, there);
+            if costs < best
+                && front.may_move(guide, v, start, point)
+                && sharpest(front, fan, there) <= thin
+                && facing(front, fan, there, surface_normal(gradient, height)) >= level
+            {
+                best = costs;
+                is_moved = true;
+                front.flat[v] = point;
+                front.place[slot] = place;
+                front.height[v] = height;
+            }
+        }
+    }
+    is_moved
+}
