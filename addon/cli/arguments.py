@@ -83,6 +83,8 @@ def _add(verb: argparse.ArgumentParser, name: str, param: params.Param) -> None:
         verb.add_argument(option, choices=param.choices, help=text)
     elif param.kind == "text":
         verb.add_argument(option, metavar="NAME", help=text)
+    elif param.kind == "file":
+        verb.add_argument(option, metavar="FILE", help=f"{text}; {listing.STEM} stands for each input's name")
     elif param.kind == "stroke":
         verb.add_argument(option, type=_stroke, required=True, metavar="FILE|OBJECT|POINTS", help=text)
     elif param.kind == "numbers":

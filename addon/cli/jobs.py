@@ -61,7 +61,8 @@ class Job:
     def named_files(self) -> list[str]:
         """Files that are read, as far as the job names them; those may name more."""
         stroke = self.params.get("stroke")
-        return [str(self.source), *([stroke] if isinstance(stroke, str) and is_file(stroke) else [])]
+        named = [stroke] if isinstance(stroke, str) and is_file(stroke) else []
+        return [str(self.source), *named, *filter(None, [self.params.get("bones")])]
 
     def beside(self) -> Path | None:
         """File that is written beside the output, if any: the picture of a sprite."""
@@ -148,7 +149,7 @@ def _job(item: Any, folder: Path) -> Job:
 def checked(
     name: str, op: str, source: Path, pattern: str | None, chosen: dict[str, Any], out: Path, folder: Path
 ) -> Job:
-    """Job of these parts; a stroke's file is relative to the folder.
+    """Job of these parts; the files of a stroke and of bones are relative to the folder.
 
     Raises
     ------
@@ -172,6 +173,10 @@ def checked(
             raise JobError(
                 f"stroke '{stroke}' is no file of curves ({', '.join(CURVES)}), and only a .blend file has strokes"
             )
+    if "bones" in chosen:
+        if out.suffix.lower() not in BESIDE:
+            raise JobError(f"bones are for {' and '.join(BESIDE)}; '{out.name}' gets none")
+        chosen["bones"] = str(folder / chosen["bones"])
     if pattern is not None and (op == "sprites" or source.suffix.lower() in CURVES[:2]):
         raise JobError(f"'object' is for files with objects; '{source.name}' has none")
     return Job(name, op, source, pattern, chosen, out)

@@ -11,7 +11,7 @@ from . import jobs, places
 from .jobs import Job, JobError
 
 STEM = "{name}"
-"""In the output's name: stands for that of the input without its ending."""
+"""In names of the output and of a file of bones: stands for that of the input without its ending."""
 
 
 def listed(op: str, words: list[str], pattern: str | None, chosen: dict[str, Any], out: str) -> list[Job]:
@@ -31,10 +31,18 @@ def listed(op: str, words: list[str], pattern: str | None, chosen: dict[str, Any
         raise JobError(f"{len(sources)} inputs and one output; write {STEM} in it, as in 'bodies/{STEM}.ply'")
     here = Path.cwd()
     found = [
-        jobs.checked(str(path), op, path, pattern, dict(chosen), here / out.replace(STEM, path.stem), here)
+        jobs.checked(
+            str(path), op, path, pattern, _own(chosen, path), here / out.replace(STEM, path.stem), here
+        )
         for path in sources
     ]
     return places.marked(found, [f"'{path}'" for path in sources])
+
+
+def _own(chosen: dict[str, Any], path: Path) -> dict[str, Any]:
+    """Parameters for one input."""
+    named = {key: chosen[key].replace(STEM, path.stem) for key in ("bones",) if key in chosen}
+    return {**chosen, **named}
 
 
 def _files(op: str, word: str) -> list[Path]:

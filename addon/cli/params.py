@@ -24,7 +24,7 @@ class Param:
     """One parameter. Whether a value suits a drawing is told when the item runs, not here."""
 
     kind: str
-    """"number", "numbers" (a list), "count" (a whole number from 0), "switch", "choice", "text" or "stroke"."""
+    """"number", "numbers" (a list), "count" (a whole number from 0), "switch", "choice", "text", "file" or "stroke"."""
     help: str
     choices: tuple[str, ...] = ()
     least: float = -math.inf
@@ -36,7 +36,7 @@ class Param:
             good, allowed = isinstance(value, bool), "true or false"
         elif self.kind == "choice":
             good, allowed = value in self.choices, " or ".join(self.choices)
-        elif self.kind == "text":
+        elif self.kind in ("text", "file"):
             good, allowed = (
                 isinstance(value, str) and bool(value) and "\0" not in value,
                 "a text that is not empty",
@@ -172,6 +172,7 @@ OPS: Mapping[str, Mapping[str, Param]] = {
         "min_area": Param("number", "islands and holes of fewer pixels are left out (16)", least=0, most=1e9),
         "margin": Param("number", "pixels that the outline is moved outward (1)", least=0, most=1000),
         "holes": Param("switch", "holes of the picture stay open (true)"),
+        "bones": Param("file", "JSON file of bones that get weights, for .json and .tscn"),
         **BODY,
         "unit": Param(
             "number", f"pixels of a metre in .glb, .gltf and .blend ({SPRITE_UNIT:g})", least=1e-6, most=1e9

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from ..data.placing import Transaction
 from ..native import native
 from ..pictures import images, placing
 from ..pictures.cutouts import Cutout, Options, cut_out
-from ..pictures.formats import gltf, godot, spine
+from ..pictures.formats import gltf, godot, rig, spine
 from ..pictures.formats.sheet import Sheet
 from . import files, loading, outputs, params
 from .making import MakeError
@@ -117,7 +118,17 @@ def sprites(source: Path, _pattern: str | None, options: dict[str, Any], *, scri
     ending = source.suffix.lower()
     transparent = seen_through and not paper and flat
     sheet = Sheet(name, cutout, width, height, data, _ending_of(data, ending), transparent, flat)
+    if "bones" in options and flat:
+        sheet = replace(sheet, rig=_rig(Path(options["bones"]), sheet))
     return MadeSprite(source, sheet, chosen, options.get("unit", params.SPRITE_UNIT))
+
+
+def _rig(path: Path, sheet: Sheet) -> rig.Rig:
+    try:
+        bones = rig.read(files.read_bytes(path), sheet.width, sheet.height)
+        return rig.weighed(sheet.cutout, sheet.points, bones)
+    except rig.RigError as error:
+        raise MakeError("bones", f"bones of '{path.name}': {error}") from error
 
 
 def _ending_of(data: bytes, ending: str) -> str:

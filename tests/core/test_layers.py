@@ -62,6 +62,7 @@ WITHOUT_BLENDER = {
     "pictures/cutouts",
     "pictures/formats/gltf",
     "pictures/formats/godot",
+    "pictures/formats/rig",
     "pictures/formats/sheet",
     "pictures/formats/spine",
     "text/messages",

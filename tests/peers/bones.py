@@ -132,7 +132,7 @@ def main() -> None:
             cutout = cut_out(pixels, Options(**options))
             n = cutout.starts[1] if len(cutout.starts) > 1 else len(cutout.vertices)
             points = cutout.vertices[:n]
-            triangles = cutout.faces[(cutout.triangles < n).all(axis=1)]
+            triangles = cutout.faces[(cutout.faces < n).all(axis=1)]
             bones = chain(points[:, :2], triangles)
             started = time.process_time()
             own = gridmesh.bone_weights(points[:, :2], triangles, bones)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cutouts import Cutout
+from .rig import Rig
 
 IMAGES = "images"
 """Folder of pictures beside files that only name theirs."""
@@ -30,6 +31,8 @@ class Sheet:
     transparent: bool
     """Whether what is left out of the picture shows at the rim of the mesh."""
     flat: bool
+    rig: Rig | None = None
+    """Bones that move it, and their weights."""
 
     @property
     def points(self) -> np.ndarray:
@@ -51,7 +54,8 @@ class Sheet:
             own = faces[(faces[:, 0] >= start) & (faces[:, 0] < end)] - start
             loops = [loop - start for loop in self.cutout.silhouette if start <= loop[0] < end]
             name = self.name if len(starts) == 1 else f"{self.name}-{at + 1}"
-            yield name, Part(self.points[start:end, :2], self.uv[start:end], own, loops)
+            weights = None if self.rig is None else self.rig.weights[start:end]
+            yield name, Part(self.points[start:end, :2], self.uv[start:end], own, loops, weights)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +67,8 @@ class Part:
     triangles: np.ndarray
     loops: list[np.ndarray]
     """The outer contour first; its vertices are the first ones, in order."""
+    weights: np.ndarray | None = None
+    """(v, b) of the bones, if there are any; rows sum to 1."""
 
     def edges(self) -> np.ndarray:
         """(e, 2) edges, each once."""
