@@ -123,7 +123,7 @@ def quiet():
 def main() -> None:
     """Print what was measured."""
     chosen = asked(__doc__)
-    rows, closed = [], []
+    rows, closed, names = [], [], []
     with tempfile.TemporaryDirectory() as folder:
         archive = chosen.archive or packed(Path(folder))
         for file in pictures(archive, chosen.count, Path(folder)):
@@ -145,11 +145,14 @@ def main() -> None:
                 closed.append((automatic(body.vertices[:m], faces, bones).sum(axis=1) == 0).any())
             bare = theirs.sum(axis=1) == 0
             folded = [folds(points[:, :2], triangles, weights, bones) for weights in (own, theirs)]
+            names.append(file.stem)
             rows.append((*folded, bare.any(), 4 * len(triangles), seconds, np.abs(own.sum(axis=1) - 1).max()))
     own, theirs, bare, total, seconds, off = (np.array(column) for column in zip(*rows, strict=True))
     print(f"{len(rows)} sprites, each bent in four ways, {total.sum()} triangles")
     print(f"folded: own {own.sum()} ({100 * own.sum() / total.sum():.2f} %), Blender's {theirs.sum()} ({100 * theirs.sum() / total.sum():.2f} %)")  # fmt: skip
     print(f"sprites with fewer folds, own {(own < theirs).sum()}, Blender's {(own > theirs).sum()}; without any, own {(own == 0).sum()}, Blender's {(theirs == 0).sum()}")  # fmt: skip
+    worse = [f"{names[k]}: {own[k]} instead of {theirs[k]}" for k in np.flatnonzero(own > theirs)]
+    print(f"more folds by own weights: {', '.join(worse) or 'none'}")
     print(f"most folds of a sprite, own {own.max()}, Blender's {theirs.max()}")
     print(f"vertices without weights: own on 0 sprites, Blender's on {bare.sum()} sprites and {sum(closed)} bodies")  # fmt: skip
     print(f"own: rows sum to 1 within {off.max():.1e}; {1000 * seconds.mean():.1f} ms")

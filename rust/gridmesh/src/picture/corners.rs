@@ -14,6 +14,9 @@ const SIDES: [(f64, f64); 8] =
 /// Lines turn at a corner by at least this much, in radians.
 const TURN: f64 = 0.5;
 
+/// and by at most this much, which leaves 11 degrees between the sides.
+const SHARPEST: f64 = 2.95;
+
 /// How far the samples of a side may be from its line, in pixels.
 const STRAIGHT: f64 = 0.12;
 
@@ -29,7 +32,7 @@ const BESIDE: f64 = 0.15;
 const CURVED: f64 = 0.2;
 
 /// A corner is at most this far from the line that it replaces, in pixels.
-const FARTHEST: f64 = 2.0;
+const FARTHEST: f64 = 3.5;
 
 /// Contours of more samples report in between.
 const REPORT: usize = 4096;
@@ -143,7 +146,7 @@ fn corner(line: &Line<'_>, i: usize, (gap, length): (f64, f64)) -> Option<Corner
     let (before, after) = (straight(&side(false), noise)?, straight(&side(true), noise)?);
     // Both run away from the corner.
     let turn = (-before.1).perp_dot(after.1).atan2((-before.1).dot(after.1));
-    if turn.abs() < TURN || turn.abs() > 2.9 {
+    if turn.abs() < TURN || turn.abs() > SHARPEST {
         return None;
     }
     let cross = before.1.perp_dot(after.1);
