@@ -68,6 +68,15 @@ def test_corners_come_back(round_trips):
     assert np.median(away) < 0.15
 
 
+@pytest.mark.parametrize("turn", [0.08, 0.24, 0.52])
+def test_sharp_tips_come_back(turn):
+    c, s = np.cos(turn), np.sin(turn)
+    star = placed([np.asarray(SHEETS["star"]["points"], float) @ [[c, s], [-s, c]]], 256)
+    traced = gridmesh.trace_image(np.rint(255 * coverage(star, 256, 256)).astype(np.uint8))
+    points = np.concatenate(contours_of(traced))
+    assert max(np.hypot(*(points - corner).T).min() for corner in star[0]) < 0.7
+
+
 @pytest.mark.parametrize("turn", np.linspace(0, np.pi / 2, 9)[:-1])
 def test_a_square_has_four_corners_and_straight_sides(turn):
     drawn = turned_square(200, turn)
