@@ -2,11 +2,17 @@
 
 import itertools
 import pickle
+import sys
 from collections import Counter
+from pathlib import Path
 
 import gridmesh
 import numpy as np
 import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
+
+import several
 
 
 def ball(rings=24, around=40):
@@ -221,11 +227,107 @@ def test_loops_that_are_unfit_are_named(changed, kind):
     assert caught.value.kind == kind
 
 
-@pytest.mark.parametrize("option", [{"cells": "quads"}, {"sharp": 0.5}])
-def test_options_of_one_loop_are_refused(option):
+def test_hard_edges_are_for_one_loop():
     vertices, caps, loops = case()
-    with pytest.raises(gridmesh.GridMeshError, match=next(iter(option))):
-        gridmesh.fill_hole(vertices, caps, loops, **option)
+    with pytest.raises(gridmesh.GridMeshError, match="sharp"):
+        gridmesh.fill_hole(vertices, caps, loops, sharp=0.5)
+
+
+# ----------------------------------------------------------------------------------------------------- quads
+
+
+def pipes(*counts):
+    """Ends of pipes of quads, each two rows of two triangles a quad, that look at each other around a ring: vertices, triangles,
+    the quad of each, and the loops.
+    """
+    vertices, triangles, loops = [], [], []
+    for k, n in enumerate(counts):
+        turn = 2 * np.pi * k / len(counts)
+        way = np.array([np.cos(turn), np.sin(turn), 0.3 * np.cos(2 * turn)])
+        way /= np.linalg.norm(way)
+        u = np.cross([0, 0, 1.0], way)
+        u /= np.linalg.norm(u)
+        t = 2 * np.pi * np.arange(n)[:, None] / n
+        ring = (0.7 + 0.1 * k) * (np.cos(t) * u + np.sin(t) * np.cross(way, u))
+        first = sum(map(len, vertices))
+        vertices.append(np.vstack([ring + (2.5 + step * 0.25) * way for step in range(3)]))
+        i, j = np.arange(n) + first, (np.arange(n) + 1) % n + first
+        for row in (0, n):
+            quads = np.c_[i + row, j + row, j + row + n, i + row + n]
+            triangles.append(np.stack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]], 1).reshape(-1, 3))
+        loops.append(list(range(first, first + n)))
+    triangles = np.concatenate(triangles)
+    return np.concatenate(vertices), triangles, np.arange(len(triangles)) // 2, loops
+
+
+def quads_between(*counts, **options):
+    """The patch of quads between pipes, checked, with its corners in degrees."""
+    vertices, triangles, polygons, loops = pipes(*counts)
+    fill = gridmesh.fill_hole(vertices, triangles, loops, polygons=polygons, cells="quads", **options)
+    assert not several.faults(vertices, triangles, loops, fill)
+    assert len(fill.triangles) == sum(counts) % 2
+    assert fill.report["quads"] == len(fill.quads)
+    at = np.bincount(np.r_[fill.quads.ravel(), fill.triangles.ravel()], minlength=len(vertices))
+    assert fill.report["irregular"] == (at[len(vertices) :] != 4).sum()
+    return fill, several.corners(vertices, fill), at[len(vertices) :]
+
+
+@pytest.mark.parametrize(
+    "counts", [(20, 20, 20), (16, 22, 18, 26, 12), (9, 40, 17, 24), (21, 21, 20), (13, 30, 24)]
+)
+def test_pipes_are_joined_by_quads(counts):
+    fill, corners, at = quads_between(*counts)
+    assert fill.report["self_intersections"] == 0
+    assert fill.report["folds"] == 0
+    assert corners.min() > 25
+    assert corners.max() < 150
+    assert (at != 4).mean() < 0.08
+    assert set(at) <= {3, 4, 5, 6}
+
+
+@pytest.mark.parametrize("smooth", ["flat", "tangent", "curvature"])
+@pytest.mark.parametrize("counts", [(3, 4, 5), (3, 3, 3), (5, 5, 4, 4), (6, 7, 8), (40, 3, 5), (30, 31, 33)])
+def test_loops_of_any_counts_get_quads_and_one_triangle_if_odd(counts, smooth):
+    fill, _, _ = quads_between(*counts, smooth=smooth)
+    again, _, _ = quads_between(*counts, smooth=smooth)
+    assert fill.vertices.tobytes() == again.vertices.tobytes()
+    assert fill.quads.tobytes() == again.quads.tobytes()
+
+
+def test_a_plate_with_holes_is_quads_in_its_plane():
+    t = lambda n: 2 * np.pi * np.arange(n) / n  # noqa: E731
+    rings = [(72, 5, 0, 0, 1), (24, 1, 2, 1, -1), (30, 1.2, -2, 0.5, -1)]
+    points = [
+        np.c_[x + r * np.cos(t(n)), way * (way * y + r * np.sin(t(n))), 0 * t(n)] for n, r, x, y, way in rings
+    ]
+    starts = np.cumsum([0, *map(len, points)])
+    loops = [list(range(a, b)) for a, b in itertools.pairwise(starts)]
+    vertices = np.concatenate(points)
+    fill = gridmesh.fill_hole(vertices, np.zeros((0, 3), int), loops, cells="quads")
+    assert not several.faults(vertices, np.zeros((0, 3), int), loops, fill)
+    assert np.abs(fill.vertices[:, 2]).max() < 1e-9
+    assert (fill.report["self_intersections"], fill.report["folds"]) == (0, 0)
+    assert fill.report["irregular"] < 0.08 * len(fill.vertices)
+
+
+def test_quads_between_several_loops_are_stored_extended_and_refitted():
+    vertices, triangles, polygons, loops = pipes(16, 22, 18)
+    fill = gridmesh.fill_hole(vertices, triangles, loops, polygons=polygons, cells="quads")
+    again = pickle.loads(pickle.dumps(fill))
+    assert again.quads.tobytes() == fill.quads.tobytes()
+    values = vertices[fill.loop][:, :1]
+    carried = again.extend(values)
+    assert values.min() <= carried.min() <= carried.max() <= values.max()
+    moved = 2 * vertices[:, [1, 2, 0]] + 0.5
+    assert again.refit(moved) == pytest.approx(2 * fill.vertices[:, [1, 2, 0]] + 0.5, abs=1e-6)
+
+
+def test_random_caps_of_a_ball_are_joined_by_quads():
+    """A short run of the campaign: `python tests/campaign/several.py --cells quads`."""
+    for number in range(4):
+        vertices, faces, loops = several.case(1, number, 24, 44)
+        fill = gridmesh.fill_hole(vertices, faces, loops, cells="quads")
+        assert not several.faults(vertices, faces, loops, fill), number
 
 
 def test_it_can_be_cancelled():

@@ -22,8 +22,8 @@ use crate::watch::Watch;
 ///     further away than two rings of triangles need not even be finite.
 /// loop : (k,) array of int, k >= 3, or a list of such arrays
 ///     The vertices of the hole's boundary in order, either way round, each once. A list: the loops of one hole that has
-///     several; the patch has them all as its boundary. Two are joined by a tube, as `bridge` does; between three or more the triangles are even, but no
-///     grid. Several loops with triangles only, and without `sharp`.
+///     several; the patch has them all as its boundary. Two are joined by a tube, as `bridge` does; between three or more the faces are even, but no
+///     grid. Several loops without `sharp`.
 /// smooth : {"flat", "tangent", "curvature"}
 ///     "flat": a soap film in the loop. "tangent": continues the slope of the surface around. "curvature":
 ///     its slope and curvature.
@@ -40,7 +40,8 @@ use crate::watch::Watch;
 /// creases : (e, 2) array of int, optional
 ///     With `sharp`: edges that are hard whatever their angle is.
 /// cells : {"triangles", "quads"}
-///     "quads": all new faces are quads if the loop has an even number of edges; if it is odd one is a triangle.
+///     "quads": all new faces are quads if the loop has, or several loops have in sum, an even number of edges; if it is
+///     odd one is a triangle.
 ///     Quads of the mesh go on through the loop where counts allow: tell them by `polygons`.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1, which never falls; cancels by returning False. What it raises is

@@ -72,13 +72,14 @@ pub fn fill_hole(
 
 /// Fills one hole that has several loops: a patch whose boundary they all are.
 ///
-/// One loop is filled as by [`fill_hole`], two are joined by a tube as by [`bridge()`]. Between three or more the triangles are
-/// even, but no grid: the patch is a sphere with as many holes, every loop is exact and untouched, each of its edges gets one new triangle, no edge of the mesh is
+/// One loop is filled as by [`fill_hole`], two are joined by a tube as by [`bridge()`]. Between three or more the faces are
+/// even, but no grid: the patch is a sphere with as many holes, every loop is exact and untouched, each of its edges gets one new face, no edge of the mesh is
 /// repeated, and the surface goes on from what is around all loops. Loops without faces are taken the way round that suits the
-/// nearest others. The loop of the [`Fill`] is the loops one after the other.
+/// nearest others. Quads are pairs of triangles of twice the size, each cut into four; if the loops have an odd number of edges in sum
+/// one face is a triangle. The loop of the [`Fill`] is the loops one after the other.
 ///
 /// # Errors
-/// Those of [`fill_hole`] and [`bridge()`]; [`Error::InvalidOption`] without a loop, and for quads with two loops or more;
+/// Those of [`fill_hole`] and [`bridge()`]; [`Error::InvalidOption`] without a loop, and for `sharp` with two loops or more;
 /// [`Error::NoPatch`] if the loops have too few vertices to be joined; [`Error::FigureEight`] for a vertex of two loops.
 pub fn fill_loops(
     vertices: &[DVec3],

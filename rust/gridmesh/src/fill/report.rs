@@ -6,7 +6,7 @@ use crate::fill::planar::flat::Method;
 /// Numbers about a [`super::Fill`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FillReport {
-    /// New triangles; of a patch of quads one if its loop is odd.
+    /// New triangles; of a patch of quads one if its loops have an odd number of edges.
     pub triangles: usize,
     /// New quads.
     pub quads: usize,
@@ -19,7 +19,7 @@ pub struct FillReport {
     pub irregular_loop: usize,
     /// How the patch was made.
     pub grid: Grid,
-    /// Rows of triangles between two loops, on average; 0 for a patch in one.
+    /// Rows of faces between two loops, on average; 0 for a patch in one.
     pub rows: usize,
     /// True if no patch was found whose triangles are all counter-clockwise in the plane.
     pub folded: bool,
@@ -68,7 +68,7 @@ pub enum Grid {
     Graded,
     /// Triangles for every second vertex of the loop, each cut into three quads.
     Refined,
-    /// Triangles made even, between three loops or more.
+    /// Triangles made even, or pairs of these cut in four, between three loops or more.
     Even,
 }
 

@@ -1,19 +1,26 @@
 //! One patch for three loops or more.
 //!
 //! No lattice fits them all: the loops are joined to one polygon (`tour`), which is triangulated with the least bending and area
-//! (`polygon`), and the triangles are made even on that surface and smooth to what lies beyond (`even`).
+//! (`polygon`), and the triangles are made even on that surface and smooth to what lies beyond (`even`). For quads triangles of
+//! twice the size are laid on that surface, joined to pairs (`pairs`) and cut (`halves`).
 
+mod border;
+mod halves;
+mod pairs;
 mod polygon;
+mod quads;
+mod rows;
 mod tour;
 
 use glam::{DVec2, DVec3};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
+use self::border::Border;
 use self::polygon::{Outline, triangulated};
-use self::tour::{Loops, turned};
+use self::tour::turned;
 use crate::error::{Error, Result};
 use crate::fill::even::fair::{Beyond, fair};
-use crate::fill::even::local::{Local, edge};
+use crate::fill::even::local::Local;
 use crate::fill::even::polish::polish;
 use crate::fill::even::regular::regularize;
 use crate::fill::even::remesh::{Ground, adapt, flip_valences, mend_thin, refine, remesh};
@@ -23,15 +30,12 @@ use crate::fill::job::{Job, SOUND_RINGS};
 use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::check::{Checked, check_loop, check_near};
 use crate::fill::loops::mesh::Rim;
-use crate::fill::loops::reserve::wanted;
-use crate::fill::one::outside;
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::report::{FillReport, Grid};
 use crate::fill::surface::fair::Membrane;
 use crate::fill::surface::fit::{Faults, LEAST_WEIGHT, folds, rim_angle};
 use crate::fill::surface::meet::Box3;
 use crate::fill::surface::patchwork::Patchwork;
-use crate::geometry::metrics::min_angle;
 use crate::options::CellShape;
 use crate::progress::{Clock, Progress};
 
@@ -54,10 +58,6 @@ pub(super) fn fill_several(
 ) -> Result<Fill> {
     progress.report(0.0)?;
     options.check(triangles)?;
-    if options.cells == CellShape::Quad {
-        let (name, value) = ("cells", format!("quads, with {} loops", loops.len()));
-        return Err(Error::InvalidOption { name, value, allowed: "triangles, with several loops" });
-    }
     let seeds = loops.concat();
     let rings = if options.smooth == Smooth::Curvature { 2 } else { 1 };
     let rim = Rim::new(vertices.len(), triangles, &seeds, rings)?;
@@ -95,72 +95,102 @@ impl Several<'_> {
     fn fill(&self, spanning: &[[usize; 2]], rings: usize, progress: Progress<'_>) -> Result<Fill> {
         let mut clock = Clock::new();
         let loop_ = self.checked.iter().flat_map(|c| c.vertices.iter().copied()).collect::<Vec<_>>();
-        let at = loop_.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
-        let taken = self.taken(&loop_);
-        let loops = Loops::new(self.checked.iter().map(|c| c.vertices.len()));
-        let outside = self
-            .checked
-            .iter()
-            .flat_map(|c| outside(&c.vertices, self.rim, self.vertices))
-            .collect::<Vec<_>>();
-        let outline = Outline { loops: &loops, at: &at, outside: &outside, taken: &taken };
-        let (positions, triangles) = triangulated(&outline, spanning, progress.part(0.0, 0.3))?;
-        clock.stage("surface");
-        let mut local = Local::new(positions, triangles, vec![], loop_.len());
-        local.sides = vec![0; local.triangles.len()];
-        local.taken = taken;
-        self.size(&loops, &mut local);
-        let beyond = self.beyond(&loops, &loop_);
-        let place: FxHashMap<u32, u32> = loop_.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
-        let near = |local: &Local| {
-            Near::new(Box3::around(local.positions.iter().copied()), self.vertices, self.triangles, &place)
+        let border = self.border(&loop_);
+        let shape = match self.options.cells {
+            CellShape::Triangle => {
+                let (mut local, even) = self.even(&border, spanning, &mut clock, progress.part(0.0, 0.85))?;
+                let work = self.patchwork(&loop_, &border, local.positions.len(), &local.triangles, rings)?;
+                let mut shape = self.shape(loop_, work);
+                shape.positions = self.placed(&shape, &even, &local.positions, progress.part(0.85, 0.95))?;
+                let near = self.near(&border, &local);
+                self.mended(&mut shape, &mut local, &even, &near, progress.part(0.95, 1.0))?;
+                shape
+            }
+            CellShape::Quad => self.quads(loop_, &border, spanning, rings, &mut clock, progress)?,
         };
+        clock.stage("fair");
+        Ok(self.finish(shape, clock))
+    }
+
+    /// Even triangles between the places of a border on a surface that is smooth to what lies beyond, and where they were
+    /// before the last smoothing.
+    fn even(
+        &self,
+        border: &Border,
+        spanning: &[[usize; 2]],
+        clock: &mut Clock,
+        progress: Progress<'_>,
+    ) -> Result<(Local, Vec<DVec3>)> {
+        let Border { loops, at, outside, taken, beyond, .. } = border;
+        let outline = Outline { loops, at, outside, taken };
+        let (positions, triangles) = triangulated(&outline, spanning, progress.part(0.0, 0.35))?;
+        clock.stage("surface");
+        let mut local = Local::new(positions, triangles, vec![], at.len());
+        local.sides = vec![0; local.triangles.len()];
+        local.taken = taken.clone();
+        self.size(border, &mut local);
         let is_flat = self.options.smooth == Smooth::Flat;
         if is_flat {
             let ground = Ground::of(&local);
-            remesh(&mut local, &ground, progress.part(0.3, 0.5))?;
-            regularize(&mut local, Some(&ground), progress.part(0.5, 0.6))?;
+            remesh(&mut local, &ground, progress.part(0.35, 0.6))?;
+            regularize(&mut local, Some(&ground), progress.part(0.6, 0.7))?;
         } else {
-            self.shaped(&mut local, &beyond, progress.part(0.3, 0.5))?;
-            regularize(&mut local, None, progress.part(0.5, 0.6))?;
-            let near = near(&local);
-            unfold(&mut local, &near, progress.part(0.6, 0.65))?;
+            self.shaped(&mut local, beyond, progress.part(0.35, 0.6))?;
+            regularize(&mut local, None, progress.part(0.6, 0.7))?;
+            let near = self.near(border, &local);
+            unfold(&mut local, &near, progress.part(0.7, 0.76))?;
         }
         clock.stage("grid");
         let even = local.positions.clone();
         if !is_flat {
             for round in 0..=ROUNDS {
-                let part = |k: usize| 0.65 + 0.15 * k as f64 / (ROUNDS + 1) as f64;
+                let part = |k: usize| 0.76 + 0.18 * k as f64 / (ROUNDS + 1) as f64;
                 if round > 0 {
                     flip_valences(&mut local);
                     mend_thin(&mut local);
                 }
-                local.positions = fair(&local, &beyond, progress.part(part(round), part(round + 1)))?;
+                local.positions = fair(&local, beyond, progress.part(part(round), part(round + 1)))?;
             }
         }
-        let near = near(&local);
-        untangle(&mut local, &even, &near, polish, progress.part(0.8, 0.85))?;
-        let faired = local.positions.clone();
-        let mut work =
-            Patchwork::new(&loop_, local.positions.len() - loop_.len(), &local.triangles, self.rim, rings)?;
-        work.later = loops.starts[1..].to_vec();
-        let mut shape = Shape {
+        let near = self.near(border, &local);
+        untangle(&mut local, &even, &near, polish, progress.part(0.94, 1.0))?;
+        Ok((local, even))
+    }
+
+    fn near(&self, border: &Border, local: &Local) -> Near {
+        let around = Box3::around(local.positions.iter().copied());
+        Near::new(around, self.vertices, self.triangles, &border.place)
+    }
+
+    /// The patch of triangles over `end` vertices, and what is around it.
+    fn patchwork(
+        &self,
+        loop_: &[u32],
+        border: &Border,
+        end: usize,
+        triangles: &[[u32; 3]],
+        rings: usize,
+    ) -> Result<Patchwork> {
+        let mut work = Patchwork::new(loop_, end - loop_.len(), triangles, self.rim, rings)?;
+        work.later = border.loops.starts[1..].to_vec();
+        Ok(work)
+    }
+
+    /// What the patch is, but for positions.
+    fn shape(&self, loop_: Vec<u32>, work: Patchwork) -> Shape {
+        Shape {
             flat: vec![DVec2::ZERO; work.end],
+            bridged: (work.later.iter().zip(&self.checked[1..]))
+                .map(|(&first, checked)| Bridged { first, reversed: checked.reversed })
+                .collect(),
             work,
             loop_,
             reversed: self.checked[0].reversed,
-            bridged: (loops.starts[1..].iter().zip(&self.checked[1..]))
-                .map(|(&first, checked)| Bridged { first, reversed: checked.reversed })
-                .collect(),
             smooth: self.options.smooth,
             vertices: self.vertices.len(),
             positions: vec![],
             creases: vec![],
-        };
-        shape.positions = self.placed(&shape, &even, &faired, progress.part(0.85, 0.95))?;
-        self.mended(&mut shape, &mut local, &even, &near, progress.part(0.95, 1.0))?;
-        clock.stage("fair");
-        Ok(self.finish(shape, clock))
+        }
     }
 
     /// Makes the triangles even on a surface that is made smooth: shape and triangles depend on each other. Fairing spreads the
@@ -200,54 +230,6 @@ impl Several<'_> {
         Ok(())
     }
 
-    /// Edges that the mesh has between vertices of the loops, by their places.
-    fn taken(&self, loop_: &[u32]) -> FxHashSet<[u32; 2]> {
-        let places: FxHashMap<u32, u32> = loop_.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
-        let mut taken = FxHashSet::default();
-        for (&v, k) in loop_.iter().zip(0..) {
-            let near = self.rim.local(v).map(|v| self.rim.neighbours(v)).unwrap_or_default();
-            let near = near.into_iter().map(|u| self.rim.ids[u as usize]);
-            let loose = self.rim.loose.iter().filter(|edge| edge.contains(&v));
-            for u in near.chain(loose.flatten().copied()).filter(|&u| u != v) {
-                taken.extend(places.get(&u).map(|&place| edge(k, place)));
-            }
-        }
-        taken
-    }
-
-    /// Wanted edge lengths and numbers of triangles.
-    fn size(&self, loops: &Loops, local: &mut Local) {
-        for v in 0..local.border {
-            let length = |a: usize, b: usize| local.positions[a].distance(local.positions[b]);
-            local.sizes[v] = 0.5 * (length(v, loops.next(v)) + length(v, loops.before(v)));
-        }
-        let inner = local.border..local.positions.len();
-        for v in inner {
-            let (mut sum, mut weights) = (0.0, 0.0);
-            for k in 0..local.border {
-                let squared = local.positions[k].distance_squared(local.positions[v]);
-                let weight = 1.0 / squared.max(f64::MIN_POSITIVE);
-                sum += weight * local.sizes[k];
-                weights += weight;
-            }
-            local.sizes[v] = sum / weights;
-        }
-        let of = |checked: &Checked| wanted(&checked.vertices, self.rim, &self.options.polygons);
-        let edges = self.checked.iter().flat_map(of);
-        local.wanted = edges.map(|edges| (edges - 1).clamp(1, 5) as usize).collect();
-    }
-
-    /// What lies beyond each vertex of the loops.
-    fn beyond(&self, loops: &Loops, loop_: &[u32]) -> Beyond {
-        let of = |k: usize| {
-            let beside = [loop_[loops.before(k)], loop_[loops.next(k)]];
-            let near = self.rim.local(loop_[k]).map(|v| self.rim.neighbours(v)).unwrap_or_default();
-            let near = near.into_iter().map(|u| self.rim.ids[u as usize]).filter(|u| !beside.contains(u));
-            near.fold((DVec3::ZERO, 0), |(sum, n), u| (sum + self.vertices[u as usize], n + 1))
-        };
-        (0..loop_.len()).map(of).collect()
-    }
-
     /// The smoothest positions of all that meet least.
     fn placed(
         &self,
@@ -256,12 +238,17 @@ impl Several<'_> {
         faired: &[DVec3],
         progress: Progress<'_>,
     ) -> Result<Vec<DVec3>> {
-        let work = &shape.work;
-        let mut around = vec![DVec3::ZERO; work.len()];
-        for (k, &v) in work.outer.iter().enumerate() {
-            around[work.end + k] = self.vertices[v as usize];
-        }
-        let all = |own: &[DVec3]| [own, &around[work.end..]].concat();
+        let own = &shape.work;
+        // Quads are placed with a vertex in the middle of each.
+        let centred = if own.quads > 0 { Some(shape.centred()?) } else { None };
+        let solver = centred.as_ref().unwrap_or(shape);
+        let work = &solver.work;
+        let outer = work.outer.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
+        let all = |positions: &[DVec3]| {
+            let middle = |q: [u32; 4]| q.iter().map(|&v| positions[v as usize]).sum::<DVec3>() / 4.0;
+            let middles = own.quads().map(middle);
+            positions.iter().copied().chain(middles).chain(outer.iter().copied()).collect::<Vec<_>>()
+        };
         let mut choices = vec![];
         if self.options.smooth == Smooth::Flat {
             let mut film = all(even);
@@ -274,7 +261,7 @@ impl Several<'_> {
             choices.push(film);
         } else {
             let mut bent = all(faired);
-            match shape.bend(&mut bent, None, &mut vec![], progress.part(0.0, 0.5)) {
+            match solver.bend(&mut bent, None, &mut vec![], progress.part(0.0, 0.5)) {
                 Ok(()) => choices.push(bent),
                 // Triangles without area spoil the equations.
                 Err(Error::Solver { .. }) => {}
@@ -285,9 +272,10 @@ impl Several<'_> {
         }
         choices.push(all(even));
         let mut best: Option<(Faults, Vec<DVec3>)> = None;
-        for choice in choices.into_iter().filter(|choice| choice.iter().all(|p| p.is_finite())) {
+        for mut choice in choices.into_iter().filter(|choice| choice.iter().all(|p| p.is_finite())) {
+            choice.drain(own.end..work.end);
             let most = best.as_ref().map_or(usize::MAX, |best| best.0.meetings + 1);
-            let faults = Faults::of(work, &choice, most, progress.part(0.5, 1.0))?;
+            let faults = shape.faults(&choice, most, progress.part(0.5, 1.0))?;
             if best.as_ref().is_none_or(|best| faults < best.0) {
                 best = Some((faults, choice));
             }
@@ -301,19 +289,22 @@ impl Several<'_> {
 
     fn finish(&self, shape: Shape, clock: Clock) -> Fill {
         let work = &shape.work;
-        let own = &work.triangles[..work.n_patch];
-        let irregular = |v: &usize| work.range(*v).len() != 6;
+        let loops = self.checked.iter().map(|c| c.vertices.as_slice());
+        let [irregular, irregular_loop] = work.irregular(loops, self.rim, &self.options.polygons);
+        let [min_angle, max_angle] = work.corner_range(&shape.positions);
         let report = FillReport {
-            triangles: own.len(),
+            triangles: work.single().len(),
+            quads: work.quads,
             vertices: work.inner().len(),
-            irregular: work.inner().filter(irregular).count(),
-            irregular_loop: (0..work.n).filter(irregular).count(),
+            irregular,
+            irregular_loop,
             grid: Grid::Even,
             rim_angle: rim_angle(work, &shape.positions),
             unrolling: Unrolling::default(),
             winding_conflicts: self.checked.iter().map(|c| c.conflicts).sum(),
             wire_edges: self.checked.iter().map(|c| c.wire).sum(),
-            min_angle: min_angle(&shape.positions, own),
+            min_angle,
+            max_angle,
             folds: folds(work, &shape.positions),
             seconds: clock.seconds,
             ..FillReport::default()

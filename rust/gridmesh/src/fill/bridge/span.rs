@@ -16,6 +16,7 @@ use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::{edges, wanted};
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::report::{FillReport, Grid};
+use crate::fill::surface::faces::cut;
 use crate::fill::surface::fair::Bending;
 use crate::fill::surface::fair::Membrane;
 use crate::fill::surface::fit::{SEAM_OF_CURVATURE, curvature_target, folds, rim_angle};
@@ -369,15 +370,6 @@ impl Shape {
             Err(Error::Solver { .. }) => Ok(start),
             other => other,
         }
-    }
-}
-
-/// Two triangles of a quad, cut where it is shorter.
-fn cut([a, b, c, d]: [u32; 4], at: impl Fn(u32) -> DVec3) -> [[u32; 3]; 2] {
-    if at(a).distance_squared(at(c)) <= at(b).distance_squared(at(d)) {
-        [[a, b, c], [a, c, d]]
-    } else {
-        [[b, c, d], [b, d, a]]
     }
 }
 

@@ -7,6 +7,7 @@ use crate::fill::bridge::align::Ring;
 use crate::fill::loops::check::Checked;
 
 /// Places of vertices of several loops, one loop after the other.
+#[derive(Clone, Debug)]
 pub(super) struct Loops {
     /// The place at which each begins.
     pub starts: Vec<usize>,

@@ -65,14 +65,14 @@ impl Shape {
             }
         }
         let film = solved.faults.film;
-        solved.faults = Faults { film, ..self.faults(&solved.positions, progress.part(0.6, 0.7))? };
+        solved.faults = Faults { film, ..self.faults(&solved.positions, TANGLED, progress.part(0.6, 0.7))? };
         if solved.faults == Faults::default() {
             return Ok(solved);
         }
         // Where much is bent on few quads, the other way may be better.
         let mut plain = self.solved(mesh, progress.part(0.7, 0.9))?;
         let film = plain.faults.film;
-        plain.faults = Faults { film, ..self.faults(&plain.positions, progress.part(0.9, 1.0))? };
+        plain.faults = Faults { film, ..self.faults(&plain.positions, TANGLED, progress.part(0.9, 1.0))? };
         Ok(if plain.faults < solved.faults { plain } else { solved })
     }
 
@@ -91,8 +91,14 @@ impl Shape {
         sound(positions)
     }
 
-    fn faults(&self, positions: &[DVec3], progress: Progress<'_>) -> Result<Faults> {
-        let mut faults = Faults::of(&self.work, positions, TANGLED, progress)?;
+    /// What is wrong with positions of all vertices; meetings are counted up to `most`, or some more.
+    pub(in crate::fill) fn faults(
+        &self,
+        positions: &[DVec3],
+        most: usize,
+        progress: Progress<'_>,
+    ) -> Result<Faults> {
+        let mut faults = Faults::of(&self.work, positions, most, progress)?;
         faults.folds += self.work.concave(positions);
         Ok(faults)
     }
@@ -191,5 +197,14 @@ impl Patchwork {
             (0..3).for_each(|k| corner(p[(k + 2) % 3], p[k], p[(k + 1) % 3], DVec3::ZERO));
         }
         if range[0].is_finite() { range } else { [0.0; 2] }
+    }
+}
+
+/// Two triangles of a quad, cut where it is shorter.
+pub(in crate::fill) fn cut([a, b, c, d]: [u32; 4], at: impl Fn(u32) -> DVec3) -> [[u32; 3]; 2] {
+    if at(a).distance_squared(at(c)) <= at(b).distance_squared(at(d)) {
+        [[a, b, c], [a, c, d]]
+    } else {
+        [[b, c, d], [b, d, a]]
     }
 }

@@ -1,0 +1,119 @@
+//! The loops as the boundary of a patch, and what is around them.
+
+use glam::DVec3;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::Several;
+use super::tour::Loops;
+use crate::fill::even::fair::Beyond;
+use crate::fill::even::local::{Local, edge};
+use crate::fill::loops::reserve::wanted;
+use crate::fill::one::outside;
+
+/// Places of the loops and what is around them: all, or those that large triangles have.
+pub(super) struct Border {
+    pub loops: Loops,
+    pub at: Vec<DVec3>,
+    /// See [`Outline`].
+    pub outside: Vec<Option<DVec3>>,
+    pub taken: FxHashSet<[u32; 2]>,
+    pub beyond: Beyond,
+    /// Wanted number of triangles at each.
+    pub wanted: Vec<usize>,
+    /// The places of the mesh's vertices.
+    pub place: FxHashMap<u32, u32>,
+}
+
+impl Border {
+    /// Only some of the places, those of each loop in order.
+    pub fn picked(&self, loops: Loops, picks: &[usize]) -> Border {
+        let new = picks.iter().zip(0..).map(|(&pick, k)| (pick as u32, k)).collect::<FxHashMap<u32, u32>>();
+        let place = self.place.iter().filter_map(|(&v, pick)| new.get(pick).map(|&k| (v, k)));
+        // As far from the loops as the larger triangles' vertices are.
+        let further = |&k: &usize| {
+            let (sum, count) = self.beyond[k];
+            (2.0 * sum - count as f64 * self.at[k], count)
+        };
+        // Edges go over two of the mesh: normals of both.
+        let facing = |&k: &usize| {
+            let next = self.loops.next(k);
+            let other = if new.contains_key(&(next as u32)) { None } else { self.outside[next] };
+            let sum = self.outside[k].into_iter().chain(other).map(DVec3::normalize_or_zero).sum::<DVec3>();
+            (sum != DVec3::ZERO).then_some(sum)
+        };
+        let both = |e: &[u32; 2]| Some(edge(*new.get(&e[0])?, *new.get(&e[1])?));
+        Border {
+            loops,
+            at: picks.iter().map(|&k| self.at[k]).collect(),
+            outside: picks.iter().map(facing).collect(),
+            taken: self.taken.iter().filter_map(both).collect(),
+            beyond: picks.iter().map(further).collect(),
+            wanted: picks.iter().map(|&k| self.wanted[k]).collect(),
+            place: place.collect(),
+        }
+    }
+}
+
+impl Several<'_> {
+    pub(super) fn border(&self, loop_: &[u32]) -> Border {
+        let loops = Loops::new(self.checked.iter().map(|c| c.vertices.len()));
+        let outside = self.checked.iter().flat_map(|c| outside(&c.vertices, self.rim, self.vertices));
+        let wishes = self.checked.iter().flat_map(|c| wanted(&c.vertices, self.rim, &self.options.polygons));
+        Border {
+            at: loop_.iter().map(|&v| self.vertices[v as usize]).collect(),
+            outside: outside.collect(),
+            taken: self.taken(loop_),
+            beyond: self.beyond(&loops, loop_),
+            wanted: wishes.map(|edges| (edges - 1).clamp(1, 5) as usize).collect(),
+            place: loop_.iter().zip(0..).map(|(&v, k)| (v, k)).collect(),
+            loops,
+        }
+    }
+
+    /// Edges that the mesh has between vertices of the loops, by their places.
+    fn taken(&self, loop_: &[u32]) -> FxHashSet<[u32; 2]> {
+        let places: FxHashMap<u32, u32> = loop_.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
+        let mut taken = FxHashSet::default();
+        for (&v, k) in loop_.iter().zip(0..) {
+            let near = self.rim.local(v).map(|v| self.rim.neighbours(v)).unwrap_or_default();
+            let near = near.into_iter().map(|u| self.rim.ids[u as usize]);
+            let loose = self.rim.loose.iter().filter(|edge| edge.contains(&v));
+            for u in near.chain(loose.flatten().copied()).filter(|&u| u != v) {
+                taken.extend(places.get(&u).map(|&place| edge(k, place)));
+            }
+        }
+        taken
+    }
+
+    /// Wanted edge lengths and numbers of triangles.
+    pub(super) fn size(&self, border: &Border, local: &mut Local) {
+        let loops = &border.loops;
+        for v in 0..local.border {
+            let length = |a: usize, b: usize| local.positions[a].distance(local.positions[b]);
+            local.sizes[v] = 0.5 * (length(v, loops.next(v)) + length(v, loops.before(v)));
+        }
+        let inner = local.border..local.positions.len();
+        for v in inner {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for k in 0..local.border {
+                let squared = local.positions[k].distance_squared(local.positions[v]);
+                let weight = 1.0 / squared.max(f64::MIN_POSITIVE);
+                sum += weight * local.sizes[k];
+                weights += weight;
+            }
+            local.sizes[v] = sum / weights;
+        }
+        local.wanted.clone_from(&border.wanted);
+    }
+
+    /// What lies beyond each vertex of the loops.
+    fn beyond(&self, loops: &Loops, loop_: &[u32]) -> Beyond {
+        let of = |k: usize| {
+            let beside = [loop_[loops.before(k)], loop_[loops.next(k)]];
+            let near = self.rim.local(loop_[k]).map(|v| self.rim.neighbours(v)).unwrap_or_default();
+            let near = near.into_iter().map(|u| self.rim.ids[u as usize]).filter(|u| !beside.contains(u));
+            near.fold((DVec3::ZERO, 0), |(sum, n), u| (sum + self.vertices[u as usize], n + 1))
+        };
+        (0..loop_.len()).map(of).collect()
+    }
+}
