@@ -10,10 +10,10 @@
 # ///
 """Draw the picture of bridged loops in the manual, by operators in Blender.
 
-    uv run docs/bridges.py [PICTURE.png]
+    uv run docs/bridges.py [PICTURE.png] [--quads]
 
 Above, loops joined by Blender's *Bridge Edge Loops*; below, by *Grid Bridge*, what is new in colour: pipes of different sizes
-and numbers of vertices, pipes tilted against each other, two spheres, and three pipes.
+and numbers of vertices, pipes tilted against each other, two spheres, and three pipes. With `--quads` Grid Bridge's triangles above, its quads below.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ import math
 from pathlib import Path
 
 import fills
+import quads
 import studio
 
 # isort: split
@@ -87,8 +88,8 @@ def trousers(bm) -> None:
     pipe(bm, 32, 0.95, Matrix.Translation((0, 0, 0.8)) @ Matrix.Rotation(math.pi, 4, "X"))
 
 
-def joined(make, *, ours: bool):
-    """The mesh of `make`, its facing loops joined; the new faces get the second material."""
+def joined(make, cells: str | None):
+    """The mesh of `make`, its facing loops joined; the new faces get the second material. cells : None for Blender's own."""
     mesh = bpy.data.meshes.new(make.__name__)
     bm = bmesh.new()
     make(bm)
@@ -116,8 +117,8 @@ def joined(make, *, ours: bool):
     count = len(mesh.polygons)
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.context.tool_settings.mesh_select_mode = (False, True, False)
-    if ours:
-        bpy.ops.mesh.gridmesh_bridge()
+    if cells:
+        bpy.ops.mesh.gridmesh_bridge(cells=cells)
     else:
         bpy.ops.mesh.bridge_edge_loops(number_cuts=4, interpolation="SURFACE")
     bpy.ops.object.mode_set(mode="OBJECT")
@@ -145,18 +146,25 @@ def pieces(edges):
 def main() -> None:
     """Make the meshes, join the loops, render."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    default = Path(__file__).parent / "pictures" / "bridges.png"
-    parser.add_argument("picture", nargs="?", type=Path, default=default)
-    picture = parser.parse_args().picture.resolve()
-    plain = studio.body_material("Mesh", "#9AA3AE", 0.4)
-    tube = studio.body_material("Tube", "#E8963A", 0.4)
+    parser.add_argument("picture", nargs="?", type=Path)
+    parser.add_argument("--quads", action="store_true")
+    options = parser.parse_args()
+    name = "bridges_quads.png" if options.quads else "bridges.png"
+    picture = (options.picture or Path(__file__).parent / "pictures" / name).resolve()
+    rows = ("QUADS", "TRIANGLES") if options.quads else ("TRIANGLES", None)
+    # The renderer's own lines show quads cut into triangles.
+    clay = quads.clay if options.quads else lambda name, colour: studio.body_material(name, colour, 0.4)
+    plain, tube = clay("Mesh", "#9AA3AE"), clay("Tube", "#E8963A")
+    line = studio.plain_material("Line", studio.WIRE)
     for k, make in enumerate((of_sizes, tilted, spheres, trousers)):
-        for row in (0, 1):
-            ob = joined(make, ours=row == 0)
+        for row, cells in enumerate(rows):
+            ob = joined(make, cells)
             for material in (plain, tube):
                 ob.data.materials.append(material)
             ob.rotation_euler = (0.35, 0, 0)
             ob.location = ((k - 1.5) * STEP, 0, (row - 0.5) * RISE)
+            if options.quads:
+                quads.wires(ob, line)
     fills.stage(4 * STEP, 2 * RISE + 0.1, 1300, 12)
     studio.render(picture)
     print(f"wrote {picture}")

@@ -283,14 +283,17 @@ def test_three_loops_with_vertices_selected():
     check_patch(ob, before, loops)
 
 
-def test_quads_join_three_loops():
-    ob, loops = trousers()
+@pytest.mark.parametrize("counts", [(16, 16, 28), (11, 8, 20), (16, 21, 28)])
+def test_quads_join_three_loops(counts):
+    ob, loops = trousers(counts)
     before = Before(ob)
     choose(ob, loops)
     bridge(cells="QUADS")
     leave()
     patch = check_patch(ob, before, loops, triangles=False)
-    assert all(len(face) == 4 for face in patch)
+    odd = sum(map(len, loops)) % 2
+    assert sorted({len(face) for face in patch}) == ([3, 4] if odd else [4])
+    assert sum(len(face) == 3 for face in patch) == odd
 
 
 def test_three_holes_of_a_plate():

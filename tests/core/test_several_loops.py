@@ -227,6 +227,30 @@ def test_loops_that_are_unfit_are_named(changed, kind):
     assert caught.value.kind == kind
 
 
+@pytest.mark.parametrize("number", [5, 12])
+def test_where_a_smooth_patch_would_meet_itself_a_film_is_taken(number):
+    """Both had met themselves some dozen times."""
+    vertices, faces, loops = several.case(1, number, 36, 66)
+    fill = gridmesh.fill_hole(vertices, faces, loops, strict=True)
+    assert not several.faults(vertices, faces, loops, fill)
+    assert (fill.report["self_intersections"], fill.report["repaired"]) == (0, 1)
+
+
+@pytest.mark.parametrize("cells", ["triangles", "quads"])
+def test_linked_loops_have_a_patch_that_meets_itself_which_is_told_and_refused_if_strict(cells):
+    t = 2 * np.pi * np.arange(24) / 24
+    ring = np.c_[np.cos(t), np.sin(t), 0 * t]
+    vertices = np.vstack([ring, ring[:, [0, 2, 1]] + [1, 0, 0], 0.5 * ring + [5, 0, 0]])
+    loops = [list(range(24 * k, 24 * k + 24)) for k in range(3)]
+    none = np.zeros((0, 3), int)
+    fill = gridmesh.fill_hole(vertices, none, loops, cells=cells)
+    assert not several.faults(vertices, none, loops, fill)
+    assert fill.report["self_intersections"] > 0
+    with pytest.raises(gridmesh.GridMeshError) as caught:
+        gridmesh.fill_hole(vertices, none, loops, cells=cells, strict=True)
+    assert caught.value.kind == "fill_intersects"
+
+
 def test_hard_edges_are_for_one_loop():
     vertices, caps, loops = case()
     with pytest.raises(gridmesh.GridMeshError, match="sharp"):

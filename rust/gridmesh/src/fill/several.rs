@@ -59,8 +59,7 @@ pub(super) fn fill_several(
     progress.report(0.0)?;
     options.check(triangles)?;
     let seeds = loops.concat();
-    let rings = if options.smooth == Smooth::Curvature { 2 } else { 1 };
-    let rim = Rim::new(vertices.len(), triangles, &seeds, rings)?;
+    let rim = Rim::new(vertices.len(), triangles, &seeds, rings(options.smooth))?;
     let mut checked = loops.iter().map(|l| check_loop(l, vertices, &rim)).collect::<Result<Vec<_>>>()?;
     if vertices.iter().any(|p| !p.is_finite()) {
         let wide = Rim::new(vertices.len(), triangles, &seeds, SOUND_RINGS)?;
@@ -74,7 +73,7 @@ pub(super) fn fill_several(
     let spanning = tour::spanning(&checked, vertices);
     turned(&mut checked, &spanning, vertices);
     let span = Several { vertices, triangles, rim: &rim, options, checked: &checked };
-    let fill = span.fill(&spanning, rings, progress.part(0.1, 0.8))?;
+    let fill = span.fill(&spanning, progress.part(0.1, 0.8))?;
     let mut fills = [Ok(fill)];
     Job { vertices, triangles, options }.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
     let [fill] = fills;
@@ -82,7 +81,13 @@ pub(super) fn fill_several(
     fill
 }
 
+/// Rings of triangles around the loops that a patch looks at.
+fn rings(smooth: Smooth) -> usize {
+    if smooth == Smooth::Curvature { 2 } else { 1 }
+}
+
 /// The loops, as the patch's boundary runs.
+#[derive(Clone, Copy)]
 struct Several<'a> {
     vertices: &'a [DVec3],
     triangles: &'a [[u32; 3]],
@@ -92,24 +97,49 @@ struct Several<'a> {
 }
 
 impl Several<'_> {
-    fn fill(&self, spanning: &[[usize; 2]], rings: usize, progress: Progress<'_>) -> Result<Fill> {
+    fn fill(&self, spanning: &[[usize; 2]], progress: Progress<'_>) -> Result<Fill> {
         let mut clock = Clock::new();
         let loop_ = self.checked.iter().flat_map(|c| c.vertices.iter().copied()).collect::<Vec<_>>();
         let border = self.border(&loop_);
-        let shape = match self.options.cells {
-            CellShape::Triangle => {
-                let (mut local, even) = self.even(&border, spanning, &mut clock, progress.part(0.0, 0.85))?;
-                let work = self.patchwork(&loop_, &border, local.positions.len(), &local.triangles, rings)?;
-                let mut shape = self.shape(loop_, work);
-                shape.positions = self.placed(&shape, &even, &local.positions, progress.part(0.85, 0.95))?;
-                let near = self.near(&border, &local);
-                self.mended(&mut shape, &mut local, &even, &near, progress.part(0.95, 1.0))?;
-                shape
+        let mut shape = self.made(&loop_, &border, spanning, &mut clock, progress.part(0.0, 0.6))?;
+        let mut repaired = 0;
+        if self.options.smooth != Smooth::Flat && self.meets(&shape, progress.part(0.6, 0.65))? {
+            // Where the surfaces around cannot go on a film may do.
+            let options = FillOptions { smooth: Smooth::Flat, ..self.options.clone() };
+            let film = Several { options: &options, ..*self };
+            let other = film.made(&loop_, &border, spanning, &mut clock, progress.part(0.65, 0.95))?;
+            if !self.meets(&other, progress.part(0.95, 1.0))? {
+                (shape, repaired) = (Shape { smooth: self.options.smooth, ..other }, 1);
             }
-            CellShape::Quad => self.quads(loop_, &border, spanning, rings, &mut clock, progress)?,
-        };
+        }
         clock.stage("fair");
-        Ok(self.finish(shape, clock))
+        Ok(self.finish(shape, repaired, clock))
+    }
+
+    /// Whether a patch meets itself or what is around it.
+    fn meets(&self, shape: &Shape, progress: Progress<'_>) -> Result<bool> {
+        Ok(shape.faults(&shape.positions, 1, progress)?.meetings > 0)
+    }
+
+    /// The patch, in its place.
+    fn made(
+        &self,
+        loop_: &[u32],
+        border: &Border,
+        spanning: &[[usize; 2]],
+        clock: &mut Clock,
+        progress: Progress<'_>,
+    ) -> Result<Shape> {
+        if self.options.cells == CellShape::Quad {
+            return self.quads(loop_, border, spanning, clock, progress);
+        }
+        let (mut local, even) = self.even(border, spanning, clock, progress.part(0.0, 0.85))?;
+        let work = self.patchwork(loop_, border, local.positions.len(), &local.triangles)?;
+        let mut shape = self.shape(loop_, work);
+        shape.positions = self.placed(&shape, &even, &local.positions, progress.part(0.85, 0.95))?;
+        let near = self.near(border, &local);
+        self.mended(&mut shape, &mut local, &even, &near, progress.part(0.95, 1.0))?;
+        Ok(shape)
     }
 
     /// Even triangles between the places of a border on a surface that is smooth to what lies beyond, and where they were
@@ -169,22 +199,22 @@ impl Several<'_> {
         border: &Border,
         end: usize,
         triangles: &[[u32; 3]],
-        rings: usize,
     ) -> Result<Patchwork> {
+        let rings = rings(self.options.smooth);
         let mut work = Patchwork::new(loop_, end - loop_.len(), triangles, self.rim, rings)?;
         work.later = border.loops.starts[1..].to_vec();
         Ok(work)
     }
 
     /// What the patch is, but for positions.
-    fn shape(&self, loop_: Vec<u32>, work: Patchwork) -> Shape {
+    fn shape(&self, loop_: &[u32], work: Patchwork) -> Shape {
         Shape {
             flat: vec![DVec2::ZERO; work.end],
             bridged: (work.later.iter().zip(&self.checked[1..]))
                 .map(|(&first, checked)| Bridged { first, reversed: checked.reversed })
                 .collect(),
             work,
-            loop_,
+            loop_: loop_.to_vec(),
             reversed: self.checked[0].reversed,
             smooth: self.options.smooth,
             vertices: self.vertices.len(),
@@ -287,7 +317,7 @@ impl Several<'_> {
         Ok(found.1)
     }
 
-    fn finish(&self, shape: Shape, clock: Clock) -> Fill {
+    fn finish(&self, shape: Shape, repaired: usize, clock: Clock) -> Fill {
         let work = &shape.work;
         let loops = self.checked.iter().map(|c| c.vertices.as_slice());
         let [irregular, irregular_loop] = work.irregular(loops, self.rim, &self.options.polygons);
@@ -306,6 +336,7 @@ impl Several<'_> {
             min_angle,
             max_angle,
             folds: folds(work, &shape.positions),
+            repaired,
             seconds: clock.seconds,
             ..FillReport::default()
         };

@@ -27,10 +27,9 @@ impl Several<'_> {
     /// Quads: triangles of twice the size, cut.
     pub(super) fn quads(
         &self,
-        loop_: Vec<u32>,
+        loop_: &[u32],
         border: &Border,
         spanning: &[[usize; 2]],
-        rings: usize,
         clock: &mut Clock,
         progress: Progress<'_>,
     ) -> Result<Shape> {
@@ -71,7 +70,7 @@ impl Several<'_> {
         }
         let at = |v: u32| fine.positions[v as usize];
         let halved = quads.iter().flat_map(|&quad| cut(quad, at)).chain(odd).collect::<Vec<_>>();
-        let work = self.patchwork(&loop_, border, n, &halved, rings)?.of_quads(quads.len());
+        let work = self.patchwork(loop_, border, n, &halved)?.of_quads(quads.len());
         let mut shape = self.shape(loop_, work);
         let around = shape.work.outer.iter().map(|&v| self.vertices[v as usize]);
         let mut swept = fine.positions[..n].iter().copied().chain(around).collect::<Vec<_>>();
