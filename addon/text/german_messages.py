@@ -509,9 +509,7 @@ _BRIDGES = {
     "no triangles between the loops are sound": "keine Dreiecke zwischen den Schleifen sind brauchbar",
     "none, with several loops": "keine, bei mehreren Schleifen",
     "one loop or more": "eine Schleife oder mehr",
-    "quads, with {} loops": "Vierecke, bei {0} Schleifen",
     "the loops have too few vertices to be joined": "die Schleifen haben zu wenige Punkte, um verbunden zu werden",
-    "triangles, with several loops": "Dreiecke, bei mehreren Schleifen",
     "two paths of a tube meet": "zwei Wege einer Röhre treffen sich",
 }
 
@@ -903,6 +901,7 @@ _LIBRARY_PARTS = {
     "edge {} of the loop passes through another vertex": (
         "Kante {0} der Schleife geht durch einen anderen Punkt"
     ),
+    "every patch of quads repeats an edge of the mesh": "jeder Flicken aus Vierecken wiederholt eine Kante des Meshs",
     "every patch repeats an edge of the mesh": "jeder Flicken wiederholt eine Kante des Mesh",
     "it has fewer than 3 corners": "sie hat weniger als 3 Ecken",
     "it names a vertex twice": "sie nennt einen Punkt zweimal",
