@@ -94,6 +94,10 @@ fn filled(fill: &Fill, loops: usize, edges: usize) {
     }
 }
 
+fn cells(case: &mut Case<'_>) -> CellShape {
+    if case.chance() { CellShape::Quad } else { CellShape::Triangle }
+}
+
 /// Tubes between loops, and patches of several.
 pub fn several(data: &[u8]) {
     let mut case = Case::new(data);
@@ -102,13 +106,12 @@ pub fn several(data: &[u8]) {
     found.truncate(2 + case.below(4));
     let edges = found.iter().map(Vec::len).sum();
     let smooth = case.smooth();
-    let cells = if case.chance() { CellShape::Quad } else { CellShape::Triangle };
     if let ([one, other], true) = (&found[..], case.chance()) {
         let options = BridgeOptions {
-            cells,
             smooth,
             rows: case.chance().then(|| case.below(12)),
             twist: case.share(),
+            cells: cells(&mut case),
             ..BridgeOptions::default()
         };
         let made = bounded(|progress| bridge(&vertices, &triangles, one, other, &options, progress));
@@ -117,7 +120,7 @@ pub fn several(data: &[u8]) {
         }
         return;
     }
-    let options = FillOptions { cells, smooth, ..FillOptions::default() };
+    let options = FillOptions { smooth, cells: cells(&mut case), ..FillOptions::default() };
     if let Some(fill) = bounded(|progress| fill_loops(&vertices, &triangles, &found, &options, progress)) {
         filled(&fill, found.len(), edges);
     }
