@@ -136,6 +136,15 @@ def test_options_are_keyword_only_and_known():
         gridmesh.inflate(gridmesh.mesh_sketch(SQUARE, triangles=100), triangles=3)
 
 
+@pytest.mark.parametrize("options", [{"closeness": 1e308}, {"origin": (1e300, -1e300)}, {"edge_length": -1e-300}])
+def test_numbers_are_told_without_a_hundred_zeros(options):
+    with pytest.raises(gridmesh.GridMeshError) as caught:
+        gridmesh.mesh_sketch(SQUARE, **options)
+    assert caught.value.kind == "invalid_option"
+    assert "e" in str(caught.value).partition(" is ")[2]
+    assert len(str(caught.value)) < 120
+
+
 def test_edge_length_and_triangles_exclude_each_other():
     refused("invalid_option", gridmesh.mesh_sketch, SQUARE, edge_length=0.1, triangles=100)
 
