@@ -136,7 +136,9 @@ def test_options_are_keyword_only_and_known():
         gridmesh.inflate(gridmesh.mesh_sketch(SQUARE, triangles=100), triangles=3)
 
 
-@pytest.mark.parametrize("options", [{"closeness": 1e308}, {"origin": (1e300, -1e300)}, {"edge_length": -1e-300}])
+@pytest.mark.parametrize(
+    "options", [{"closeness": 1e308}, {"origin": (1e300, -1e300)}, {"edge_length": -1e-300}]
+)
 def test_numbers_are_told_without_a_hundred_zeros(options):
     with pytest.raises(gridmesh.GridMeshError) as caught:
         gridmesh.mesh_sketch(SQUARE, **options)
