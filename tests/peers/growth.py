@@ -118,15 +118,30 @@ def plot(lines: dict[str, list[tuple[int, int, float]]], path: Path) -> None:
         x, _, y = np.array(line).T
         bold = 2.6 if name.startswith("GridMesh") else 1.4
         axes.plot(x, y, color=color, linewidth=bold, marker="o", markersize=3.5)
-        axes.annotate(
-            name, (x[-1], y[-1]), (7, 0), textcoords="offset points", color=color, va="center", fontsize=9
-        )
     axes.set(xscale="log", yscale="log", xlabel="triangles a side", ylabel="irregular vertices of the body")
     axes.xaxis.set_major_formatter(lambda x, _: f"{x:,.0f}")
     axes.yaxis.set_major_formatter(lambda y, _: f"{y:,.0f}")
     axes.grid(which="major", color="#dddddd", linewidth=0.6)
     axes.spines[["top", "right"]].set_visible(False)
     figure.subplots_adjust(left=0.11, right=0.76, top=0.97, bottom=0.12)
+    figure.canvas.draw()
+    lowest = -np.inf
+    for (name, line), color in sorted(
+        zip(lines.items(), COLORS, strict=True), key=lambda row: row[0][1][-1][2]
+    ):
+        x, _, y = line[-1]
+        # In points above the axes' origin, at least a line of text above the name below it.
+        height = axes.transData.transform((x, y))[1] * 72 / figure.dpi
+        lowest = max(height, lowest + 12)
+        axes.annotate(
+            name,
+            (x, y),
+            (7, lowest - height),
+            textcoords="offset points",
+            color=color,
+            va="center",
+            fontsize=9,
+        )
     figure.savefig(path, metadata={"Date": None, "Creator": None}, facecolor="white")
 
 
