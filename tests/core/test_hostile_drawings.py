@@ -120,6 +120,15 @@ def test_a_boundary_in_conflict_nearly_everywhere_is_given_up(seed):
     assert drawings.untrue(case, error) is None
 
 
+def test_a_number_that_works_does_so_with_proofs():
+    """The cheapest boundary, proved, could not be placed at the 1602 that were said to work."""
+    case = drawings.case(31_002_121)
+    assert case.options["proof_nodes"] > 0
+    error = refused(case.outline, **case.options)
+    assert error.kind == "too_coarse"
+    assert drawings.untrue(case, error) is None
+
+
 def test_without_least_nothing_is_searched_for():
     error = refused(spiral(8, 0.2), triangles=500, least=False)
     assert error.kind == "too_coarse"

@@ -124,6 +124,7 @@ fn mesh(
     mirror::check_angle(symmetry.as_ref(), options.angle, options.cells)?;
     let centre = centroid(contours[0].points());
     let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
+    let unproved = SketchOptions { proof_nodes: 0, ..options.clone() };
     let mut job = Job {
         contours,
         symmetry,
@@ -158,6 +159,11 @@ fn mesh(
 fn attempted(job: &mut Job<'_>, asked: Asked, expected: f64, progress: Progress<'_>) -> Result<Sketch> {
     let options = job.options;
     let mut attempt = job.attempt_unless_hopeless(asked, expected, progress)?;
+    if attempt.is_err() && options.proof_nodes > 0 {
+        // The cheapest boundary may be one that no patch can be placed in.
+        job.options = &unproved;
+        attempt = job.attempt_unless_hopeless(asked, expected, progress)?;
+    }
     if let (true, Err(obstacle)) = (options.automatic, &attempt)
         && !obstacle.is_inverted
     {
