@@ -11,6 +11,9 @@ import numpy as np
 
 from ..bodies.outlines import Stroke
 
+# Longer integers are beyond the largest float.
+DIGITS = 308
+
 
 class InputError(ValueError):
     """A file holds no curves. The message says why."""
@@ -24,7 +27,7 @@ def curves(path: Path, data: bytes, *, cyclic: bool = True) -> list[Stroke]:
     """
     try:
         text = data.decode("utf-8-sig")
-        found = _json(json.loads(text)) if path.suffix.lower() == ".json" else _csv(text)
+        found = _json(json.loads(text, parse_int=_integer)) if path.suffix.lower() == ".json" else _csv(text)
         arrays = [np.asarray(points, float) for points in found]
     except (ValueError, TypeError, OverflowError, RecursionError) as error:
         raise InputError(f"it is no list of curves: {error}") from error
@@ -39,6 +42,12 @@ def curves(path: Path, data: bytes, *, cyclic: bool = True) -> list[Stroke]:
     ]
 
 
+def _integer(digits: str) -> int:
+    if len(digits) > DIGITS:
+        raise InputError(f"a curve has a number of {len(digits)} digits")
+    return int(digits)
+
+
 def _json(value: Any) -> list[Any]:
     if isinstance(value, dict):
         if "points" not in value:
@@ -46,6 +55,9 @@ def _json(value: Any) -> list[Any]:
         value = [value["points"], *value.get("holes", [])]
     for points in value:
         for point in points:
+            if not isinstance(point, list):
+                hint = "one curve is {'points': [[x, y], ...]}, or a list with one list of points"
+                raise InputError(f"a curve has {point!r:.40} where a point [x, y] belongs; {hint}")
             for number in point:
                 if type(number) not in (int, float, type(None)):  # numpy would take true and "1" for 1
                     raise InputError(f"a curve has {number!r:.40}, which is no number")

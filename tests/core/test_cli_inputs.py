@@ -126,6 +126,15 @@ def test_what_is_no_list_of_curves_says_so(text):
         inputs.curves(Path("a.json"), text.encode())
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("[[0, 0], [1, 0], [0, 1]]", "one curve is"), (f"[[[0, 0], [1, 0], [1, {'9' * 5000}]]]", "5000 digits")],
+)
+def test_what_is_wrong_is_said_in_words_of_the_format(text, said):
+    with pytest.raises(inputs.InputError, match=said):
+        inputs.curves(Path("a.json"), text.encode())
+
+
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])
 def test_any_terminal_can_show_any_name(encoding):
     raw = io.BytesIO()
