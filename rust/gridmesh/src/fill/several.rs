@@ -15,7 +15,7 @@ mod tour;
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashSet;
 
-use self::border::Border;
+use self::border::{Border, Several};
 use self::polygon::{Outline, triangulated};
 use self::tour::turned;
 use crate::error::{Error, Result};
@@ -84,16 +84,6 @@ pub(super) fn fill_several(
 /// Rings of triangles around the loops that a patch looks at.
 fn rings(smooth: Smooth) -> usize {
     if smooth == Smooth::Curvature { 2 } else { 1 }
-}
-
-/// The loops, as the patch's boundary runs.
-#[derive(Clone, Copy)]
-struct Several<'a> {
-    vertices: &'a [DVec3],
-    triangles: &'a [[u32; 3]],
-    rim: &'a Rim,
-    options: &'a FillOptions,
-    checked: &'a [Checked],
 }
 
 impl Several<'_> {

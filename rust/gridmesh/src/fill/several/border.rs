@@ -3,12 +3,24 @@
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::Several;
 use super::tour::Loops;
 use crate::fill::even::fair::Beyond;
 use crate::fill::even::local::{Local, edge};
+use crate::fill::loops::check::Checked;
+use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::wanted;
 use crate::fill::one::outside;
+use crate::fill::options::FillOptions;
+
+/// The loops, as the patch's boundary runs.
+#[derive(Clone, Copy)]
+pub(super) struct Several<'a> {
+    pub vertices: &'a [DVec3],
+    pub triangles: &'a [[u32; 3]],
+    pub rim: &'a Rim,
+    pub options: &'a FillOptions,
+    pub checked: &'a [Checked],
+}
 
 /// Places of the loops and what is around them: all, or those that large triangles have.
 pub(super) struct Border {

@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use super::Several;
-use super::border::Border;
+use super::border::{Border, Several};
 use super::halves::{Halves, Quads};
 use super::tour::Loops;
 use crate::error::{Error, Result};
