@@ -40,6 +40,7 @@ NOT_SHOWN = {
 # Literals of the library that are no part of an error: debugging, and points in brackets.
 INTERNAL = {
     " + ",
+    ", ",
     "broken link from {} to {}: {}",
     "the path reverses at {}",
     "the {} is wrong",
