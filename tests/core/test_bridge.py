@@ -144,17 +144,20 @@ def test_a_campaign_of_random_loops_in_quads():
     assert np.median(of("angle")) >= 40
 
 
+ANY_TWO_LOOPS = {
+    "n": st.integers(3, 70),
+    "m": st.integers(3, 70),
+    "radius": st.floats(0.05, 20),
+    "height": st.floats(0.01, 8),
+    "start": st.floats(0, TAU),
+    "twist": st.floats(-8, 8),
+    "rows": st.none() | st.integers(1, 12),
+    "smooth": st.sampled_from(["flat", "tangent", "curvature"]),
+}
+
+
 @settings(deadline=None, max_examples=60)
-@given(
-    n=st.integers(3, 70),
-    m=st.integers(3, 70),
-    radius=st.floats(0.05, 20),
-    height=st.floats(0.01, 8),
-    start=st.floats(0, TAU),
-    twist=st.floats(-8, 8),
-    rows=st.none() | st.integers(1, 12),
-    smooth=st.sampled_from(["flat", "tangent", "curvature"]),
-)
+@given(**ANY_TWO_LOOPS)
 def test_any_two_loops_in_quads(n, m, radius, height, start, twist, rows, smooth):
     quad_tube(circle(n), circle(m, radius, height, start), twist=twist, rows=rows, smooth=smooth)
 
@@ -188,16 +191,7 @@ def test_quads_are_stored_refitted_and_extended():
 
 
 @settings(deadline=None, max_examples=60)
-@given(
-    n=st.integers(3, 70),
-    m=st.integers(3, 70),
-    radius=st.floats(0.05, 20),
-    height=st.floats(0.01, 8),
-    start=st.floats(0, TAU),
-    twist=st.floats(-8, 8),
-    rows=st.none() | st.integers(1, 12),
-    smooth=st.sampled_from(["flat", "tangent", "curvature"]),
-)
+@given(**ANY_TWO_LOOPS)
 def test_any_two_loops(n, m, radius, height, start, twist, rows, smooth):
     fill, _ = bridged(circle(n), circle(m, radius, height, start), twist=twist, rows=rows, smooth=smooth)
     assert fill.report["rows"] >= 1
