@@ -21,12 +21,15 @@ const REACHES: [f64; 4] = [1.0, 0.5, 0.2, 0.07];
 /// corners of triangles allow.
 ///
 /// Stages are ever more lenient: in each a vertex is left where it is if a corner around it would become both smaller
-/// than the smallest there and smaller than [`THIN`] says. Every triangle stays positive in projection; where that
+/// than the smallest there and smaller than [`THIN`] says. In none the least angle of the whole becomes smaller, but for
+/// one above the first of [`THIN`]. Every triangle stays positive in projection; where that
 /// holds a vertex fast, its neighbours make room. Near-linear.
 pub(crate) fn lengthen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
     let mean = mean_length(front, guide);
+    let sharp = |v: usize| sharpest(front, guide.around.fan(v), front.position(v));
+    let thinnest = (front.first..front.flat.len()).map(sharp).fold(THIN[0], f64::max);
     for ((share, level), thin) in STAGES.into_iter().zip(THIN) {
-        let wanted = share * mean;
+        let (wanted, thin) = (share * mean, thin.min(thinnest));
         visit_crowded(guide.around, front.first, progress, |v, turn| {
             let limits = Limits { wanted, level, thin, turn };
             if lacking(front, guide, v, front.position(v), wanted) == 0.0 {
