@@ -13,23 +13,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
 
 import several
-
-
-def ball(rings=24, around=40):
-    """Vertices and triangles of a closed ball of radius 1."""
-    heights = np.linspace(0, np.pi, rings + 1)[1:-1]
-    angles = np.linspace(0, 2 * np.pi, around, endpoint=False)
-    points = [(np.sin(t) * np.cos(a), np.sin(t) * np.sin(a), np.cos(t)) for t in heights for a in angles]
-    vertices = np.array([*points, (0, 0, 1), (0, 0, -1)])
-    faces = []
-    for k in range(around):
-        after = (k + 1) % around
-        for row in range(len(heights) - 1):
-            a, b = row * around + k, row * around + after
-            faces += [(a, a + around, b), (b, a + around, b + around)]
-        last = (len(heights) - 1) * around
-        faces += [(len(points), k, after), (len(points) + 1, last + after, last + k)]
-    return vertices, np.array(faces, np.int32)
+from several import ball, boundary_loops
 
 
 def opened(vertices, faces, poles, angle):
@@ -38,20 +22,6 @@ def opened(vertices, faces, poles, angle):
     middles /= np.linalg.norm(middles, axis=1, keepdims=True)
     kept = faces[(middles @ np.asarray(poles).T < np.cos(angle)).all(axis=1)]
     return kept, boundary_loops(kept)
-
-
-def boundary_loops(faces):
-    sides = {(a, b) for f in faces.tolist() for a, b in zip(f, [*f[1:], f[0]], strict=True)}
-    following = {b: a for a, b in sides if (b, a) not in sides}
-    loops = []
-    while following:
-        start, after = following.popitem()
-        loop = [start]
-        while after != start:
-            loop.append(after)
-            after = following.pop(after)
-        loops.append(loop)
-    return sorted(loops, key=min)
 
 
 def check(vertices, faces, loops, fill):
@@ -77,7 +47,7 @@ def check(vertices, faces, loops, fill):
 @pytest.mark.parametrize("smooth", ["flat", "tangent", "curvature"])
 @pytest.mark.parametrize("count", [3, 4, 6])
 def test_what_is_left_of_a_ball_is_put_back(count, smooth):
-    vertices, faces = ball()
+    vertices, faces = ball(24, 40)
     turns = np.linspace(0, 2 * np.pi, count, endpoint=False) + 0.1
     poles = np.c_[np.cos(turns), np.sin(turns), 0.3 * np.cos(3 * turns)]
     poles /= np.linalg.norm(poles, axis=1, keepdims=True)
@@ -144,7 +114,7 @@ def test_loops_without_faces_are_turned_to_fit():
 
 
 def case():
-    vertices, faces = ball()
+    vertices, faces = ball(24, 40)
     caps = faces[(np.abs(vertices[faces].mean(axis=1)) > 0.85).any(axis=1)]
     return vertices, caps, boundary_loops(caps)
 
@@ -177,7 +147,7 @@ def test_either_direction_of_loops_gives_the_same_patch():
 
 
 def test_two_loops_are_joined_by_a_tube():
-    vertices, faces = ball()
+    vertices, faces = ball(24, 40)
     caps = faces[np.abs(vertices[faces].mean(axis=1))[:, 2] > 0.6]
     loops = boundary_loops(caps)
     fill = gridmesh.fill_hole(vertices, caps, loops)

@@ -23,7 +23,6 @@ could do. Irregular vertices are those of the body: two copies glued along the b
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from pathlib import Path
 from statistics import median
@@ -146,5 +145,4 @@ def plot(lines: dict[str, list[tuple[int, int, float]]], path: Path) -> None:
 
 
 if __name__ == "__main__":
-    os.environ.setdefault("RAYON_NUM_THREADS", "1")
     main()

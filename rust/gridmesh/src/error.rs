@@ -1,6 +1,11 @@
 //! What can go wrong, said so that the caller can mend it.
 
+mod words;
+
 use std::fmt;
+
+use self::words::not_symmetric;
+pub(crate) use self::words::{told, told_all};
 
 /// Result with [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -475,30 +480,6 @@ impl Error {
     }
 }
 
-fn not_symmetric(
-    what: &str,
-    distance: &f64,
-    allowed: &f64,
-    [x, y]: &[f64; 2],
-    f: &mut fmt::Formatter<'_>,
-) -> fmt::Result {
-    if distance.is_finite() {
-        write!(
-            f,
-            "the {what} is not its own mirror image: near ({x:.6}, {y:.6}) it is {distance:.3e} off; \
-             allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
-             or mesh it without mirror"
-        )
-    } else {
-        write!(
-            f,
-            "the {what} is not its own mirror image: near ({x:.6}, {y:.6}) it has no partner across the axis; \
-             allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
-             or mesh it without mirror"
-        )
-    }
-}
-
 fn too_coarse(triangles: &usize, cells: &str, needed: &Needed, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     match cells {
         "quads" => write!(f, "{triangles} quads are too few to follow this drawing; ")?,
@@ -511,14 +492,4 @@ fn too_coarse(triangles: &usize, cells: &str, needed: &Needed, f: &mut fmt::Form
         }
         Needed::Unknown => write!(f, "use more (or a smaller edge length)"),
     }
-}
-
-/// A number without a hundred zeros.
-pub(crate) fn told(value: f64) -> String {
-    if value == 0.0 || (1e-6..1e9).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
-}
-
-/// The numbers of a vector.
-pub(crate) fn told_all(values: &[f64]) -> String {
-    format!("[{}]", values.iter().map(|&value| told(value)).collect::<Vec<_>>().join(", "))
 }

@@ -1,5 +1,6 @@
 //! Plain geometry that knows nothing of lattices: segments, intersections, measures of meshes.
 
+pub(crate) mod active;
 pub mod bones;
 pub(crate) mod cholesky;
 pub(crate) mod corner;

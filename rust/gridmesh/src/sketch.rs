@@ -124,11 +124,11 @@ fn mesh(
     mirror::check_angle(symmetry.as_ref(), options.angle, options.cells)?;
     let centre = centroid(contours[0].points());
     let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
-    let unproved = SketchOptions { proof_nodes: 0, ..options.clone() };
     let mut job = Job {
         contours,
         symmetry,
         options,
+        proves: options.proof_nodes > 0,
         keep,
         area,
         centre,
@@ -142,7 +142,7 @@ fn mesh(
         Some(h) => Asked::EdgeLength(h),
         None => Asked::Cells(triangles),
     };
-    let mut sketch = attempted(&mut job, &unproved, asked, expected, progress)?;
+    let mut sketch = attempted(&mut job, asked, expected, progress)?;
     if let Some((_, slivers)) = union {
         // The sources so far lead to the outer outline.
         let Patch { vertices, loops, .. } = &mut sketch.patch;
@@ -155,20 +155,13 @@ fn mesh(
     Ok(sketch)
 }
 
-/// The sketch of a job; where its number was chosen and is too small, with the least that works. `expected` cells; `unproved` are
-/// its options without a proof.
-fn attempted<'a>(
-    job: &mut Job<'a>,
-    unproved: &'a SketchOptions,
-    asked: Asked,
-    expected: f64,
-    progress: Progress<'_>,
-) -> Result<Sketch> {
+/// The sketch of a job; where its number was chosen and is too small, with the least that works. `expected` cells.
+fn attempted(job: &mut Job<'_>, asked: Asked, expected: f64, progress: Progress<'_>) -> Result<Sketch> {
     let options = job.options;
     let mut attempt = job.attempt_unless_hopeless(asked, expected, progress)?;
-    if attempt.is_err() && options.proof_nodes > 0 {
+    if attempt.is_err() && job.proves {
         // The cheapest boundary may be one that no patch can be placed in.
-        job.options = unproved;
+        job.proves = false;
         attempt = job.attempt_unless_hopeless(asked, expected, progress)?;
     }
     if let (true, Err(obstacle)) = (options.automatic, &attempt)

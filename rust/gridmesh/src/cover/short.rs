@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use crate::error::Result;
-use crate::geometry::lengthen::{THIN, Visit, lack, visit_crowded};
+use crate::geometry::active::{Visit, turn, visit_active};
+use crate::geometry::lengthen::{ROUNDS, THIN, lack};
 use crate::geometry::topology::Topology;
 use crate::patch::Patch;
 use crate::progress::Progress;
@@ -83,10 +84,10 @@ pub(super) fn lengthened(
 ) -> Result<()> {
     let lengths = Lengths::new(patch);
     for thin in &THIN[..STAGES] {
-        visit_crowded(&lengths.topology, 0, progress, |v, turn| {
+        visit_active(&lengths.topology, 0, ROUNDS, progress, |v, round| {
             if lengths.lacking(patch, v) == 0.0 {
-                Visit::Long
-            } else if moved(patch, &lengths, v, (*thin, turn), &mut may) {
+                Visit::Done
+            } else if moved(patch, &lengths, v, (*thin, turn(round)), &mut may) {
                 Visit::Moved
             } else {
                 Visit::Stuck

@@ -72,8 +72,8 @@ pub(super) fn fill_several(
     progress.report(0.1)?;
     let spanning = tour::spanning(&checked, vertices);
     turned(&mut checked, &spanning, vertices);
-    let span = Several { vertices, triangles, rim: &rim, options, checked: &checked };
-    let fill = span.fill(&spanning, progress.part(0.1, 0.8))?;
+    let span = Several { vertices, triangles, rim: &rim, options, checked: &checked, spanning: &spanning };
+    let fill = span.fill(progress.part(0.1, 0.8))?;
     let mut fills = [Ok(fill)];
     Job { vertices, triangles, options }.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
     let [fill] = fills;
@@ -87,17 +87,16 @@ fn rings(smooth: Smooth) -> usize {
 }
 
 impl Several<'_> {
-    fn fill(&self, spanning: &[[usize; 2]], progress: Progress<'_>) -> Result<Fill> {
+    fn fill(&self, progress: Progress<'_>) -> Result<Fill> {
         let mut clock = Clock::new();
-        let loop_ = self.checked.iter().flat_map(|c| c.vertices.iter().copied()).collect::<Vec<_>>();
-        let border = self.border(&loop_);
-        let mut shape = self.made(&loop_, &border, spanning, &mut clock, progress.part(0.0, 0.6))?;
+        let border = self.border();
+        let mut shape = self.made(&border, &mut clock, progress.part(0.0, 0.6))?;
         let mut repaired = 0;
         if self.options.smooth != Smooth::Flat && self.meets(&shape, progress.part(0.6, 0.65))? {
             // Where the surfaces around cannot go on a film may do.
             let options = FillOptions { smooth: Smooth::Flat, ..self.options.clone() };
             let film = Several { options: &options, ..*self };
-            let other = film.made(&loop_, &border, spanning, &mut clock, progress.part(0.65, 0.95))?;
+            let other = film.made(&border, &mut clock, progress.part(0.65, 0.95))?;
             if !self.meets(&other, progress.part(0.95, 1.0))? {
                 (shape, repaired) = (Shape { smooth: self.options.smooth, ..other }, 1);
             }
@@ -112,20 +111,13 @@ impl Several<'_> {
     }
 
     /// The patch, in its place.
-    fn made(
-        &self,
-        loop_: &[u32],
-        border: &Border,
-        spanning: &[[usize; 2]],
-        clock: &mut Clock,
-        progress: Progress<'_>,
-    ) -> Result<Shape> {
+    fn made(&self, border: &Border, clock: &mut Clock, progress: Progress<'_>) -> Result<Shape> {
         if self.options.cells == CellShape::Quad {
-            return self.quads(loop_, border, spanning, clock, progress);
+            return self.quads(border, clock, progress);
         }
-        let (mut local, even) = self.even(border, spanning, clock, progress.part(0.0, 0.85))?;
-        let work = self.patchwork(loop_, border, local.positions.len(), &local.triangles)?;
-        let mut shape = self.shape(loop_, work);
+        let (mut local, even) = self.even(border, clock, progress.part(0.0, 0.85))?;
+        let work = self.patchwork(border, local.positions.len(), &local.triangles)?;
+        let mut shape = self.shape(border, work);
         shape.positions = self.placed(&shape, &even, &local.positions, progress.part(0.85, 0.95))?;
         let near = self.near(border, &local);
         self.mended(&mut shape, &mut local, &even, &near, progress.part(0.95, 1.0))?;
@@ -137,18 +129,14 @@ impl Several<'_> {
     fn even(
         &self,
         border: &Border,
-        spanning: &[[usize; 2]],
         clock: &mut Clock,
         progress: Progress<'_>,
     ) -> Result<(Local, Vec<DVec3>)> {
         let Border { loops, at, outside, taken, beyond, .. } = border;
         let outline = Outline { loops, at, outside, taken };
-        let (positions, triangles) = triangulated(&outline, spanning, progress.part(0.0, 0.35))?;
+        let (positions, triangles) = triangulated(&outline, self.spanning, progress.part(0.0, 0.35))?;
         clock.stage("surface");
-        let mut local = Local::new(positions, triangles, vec![], at.len());
-        local.sides = vec![0; local.triangles.len()];
-        local.taken = taken.clone();
-        self.size(border, &mut local);
+        let mut local = border.local(positions, triangles);
         let is_flat = self.options.smooth == Smooth::Flat;
         if is_flat {
             let ground = Ground::of(&local);
@@ -183,28 +171,23 @@ impl Several<'_> {
     }
 
     /// The patch of triangles over `end` vertices, and what is around it.
-    fn patchwork(
-        &self,
-        loop_: &[u32],
-        border: &Border,
-        end: usize,
-        triangles: &[[u32; 3]],
-    ) -> Result<Patchwork> {
+    fn patchwork(&self, border: &Border, end: usize, triangles: &[[u32; 3]]) -> Result<Patchwork> {
         let rings = rings(self.options.smooth);
-        let mut work = Patchwork::new(loop_, end - loop_.len(), triangles, self.rim, rings)?;
+        let mut work =
+            Patchwork::new(&border.vertices, end - border.vertices.len(), triangles, self.rim, rings)?;
         work.later = border.loops.starts[1..].to_vec();
         Ok(work)
     }
 
     /// What the patch is, but for positions.
-    fn shape(&self, loop_: &[u32], work: Patchwork) -> Shape {
+    fn shape(&self, border: &Border, work: Patchwork) -> Shape {
         Shape {
             flat: vec![DVec2::ZERO; work.end],
             bridged: (work.later.iter().zip(&self.checked[1..]))
                 .map(|(&first, checked)| Bridged { first, reversed: checked.reversed })
                 .collect(),
             work,
-            loop_: loop_.to_vec(),
+            loop_: border.vertices.clone(),
             reversed: self.checked[0].reversed,
             smooth: self.options.smooth,
             vertices: self.vertices.len(),

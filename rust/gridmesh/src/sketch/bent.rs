@@ -182,6 +182,7 @@ impl Job<'_> {
             contours,
             symmetry,
             options,
+            proves: self.proves,
             keep: None,
             area,
             centre,

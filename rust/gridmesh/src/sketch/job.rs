@@ -77,6 +77,8 @@ pub(crate) struct Job<'a> {
     pub(crate) contours: Vec<ClosedCurve>,
     pub(crate) symmetry: Option<Symmetry>,
     pub(crate) options: &'a SketchOptions,
+    /// Whether boundaries are proved, as far as the options say.
+    pub(crate) proves: bool,
     /// The lattice that is to stay.
     pub(crate) keep: Option<&'a Kept>,
     pub(crate) area: f64,

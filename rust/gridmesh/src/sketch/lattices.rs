@@ -73,12 +73,20 @@ impl Job<'_> {
 
     /// The edge length at which a patch has about `n` cells.
     pub(super) fn first_guess(&self, n: usize) -> f64 {
+        self.guess(n).0
+    }
+
+    /// The same, and how many times as many cells there are where edges are so many times shorter, as a power.
+    pub(super) fn guess(&self, n: usize) -> (f64, f64) {
         let ample = self.of_ample(n);
-        if self.options.cells == CellShape::Quad || self.options.boundary == BoundaryMethod::Grown {
-            return ample;
+        if self.options.cells == CellShape::Triangle && self.options.boundary == BoundaryMethod::Optimal {
+            let narrow = self.of_narrow(n);
+            if narrow > NARROW * ample {
+                let cells = self.area / (self.options.cells.area() * narrow * narrow);
+                return (narrow, 1.0 + (cells / n as f64).powi(3).min(1.0));
+            }
         }
-        let narrow = self.of_narrow(n);
-        if narrow > NARROW * ample { narrow } else { ample }
+        (ample, 2.0)
     }
 
     /// Where the drawing is so narrow that its walls get in each other's way there is no patch with fewer than two
@@ -88,15 +96,6 @@ impl Job<'_> {
         let length = self.contours.iter().map(ClosedCurve::length).sum::<f64>();
         let crowded = (LEAST_EACH * length / (n as f64 * of_area)).powi(3);
         of_area * (0.5 * crowded + (0.25 * crowded * crowded + 1.0).sqrt()).cbrt()
-    }
-
-    /// How many times as many cells there are where edges are so many times shorter, as a power.
-    pub(super) fn power(&self, n: usize) -> f64 {
-        let h = self.first_guess(n);
-        if h == self.of_ample(n) {
-            return 2.0;
-        }
-        1.0 + (self.area / (self.options.cells.area() * h * h * n as f64)).powi(3).min(1.0)
     }
 
     /// The edge length where the drawing is wide enough for `n` cells. The lattice path cuts off what it

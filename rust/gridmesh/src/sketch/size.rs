@@ -98,7 +98,7 @@ impl Job<'_> {
             // Of a drawing that is all outline the number changes less than by the square.
             let here = (edge_length.ln(), ratio.ln());
             let power =
-                before.map_or_else(|| self.power(n), |(h, r): (f64, f64)| (r - here.1) / (here.0 - h));
+                before.map_or_else(|| self.guess(n).1, |(h, r): (f64, f64)| (r - here.1) / (here.0 - h));
             edge_length *= ratio.powf(1.0 / power.clamp(1.0, 2.0)).clamp(0.7, 1.4);
             before = Some(here);
         }
@@ -117,7 +117,7 @@ impl Job<'_> {
         if off > allowed {
             return Ok(Err(Miss { obstacle, is_of_count: true }));
         }
-        let is_asked = self.options.proof_nodes > 0 && self.options.boundary == BoundaryMethod::Optimal;
+        let is_asked = self.proves && self.options.boundary == BoundaryMethod::Optimal;
         if is_asked && effort == Effort::Full && !outline.optimal {
             // It may come out a little larger or smaller.
             if let Ok(proved) = self.path(&lattice, self.options, progress)?
@@ -139,7 +139,7 @@ impl Job<'_> {
         shift: DVec2,
         progress: Progress<'_>,
     ) -> Result<Result<(Lattice, Outline), Miss>> {
-        if effort == Effort::Full && self.options.proof_nodes > 0 {
+        if effort == Effort::Full && self.proves {
             let unproved = self.outline(asked, Effort::Quick(u64::MAX), angle, shift, progress)?;
             let Ok((lattice, outline)) = &unproved else { return Ok(unproved) };
             let placed = self.place(None, lattice, outline, progress)?;

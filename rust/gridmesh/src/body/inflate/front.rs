@@ -56,6 +56,41 @@ impl Front {
     pub fn position(&self, v: usize) -> DVec3 {
         self.flat[v].extend(self.height[v])
     }
+
+    /// The place of the surface nearest to `target`, if `v`, which was at `start`, may go there.
+    pub fn trial(&self, guide: &Guide<'_>, v: usize, start: DVec2, target: DVec3) -> Option<Trial> {
+        let (point, place) = project(guide.field, target, self.place[v - self.first].triangle)?;
+        self.may_move(guide, v, start, point).then(|| Trial::new(guide.field, point, place))
+    }
+
+    /// Moves `v` to a place.
+    pub fn put(&mut self, v: usize, there: &Trial) {
+        self.flat[v] = there.position.truncate();
+        self.height[v] = there.position.z;
+        self.place[v - self.first] = there.place;
+    }
+}
+
+/// A place on the surface that a vertex may be put at.
+pub(crate) struct Trial {
+    pub position: DVec3,
+    /// Unit normal of the surface.
+    pub normal: DVec3,
+    place: Place,
+}
+
+impl Trial {
+    /// Above a point of the plane, which lies at `place`.
+    pub fn new(field: &Field<'_>, point: DVec2, place: Place) -> Trial {
+        let (value, gradient) = field.at(point, place);
+        let height = value.sqrt();
+        Trial { position: point.extend(height), normal: surface_normal(gradient, height), place }
+    }
+}
+
+/// Unit normal of the surface `z^2 = f` where it has this height, from the gradient of `f`.
+pub(crate) fn surface_normal(gradient: DVec2, height: f64) -> DVec3 {
+    (-gradient).extend(2.0 * height).normalize_or(DVec3::Z)
 }
 
 /// What guides the vertices of a front.

@@ -4,10 +4,11 @@ use std::f64::consts::FRAC_PI_4;
 
 use glam::{DVec2, DVec3};
 
-use super::polish::{LEVEL, facing, sharpest, surface_normal};
-use crate::body::inflate::front::{Front, Guide, project};
+use super::polish::{LEVEL, facing, sharpest};
+use crate::body::inflate::front::{Front, Guide, surface_normal};
 use crate::error::Result;
-use crate::geometry::lengthen::{THIN, Visit, lack, visit_crowded};
+use crate::geometry::active::{Visit, turn, visit_active};
+use crate::geometry::lengthen::{ROUNDS, THIN, lack};
 use crate::progress::Progress;
 
 /// For each stage the length wanted, in mean lengths of the body's edges (a third shows in a texture), and the cosine
@@ -30,10 +31,10 @@ pub(crate) fn lengthen(front: &mut Front, guide: &Guide<'_>, progress: Progress<
     let thinnest = (front.first..front.flat.len()).map(sharp).fold(THIN[0], f64::max);
     for ((share, level), thin) in STAGES.into_iter().zip(THIN) {
         let (wanted, thin) = (share * mean, thin.min(thinnest));
-        visit_crowded(guide.around, front.first, progress, |v, turn| {
-            let limits = Limits { wanted, level, thin, turn };
+        visit_active(guide.around, front.first, ROUNDS, progress, |v, round| {
+            let limits = Limits { wanted, level, thin, turn: turn(round) };
             if lacking(front, guide, v, front.position(v), wanted) == 0.0 {
-                Visit::Long
+                Visit::Done
             } else if moved_apart(front, guide, v, &limits) || has_made_room(front, guide, v, &limits) {
                 Visit::Moved
             } else {
@@ -116,11 +117,10 @@ fn moved(
     present: f64,
     cost: impl Fn(&Front, DVec3) -> f64,
 ) -> bool {
-    let field = guide.field;
-    let slot = v - front.first;
     let fan = guide.around.fan(v);
-    let (here, start, from) = (front.position(v), front.flat[v], front.place[slot]);
-    let normal = surface_normal(field.at(start, from).1, front.height[v]);
+    let (here, start) = (front.position(v), front.flat[v]);
+    let (_, gradient) = guide.field.at(start, front.place[v - front.first]);
+    let normal = surface_normal(gradient, front.height[v]);
     let (e, f) = normal.any_orthonormal_pair();
     let level = facing(front, fan, here, normal).min(limits.level);
     let thin = sharpest(front, fan, here).max(limits.thin);
@@ -130,21 +130,15 @@ fn moved(
         for k in 0..8 {
             let (sin, cos) = (f64::from(k) * FRAC_PI_4 + limits.turn).sin_cos();
             let target = here + reach * limits.wanted * (cos * e + sin * f);
-            let Some((point, place)) = project(field, target, from.triangle) else { continue };
-            let (value, gradient) = field.at(point, place);
-            let height = value.sqrt();
-            let there = point.extend(height);
-            let costs = cost(front, there);
+            let Some(there) = front.trial(guide, v, start, target) else { continue };
+            let costs = cost(front, there.position);
             if costs < best
-                && front.may_move(guide, v, start, point)
-                && sharpest(front, fan, there) <= thin
-                && facing(front, fan, there, surface_normal(gradient, height)) >= level
+                && sharpest(front, fan, there.position) <= thin
+                && facing(front, fan, there.position, there.normal) >= level
             {
                 best = costs;
                 is_moved = true;
-                front.flat[v] = point;
-                front.place[slot] = place;
-                front.height[v] = height;
+                front.put(v, &there);
             }
         }
     }

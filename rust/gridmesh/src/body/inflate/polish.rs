@@ -4,8 +4,9 @@ use std::f64::consts::FRAC_PI_4;
 
 use glam::{DVec2, DVec3};
 
-use crate::body::inflate::front::{Front, Guide, project};
+use crate::body::inflate::front::{Front, Guide, Trial, project, surface_normal};
 use crate::error::Result;
+use crate::geometry::active::{ASK_EVERY, Visit, turn, visit_active};
 use crate::geometry::corner::{Corner, Ideal};
 use crate::geometry::quadratic::Quadratic;
 use crate::progress::Progress;
@@ -16,11 +17,11 @@ const SHARP: f64 = 1.732_050_807_568_877_2;
 /// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
 pub(super) const LEVEL: f64 = 0.7;
 
-/// Vertices between two questions whether to go on.
-pub(super) const ASK_EVERY: usize = 1 << 11;
-
 /// Rounds of [`sharpen`] at most.
-const ROUNDS: u32 = 32;
+const ROUNDS: usize = 32;
+
+/// Lengths of moves, in mean lengths of the edges around, in turn from round to round.
+const REACHES: [f64; 3] = [0.3, 0.12, 0.05];
 
 /// Rounds that a vertex may fail in a row, see [`sharpen`].
 const PATIENCE: u8 = 6;
@@ -76,16 +77,12 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
             let point = front.flat[v].lerp(target, share);
             if front.may_move(guide, v, front.flat[v], point) {
                 let Some(place) = field.locate(point, front.place[slot].triangle) else { break };
-                let (value, gradient) = field.at(point, place);
-                let height = value.sqrt();
-                let there = point.extend(height);
-                let after = worst(front, fan, there);
+                let there = Trial::new(field, point, place);
+                let after = worst(front, fan, there.position);
                 if (after >= before || after > 0.2)
-                    && facing(front, fan, there, surface_normal(gradient, height)) >= fidelity
+                    && facing(front, fan, there.position, there.normal) >= fidelity
                 {
-                    front.flat[v] = point;
-                    front.place[slot] = place;
-                    front.height[v] = height;
+                    front.put(v, &there);
                     break;
                 }
             } else {
@@ -101,53 +98,28 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
 /// trial in eight directions. A vertex is left alone once it has not moved for some rounds, nor
 /// its neighbours.
 pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
-    let first = front.first;
     let mut patience = vec![PATIENCE; front.flat.len()];
-    let mut active: Vec<u32> = (first as u32..front.flat.len() as u32).collect();
-    for round in 0..ROUNDS {
-        let reach = [0.3, 0.12, 0.05][round as usize % 3];
-        let mut next = vec![];
-        for (k, &v) in active.iter().enumerate() {
-            if k % ASK_EVERY == 0 {
-                progress.report(0.8)?;
-            }
-            let v = v as usize;
-            let fan = guide.around.fan(v);
-            let present = sharpest(front, fan, front.position(v));
-            if present <= SHARP {
-                continue;
-            }
-            if try_around(front, guide, v, present, reach, 0.3 * f64::from(round)) {
-                patience[v] = PATIENCE;
-                for &u in fan.iter().flatten().filter(|&&u| u as usize >= first) {
-                    patience[u as usize] = PATIENCE;
-                    next.push(u);
-                }
-            } else {
-                patience[v] -= 1;
-            }
-            if patience[v] > 0 {
-                next.push(v as u32);
-            }
+    visit_active(guide.around, front.first, ROUNDS, progress, |v, round| {
+        let present = sharpest(front, guide.around.fan(v), front.position(v));
+        if present <= SHARP {
+            return Visit::Done;
         }
-        next.sort_unstable();
-        next.dedup();
-        if next.is_empty() {
-            break;
+        if try_around(front, guide, v, present, REACHES[round % REACHES.len()], turn(round)) {
+            patience[v] = PATIENCE;
+            guide.around.near[guide.around.range(v)].iter().for_each(|&u| patience[u as usize] = PATIENCE);
+            return Visit::Moved;
         }
-        active = next;
-    }
-    Ok(())
+        patience[v] -= 1;
+        if patience[v] > 0 { Visit::Stuck } else { Visit::Done }
+    })
 }
 
 /// Moves `v`, the largest cotangent around which is `present`, to the best of eight places around it;
 /// false if none is better.
 fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reach: f64, turn: f64) -> bool {
-    let field = guide.field;
-    let slot = v - front.first;
     let fan = guide.around.fan(v);
     let (here, start) = (front.position(v), front.flat[v]);
-    let (_, gradient) = field.at(start, front.place[slot]);
+    let (_, gradient) = guide.field.at(start, front.place[v - front.first]);
     let normal = surface_normal(gradient, front.height[v]);
     let (e, f) = normal.any_orthonormal_pair();
     let mean =
@@ -162,28 +134,15 @@ fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reac
         if sharpest(front, fan, target) >= best {
             continue;
         }
-        let Some((point, place)) = project(field, target, front.place[slot].triangle) else { continue };
-        if !front.may_move(guide, v, start, point) {
-            continue;
-        }
-        let (value, gradient) = field.at(point, place);
-        let height = value.sqrt();
-        let there = point.extend(height);
-        let now = sharpest(front, fan, there);
-        if now < best && facing(front, fan, there, surface_normal(gradient, height)) >= fidelity {
+        let Some(there) = front.trial(guide, v, start, target) else { continue };
+        let now = sharpest(front, fan, there.position);
+        if now < best && facing(front, fan, there.position, there.normal) >= fidelity {
             best = now;
             moved = true;
-            front.flat[v] = point;
-            front.place[slot] = place;
-            front.height[v] = height;
+            front.put(v, &there);
         }
     }
     moved
-}
-
-/// Unit normal of the surface `z^2 = f` where it has this height, from the gradient of `f`.
-pub(super) fn surface_normal(gradient: DVec2, height: f64) -> DVec3 {
-    (-gradient).extend(2.0 * height).normalize_or(DVec3::Z)
 }
 
 /// Least cosine between the surface's normal at a vertex at `point` and the triangles around it: how

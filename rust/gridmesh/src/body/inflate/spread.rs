@@ -3,9 +3,10 @@
 use glam::DVec2;
 
 use super::lengthen::lengthen;
-use super::polish::{ASK_EVERY, sharpen, sweep};
+use super::polish::{sharpen, sweep};
 use crate::body::inflate::front::{Front, Guide};
 use crate::error::Result;
+use crate::geometry::active::ASK_EVERY;
 use crate::options::CellShape;
 use crate::progress::Progress;
 

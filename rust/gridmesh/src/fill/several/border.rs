@@ -20,11 +20,15 @@ pub(super) struct Several<'a> {
     pub rim: &'a Rim,
     pub options: &'a FillOptions,
     pub checked: &'a [Checked],
+    /// Pairs of loops that the patch joins, see [`spanning`](super::tour::spanning).
+    pub spanning: &'a [[usize; 2]],
 }
 
 /// Places of the loops and what is around them: all, or those that large triangles have.
 pub(super) struct Border {
     pub loops: Loops,
+    /// The mesh's vertices.
+    pub vertices: Vec<u32>,
     pub at: Vec<DVec3>,
     /// See [`Outline`].
     pub outside: Vec<Option<DVec3>>,
@@ -56,6 +60,7 @@ impl Border {
         let both = |e: &[u32; 2]| Some(edge(*new.get(&e[0])?, *new.get(&e[1])?));
         Border {
             loops,
+            vertices: picks.iter().map(|&k| self.vertices[k]).collect(),
             at: picks.iter().map(|&k| self.at[k]).collect(),
             outside: picks.iter().map(facing).collect(),
             taken: self.taken.iter().filter_map(both).collect(),
@@ -64,21 +69,53 @@ impl Border {
             place: place.collect(),
         }
     }
+
+    /// A patch of these triangles, the first vertices of which are those of the border.
+    pub fn local(&self, positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Local {
+        let sides = vec![0; triangles.len()];
+        let mut local = Local::new(positions, triangles, sides, self.at.len());
+        local.taken.clone_from(&self.taken);
+        self.size(&mut local);
+        local
+    }
+
+    /// Wanted edge lengths and numbers of triangles.
+    fn size(&self, local: &mut Local) {
+        let loops = &self.loops;
+        for v in 0..local.border {
+            let length = |a: usize, b: usize| local.positions[a].distance(local.positions[b]);
+            local.sizes[v] = 0.5 * (length(v, loops.next(v)) + length(v, loops.before(v)));
+        }
+        let inner = local.border..local.positions.len();
+        for v in inner {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for k in 0..local.border {
+                let squared = local.positions[k].distance_squared(local.positions[v]);
+                let weight = 1.0 / squared.max(f64::MIN_POSITIVE);
+                sum += weight * local.sizes[k];
+                weights += weight;
+            }
+            local.sizes[v] = sum / weights;
+        }
+        local.wanted.clone_from(&self.wanted);
+    }
 }
 
 impl Several<'_> {
-    pub(super) fn border(&self, loop_: &[u32]) -> Border {
+    pub(super) fn border(&self) -> Border {
+        let loop_ = self.checked.iter().flat_map(|c| c.vertices.iter().copied()).collect::<Vec<_>>();
         let loops = Loops::new(self.checked.iter().map(|c| c.vertices.len()));
         let outside = self.checked.iter().flat_map(|c| outside(&c.vertices, self.rim, self.vertices));
         let wishes = self.checked.iter().flat_map(|c| wanted(&c.vertices, self.rim, &self.options.polygons));
         Border {
             at: loop_.iter().map(|&v| self.vertices[v as usize]).collect(),
             outside: outside.collect(),
-            taken: self.taken(loop_),
-            beyond: self.beyond(&loops, loop_),
+            taken: self.taken(&loop_),
+            beyond: self.beyond(&loops, &loop_),
             wanted: wishes.map(|edges| (edges - 1).clamp(1, 5) as usize).collect(),
             place: loop_.iter().zip(0..).map(|(&v, k)| (v, k)).collect(),
             loops,
+            vertices: loop_,
         }
     }
 
@@ -95,27 +132,6 @@ impl Several<'_> {
             }
         }
         taken
-    }
-
-    /// Wanted edge lengths and numbers of triangles.
-    pub(super) fn size(&self, border: &Border, local: &mut Local) {
-        let loops = &border.loops;
-        for v in 0..local.border {
-            let length = |a: usize, b: usize| local.positions[a].distance(local.positions[b]);
-            local.sizes[v] = 0.5 * (length(v, loops.next(v)) + length(v, loops.before(v)));
-        }
-        let inner = local.border..local.positions.len();
-        for v in inner {
-            let (mut sum, mut weights) = (0.0, 0.0);
-            for k in 0..local.border {
-                let squared = local.positions[k].distance_squared(local.positions[v]);
-                let weight = 1.0 / squared.max(f64::MIN_POSITIVE);
-                sum += weight * local.sizes[k];
-                weights += weight;
-            }
-            local.sizes[v] = sum / weights;
-        }
-        local.wanted.clone_from(&border.wanted);
     }
 
     /// What lies beyond each vertex of the loops.

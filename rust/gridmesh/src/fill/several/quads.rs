@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::border::{Border, Several};
 use super::halves::{Halves, Quads};
-use super::tour::Loops;
 use crate::error::{Error, Result};
 use crate::fill::even::fair::fair;
 use crate::fill::even::local::Local;
@@ -24,20 +23,12 @@ const SWEEPS: usize = 20;
 
 impl Several<'_> {
     /// Quads: triangles of twice the size, cut.
-    pub(super) fn quads(
-        &self,
-        loop_: &[u32],
-        border: &Border,
-        spanning: &[[usize; 2]],
-        clock: &mut Clock,
-        progress: Progress<'_>,
-    ) -> Result<Shape> {
+    pub(super) fn quads(&self, border: &Border, clock: &mut Clock, progress: Progress<'_>) -> Result<Shape> {
         let of = |c: &Checked| room(&c.vertices, self.rim, &self.options.polygons);
         let room = self.checked.iter().flat_map(of).collect::<Vec<_>>();
-        let halves =
-            Halves::new(Loops::new(self.checked.iter().map(|c| c.vertices.len())), &border.at, &room);
+        let halves = Halves::new(border.loops.clone(), &border.at, &room);
         let coarse = border.picked(halves.loops.clone(), &halves.picks);
-        let local = self.coarse(border, &coarse, &halves, spanning, clock, progress.part(0.0, 0.6))?;
+        let local = self.coarse(border, &coarse, &halves, clock, progress.part(0.0, 0.6))?;
         let Quads { positions, quads, odd } = halves
             .cut(
                 &border.at,
@@ -58,9 +49,7 @@ impl Several<'_> {
         let all = positions.iter().copied().chain(quads.iter().map(middle)).collect();
         let four = |(k, q): (usize, &[u32; 4])| [0, 1, 2, 3].map(|i| [q[i], q[(i + 1) % 4], (n + k) as u32]);
         let centred = quads.iter().enumerate().flat_map(four).chain(odd).collect();
-        let mut fine = Local::new(all, centred, vec![], loop_.len());
-        fine.taken = border.taken.clone();
-        self.size(border, &mut fine);
+        let mut fine = border.local(all, centred);
         let even = fine.positions.clone();
         if self.options.smooth != Smooth::Flat {
             fine.positions = fair(&fine, &border.beyond, progress.part(0.7, 0.8))?;
@@ -69,8 +58,8 @@ impl Several<'_> {
         }
         let at = |v: u32| fine.positions[v as usize];
         let halved = quads.iter().flat_map(|&quad| cut(quad, at)).chain(odd).collect::<Vec<_>>();
-        let work = self.patchwork(loop_, border, n, &halved)?.of_quads(quads.len());
-        let mut shape = self.shape(loop_, work);
+        let work = self.patchwork(border, n, &halved)?.of_quads(quads.len());
+        let mut shape = self.shape(border, work);
         let around = shape.work.outer.iter().map(|&v| self.vertices[v as usize]);
         let mut swept = fine.positions[..n].iter().copied().chain(around).collect::<Vec<_>>();
         for _ in 0..SWEEPS {
@@ -87,20 +76,16 @@ impl Several<'_> {
         border: &Border,
         coarse: &Border,
         halves: &Halves,
-        spanning: &[[usize; 2]],
         clock: &mut Clock,
         progress: Progress<'_>,
     ) -> Result<Local> {
-        let (fine, _) = self.even(border, spanning, clock, progress.part(0.0, 0.6))?;
+        let (fine, _) = self.even(border, clock, progress.part(0.0, 0.6))?;
         let Some((positions, triangles)) = halves.coarse(&fine.positions, &fine.triangles) else {
             // Too few triangles between the loops.
-            return Ok(self.even(coarse, spanning, clock, progress.part(0.6, 1.0))?.0);
+            return Ok(self.even(coarse, clock, progress.part(0.6, 1.0))?.0);
         };
         let ground = Ground::of(&fine);
-        let mut local = Local::new(positions, triangles, vec![], coarse.at.len());
-        local.sides = vec![0; local.triangles.len()];
-        local.taken = coarse.taken.clone();
-        self.size(coarse, &mut local);
+        let mut local = coarse.local(positions, triangles);
         remesh(&mut local, &ground, progress.part(0.6, 0.8))?;
         regularize(&mut local, Some(&ground), progress.part(0.8, 1.0))?;
         Ok(local)
