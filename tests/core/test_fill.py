@@ -245,6 +245,27 @@ def test_refit_follows_the_mesh() -> None:
         fill.refit(vertices[1:])
 
 
+@pytest.mark.parametrize("number", [2**31, 2**63 - 1, 2**63, 2**64 - 1, -(2**31) - 1, -(2**63)])
+def test_numbers_that_no_vertex_can_have_are_told_as_given(number) -> None:
+    vertices, faces = ball()
+    wrong = faces.astype(np.uint64 if number > 0 else np.int64)
+    wrong[5, 1] = number
+    loop = np.array([0, 1, number], wrong.dtype)
+    for call in [
+        lambda: gridmesh.fill_holes(vertices, wrong),
+        lambda: gridmesh.fill_hole(vertices, faces, loop),
+        lambda: gridmesh.cut(vertices, wrong, [[-2, 0.1, 0], [2, 0.2, 0]], direction=(0, 0, 1)),
+        lambda: gridmesh.regrid(vertices, faces, [number]),
+    ]:
+        with pytest.raises(gridmesh.GridMeshError, match=f" {number};") as caught:
+            call()
+        assert caught.value.kind == "index_out_of_range"
+    holes = [fill.loop for fill in gridmesh.fill_holes(vertices, faces[1:])]
+    wrong_loop, hole = gridmesh.fill_holes(vertices, faces[1:], [loop, *holes])
+    assert str(wrong_loop).startswith(f"loop 0 holds {number};")
+    assert isinstance(hole, gridmesh.Fill)
+
+
 @pytest.mark.parametrize(
     ("loop", "kind"),
     [

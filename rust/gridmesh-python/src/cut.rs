@@ -3,14 +3,12 @@
 use glam::DVec3;
 use gridmesh::cut::{Cut as CoreCut, CutOptions, CutReport, Keep, Mirror, Polygons, Sweep};
 use gridmesh::fill::Smooth;
-use numpy::{
-    AllowTypeChange, PyArray2, PyArrayDescrMethods, PyArrayLike2, PyReadonlyArray2, PyUntypedArrayMethods,
-};
+use numpy::{PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 
 use crate::input::Argument;
-use crate::mesh::{as_positions, indices, positions_argument, read_positions};
+use crate::mesh::{as_positions, indices, narrowed, positions_argument, read_positions};
 use crate::piece::Piece;
 use crate::watch::Watch;
 use crate::{arrays, reports};
@@ -252,17 +250,11 @@ pub fn polygons(faces: &Bound<'_, PyAny>) -> PyResult<(Vec<u32>, Vec<u32>)> {
     if array.ndim() != 2 || !(array.shape()[1] == 3 || array.shape()[1] == 4) {
         return Err(it.wrong_shape(&format!("has shape {:?}", array.shape())));
     }
-    if array.dtype().kind() == b'f' {
-        return Err(it.wrong_type());
-    }
     let (rows, columns) = (array.shape()[0], array.shape()[1]);
     let offsets = (0..=rows).map(|f| (f * columns) as u32).collect();
     let corners = match array.extract::<PyReadonlyArray2<'_, i32>>() {
         Ok(held) if held.is_c_contiguous() => held.as_slice()?.iter().map(|&v| v as u32).collect(),
-        _ => {
-            let wide = array.extract::<PyArrayLike2<'_, i64, AllowTypeChange>>()?;
-            wide.as_array().iter().map(|&v| i32::try_from(v).unwrap_or(-1) as u32).collect()
-        }
+        _ => narrowed(&it, &array)?,
     };
     Ok((corners, offsets))
 }

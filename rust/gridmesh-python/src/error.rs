@@ -44,6 +44,13 @@ pub fn error(py: Python<'_>, kind: &str, message: impl Into<String>) -> PyErr {
     }
 }
 
+/// Whether this is a [`GridMeshError`] of this kind.
+pub fn is_of_kind(py: Python<'_>, err: &PyErr, kind: &str) -> bool {
+    let value = err.value(py);
+    value.is_instance_of::<GridMeshError>()
+        && value.getattr("kind").and_then(|found| found.eq(kind)).unwrap_or_default()
+}
+
 /// An error of the library as a [`GridMeshError`].
 pub fn from_core(py: Python<'_>, err: &Error) -> PyErr {
     error(py, err.kind(), err.to_string())

@@ -1,11 +1,13 @@
 //! `fill_hole` and `fill_holes`.
 
+use std::collections::BTreeMap;
+
 use gridmesh::fill::FillOptions;
 use gridmesh::options::CellShape;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
-use crate::error::from_core;
+use crate::error::{from_core, is_of_kind};
 use crate::filled::{Fill, WORDS};
 use crate::input::Argument;
 use crate::mesh::{Mesh, indices, loop_argument, pairs};
@@ -182,6 +184,7 @@ pub fn fill_holes(
         let it = Argument { name: "max_edges", value, allowed: "a whole number not below 0, or None" };
         options.max_edges = Some(it.count()?);
     }
+    let mut unread = BTreeMap::new();
     let loops = match loops {
         None => None,
         Some(value) => {
@@ -190,7 +193,15 @@ pub fn fill_holes(
             let mut read = vec![];
             for item in value.try_iter().map_err(|_| all.wrong_type())? {
                 let name = format!("loop {}", read.len());
-                read.push(indices(&loop_argument(&name, &item?))?);
+                match indices(&loop_argument(&name, &item?)) {
+                    Ok(vertices) => read.push(vertices),
+                    // Its own error takes the place of that of the empty loop.
+                    Err(err) if is_of_kind(py, &err, "index_out_of_range") => {
+                        unread.insert(read.len(), err);
+                        read.push(vec![]);
+                    }
+                    Err(err) => return Err(err),
+                }
             }
             Some(read)
         }
@@ -200,10 +211,11 @@ pub fn fill_holes(
         gridmesh::fill::fill_holes(&positions, &faces, loops.as_deref(), &options, progress)
     })?;
     let items = PyList::empty(py);
-    for fill in fills {
-        match fill {
-            Ok(fill) => items.append(Fill::new(py, fill)?)?,
-            Err(err) => items.append(from_core(py, &err).into_value(py))?,
+    for (k, fill) in fills.into_iter().enumerate() {
+        match (unread.remove(&k), fill) {
+            (Some(err), _) => items.append(err.into_value(py))?,
+            (None, Ok(fill)) => items.append(Fill::new(py, fill)?)?,
+            (None, Err(err)) => items.append(from_core(py, &err).into_value(py))?,
         }
     }
     Ok(items.unbind())

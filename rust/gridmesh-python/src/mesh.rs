@@ -4,10 +4,12 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 use numpy::{
-    AllowTypeChange, PyArrayDescrMethods, PyArrayLike1, PyArrayLike2, PyReadonlyArray2, PyUntypedArrayMethods,
+    AllowTypeChange, PyArrayDescrMethods, PyArrayLike2, PyArrayLikeDyn, PyReadonlyArray2, PyUntypedArray,
+    PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 
+use crate::error::error;
 use crate::input::Argument;
 
 /// The arrays of a mesh, held while they are read in place.
@@ -52,17 +54,10 @@ fn read_faces<'py>(triangles: &Bound<'py, PyAny>) -> PyResult<Faces<'py>> {
     }
     if array.len() == 0 {
         Ok(Faces::Copied(vec![]))
-    } else if array.dtype().kind() == b'f' {
-        Err(it.wrong_type())
     } else {
         match array.extract::<PyReadonlyArray2<'py, i32>>() {
             Ok(held) if held.is_c_contiguous() => Ok(Faces::Held(held)),
-            _ => {
-                let wide = array.extract::<PyArrayLike2<'_, i64, AllowTypeChange>>()?;
-                let table = wide.as_array();
-                let rows = table.rows().into_iter().map(|row| [0, 1, 2].map(|k| narrow(row[k])));
-                Ok(Faces::Copied(rows.collect()))
-            }
+            _ => Ok(Faces::Copied(narrowed(&it, &array)?.as_chunks().0.to_vec())),
         }
     }
 }
@@ -112,11 +107,7 @@ pub fn indices(it: &Argument<'_, '_>) -> PyResult<Vec<u32>> {
     if array.len() == 0 {
         return Ok(vec![]);
     }
-    if array.dtype().kind() == b'f' {
-        return Err(it.wrong_type());
-    }
-    let wide = array.extract::<PyArrayLike1<'_, i64, AllowTypeChange>>()?;
-    Ok(wide.as_array().iter().map(|&v| narrow(v)).collect())
+    narrowed(it, &array)
 }
 
 /// Rows of two whole numbers.
@@ -128,14 +119,27 @@ pub fn pairs(it: &Argument<'_, '_>) -> PyResult<Vec<[u32; 2]>> {
     if array.ndim() != 2 || array.shape()[1] != 2 {
         return Err(it.wrong_shape(&format!("has shape {:?}", array.shape())));
     }
-    if array.dtype().kind() == b'f' {
-        return Err(it.wrong_type());
-    }
-    let wide = array.extract::<PyArrayLike2<'_, i64, AllowTypeChange>>()?;
-    Ok(wide.as_array().rows().into_iter().map(|row| [narrow(row[0]), narrow(row[1])]).collect())
+    Ok(narrowed(it, &array)?.as_chunks().0.to_vec())
 }
 
-/// As the library numbers vertices; what no mesh can have stays out of range.
-fn narrow(v: i64) -> u32 {
-    i32::try_from(v).unwrap_or(-1) as u32
+/// Whole numbers row by row, as the library numbers vertices: negative ones become large ones, which no mesh has.
+pub fn narrowed(it: &Argument<'_, '_>, array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<u32>> {
+    let number = |value: i128| {
+        i32::try_from(value).map(|v| v as u32).map_err(|_| {
+            let message = format!("{} holds {value}; allowed: 0 to {}", it.name, i32::MAX);
+            error(it.value.py(), "index_out_of_range", message)
+        })
+    };
+    match (array.dtype().kind(), array.dtype().itemsize()) {
+        (b'f', _) => Err(it.wrong_type()),
+        // As signed integers the greatest would be negative.
+        (b'u', 8) => {
+            let wide = array.extract::<PyArrayLikeDyn<'_, u64, AllowTypeChange>>()?;
+            wide.as_array().iter().map(|&v| number(v.into())).collect()
+        }
+        _ => {
+            let wide = array.extract::<PyArrayLikeDyn<'_, i64, AllowTypeChange>>()?;
+            wide.as_array().iter().map(|&v| number(v.into())).collect()
+        }
+    }
 }
