@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 
 from ..api import Progress
 from ..fill import patches
-from ..fill.editmesh import Added, EditMesh, MeshError, Patch, Snapshot
+from ..fill.editmesh import Added, EditMesh, MeshError, Patch
 from ..fill.holes import Hole, Problem
+from ..fill.patches import Snapshot
 from ..text.messages import counted
 
 _PAIR = 2
@@ -70,14 +71,11 @@ class Job:
             return
         at = self.snapshot
         loops = [hole.vertices for hole in self.loops]
-        options = {"smooth": smooth, "polygons": at.polygons, "poses": at.poses, "cells": cells}
-        options["progress"] = progress
+        options = {"smooth": smooth, "cells": cells}
         if self.is_tube:
-            made = patches.bridge(
-                at.positions, at.triangles, *loops, rows=rows or None, twist=twist, **options
-            )
+            made = patches.bridge(at, *loops, progress, rows=rows or None, twist=twist, **options)
         else:
-            made = patches.fill_loops(at.positions, at.triangles, loops, **options)
+            made = patches.fill_loops(at, loops, progress, **options)
         if isinstance(made, str):
             self.problems.append(Problem(made, tuple(vertex for loop in loops for vertex in loop)))
             return

@@ -7,7 +7,7 @@ import codecs
 import json
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -141,21 +141,19 @@ def _job(item: Any, folder: Path) -> Job:
     chosen = item.get("params", {})
     if not isinstance(chosen, dict):
         raise JobError("'params' must be a JSON object")
-    return checked(
-        item["id"], item["op"], folder / item["in"], name, dict(chosen), folder / item["out"], folder
-    )
+    job = Job(item["id"], item["op"], folder / item["in"], name, dict(chosen), folder / item["out"])
+    return checked(job, folder)
 
 
-def checked(
-    name: str, op: str, source: Path, pattern: str | None, chosen: dict[str, Any], out: Path, folder: Path
-) -> Job:
-    """Job of these parts; the files of a stroke and of bones are relative to the folder.
+def checked(job: Job, folder: Path) -> Job:
+    """The job, if all of it is allowed; the files of a stroke and of bones, relative to the folder, as absolute paths.
 
     Raises
     ------
     JobError
         If something of it is not allowed.
     """
+    op, source, out, chosen = job.op, job.source, job.out, dict(job.params)
     if op not in parameters.OPS:
         raise JobError(f"op '{op}' is not known; allowed: {', '.join(parameters.OPS)}")
     for path, allowed in ((source, INPUTS[op]), (out, OUTPUTS[op])):
@@ -177,9 +175,9 @@ def checked(
         if out.suffix.lower() not in BESIDE:
             raise JobError(f"bones are for {' and '.join(BESIDE)}; '{out.name}' gets none")
         chosen["bones"] = str(folder / chosen["bones"])
-    if pattern is not None and (op == "sprites" or source.suffix.lower() in CURVES[:2]):
+    if job.object is not None and (op == "sprites" or source.suffix.lower() in CURVES[:2]):
         raise JobError(f"'object' is for files with objects; '{source.name}' has none")
-    return Job(name, op, source, pattern, chosen, out)
+    return replace(job, params=chosen)
 
 
 def select(items: list[Job], part: str | None, shard: str | None) -> list[Job]:

@@ -32,7 +32,8 @@ def listed(op: str, words: list[str], pattern: str | None, chosen: dict[str, Any
     here = Path.cwd()
     found = [
         jobs.checked(
-            str(path), op, path, pattern, _own(chosen, path), here / out.replace(STEM, path.stem), here
+            jobs.Job(str(path), op, path, pattern, _own(chosen, path), here / out.replace(STEM, path.stem)),
+            here,
         )
         for path in sources
     ]

@@ -99,6 +99,7 @@ def _one(
     """Result of an item; None if it was done before."""
     out, picture = str(item.out), str(item.out.with_suffix(".png")) if settings.render else None
     beside = None if item.beside() is None else str(item.beside())
+    outputs = [out, picture, beside]
     head = {
         "id": item.id,
         "op": item.op,
@@ -112,9 +113,7 @@ def _one(
         "do": "look",
         "asked": [NATIVE_VERSION, item.op, item.object, item.params, item.source.suffix, item.out.suffix],
         "named": item.named_files(),
-        "out": out,
-        "picture": picture,
-        "beside": beside,
+        "outputs": outputs,
         "most": settings.limits.input_megabytes * 1e6,
         "outside": settings.outside,
         "before": before,
@@ -125,17 +124,14 @@ def _one(
         "source": str(item.source),
         "pattern": item.object,
         "params": item.params,
-        "out": out,
-        "scripts": settings.scripts,
-        "picture": picture,
-        "engine": settings.engine,
-        "beside": beside,
+        "outputs": outputs,
+        "settings": {"scripts": settings.scripts, "engine": settings.engine},
     }
     made = worker.do(look, {"do": "prepare"}, make)
     if made["status"] == "unchanged":
         return None
     if made["status"] == "error" and worker.process is None:  # a process that died could not tidy up
-        for path in (out, picture, beside):
+        for path in outputs:
             if path is not None:
                 drafts.remove(Path(path), worker.number)
     return head | made

@@ -89,22 +89,24 @@ def _kind(error: Exception) -> str:
 def _look(
     asked: list[Any],
     named: list[str],
-    out: str,
-    picture: str | None,
-    beside: str | None,
+    outputs: list[str | None],
     most: float,
     outside: bool,
     before: tuple[str, str] | None,
 ) -> dict[str, Any]:
-    """Read the files of an item: their hash, and whether nothing has changed since `before`."""
+    """Read the files of an item: their hash, and whether nothing has changed since `before`.
+
+    outputs : the output, its rendered picture and the picture beside it, if there are any.
+    """
     key, found = files.key_of(asked, named, most, outside=outside)
     same = places.Places()
+    out, picture, _ = outputs
     written = {same.of(Path(path)) for path in (out, picture) if path is not None}
     for path in found:
         if same.of(path) in written:
             text = f"out '{places.shown(out)}' would overwrite '{places.shown(path)}', which it reads"
             raise files.FileError("overwrites", f"{text}; give it another name")
-    pictured = all(path is None or Path(path).exists() for path in (picture, beside))
+    pictured = all(path is None or Path(path).exists() for path in outputs[1:])
     unchanged = before is not None and before[0] == key and before[1] == files.digest_of(Path(out))
     return {"status": "unchanged" if unchanged and pictured else "ok", "key": key}
 
@@ -114,20 +116,18 @@ def _make(
     source: str,
     pattern: str | None,
     params: dict[str, Any],
-    out: str,
-    scripts: bool,
-    picture: str | None,
-    engine: str,
-    beside: str | None,
+    outputs: list[str | None],
+    settings: dict[str, Any],
 ) -> dict[str, Any]:
     from . import loading, making, pictures, sprites
 
+    out, picture, beside = outputs
     try:
         make = {**making.OPS, **sprites.OPS}[op]
-        made = make(Path(source), pattern, params, scripts=scripts)
+        made = make(Path(source), pattern, params, scripts=settings["scripts"])
         made.write(Path(out), None if beside is None else Path(beside))
         if picture is not None:
-            pictures.render(Path(picture), made.objects, engine)
+            pictures.render(Path(picture), made.objects, settings["engine"])
     except BaseException:
         loading.clear()
         raise

@@ -316,8 +316,7 @@ def _split(
             widths,
             np.eye(4),
             _Like(ob.gridmesh_live),
-            name=ob.name,
-            collections=list(ob.users_collection),
+            like=ob,
         )
     except OutlineError as error:
         raise DrawError(_of_stroke(str(error))) from error

@@ -15,7 +15,7 @@ from ..bodies.outlines import LARGEST
 from ..data import attributes
 from . import holes
 from .holes import Found, OpenEdge, Problem
-from .patches import Filled
+from .patches import Filled, Snapshot
 
 _FLAT = 1e-9
 """An object scaled to less than this part of its largest scale along some direction has no thickness there."""
@@ -249,21 +249,6 @@ class EditMesh:
         """Hand changes to Blender."""
         self.bm.select_flush_mode()
         bmesh.update_edit_mesh(self.mesh, loop_triangles=True, destructive=True)
-
-
-@dataclass(frozen=True, eq=False)
-class Snapshot:
-    """A mesh as arrays, in the directions and lengths of the world but about the object's origin."""
-
-    positions: np.ndarray
-    """(n, 3), those of the active shape key."""
-    triangles: np.ndarray
-    polygons: np.ndarray
-    """(m,) the face that each triangle is a part of."""
-    to_local: np.ndarray
-    """(3, 3), back to the object's space."""
-    poses: list[np.ndarray]
-    """Positions of every shape key, `positions` among them; none without shape keys."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from ..api import Progress
 from ..text.messages import counted
 from . import patches
-from .editmesh import Added, EditMesh, MeshError, Patch, Snapshot
+from .editmesh import Added, EditMesh, MeshError, Patch
 from .holes import Found, Problem
+from .patches import Snapshot
 
 _HARD = math.radians(30.0)
 """Edges with more than this angle between their faces are hard."""
@@ -60,16 +61,13 @@ class Job:
         at = self.snapshot
         loops = [hole.vertices for hole in self.found.holes]
         fills = patches.fill(
-            at.positions,
-            at.triangles,
+            at,
             loops,
+            progress,
             smooth=smooth,
-            polygons=at.polygons,
-            poses=at.poses,
             sharp=_HARD if keep_hard else None,
             creases=self.edited.sharp_edges() if keep_hard else None,
             cells=cells,
-            progress=progress,
         )
         for loop, fill in zip(loops, fills, strict=True):
             if isinstance(fill, str):

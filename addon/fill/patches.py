@@ -17,6 +17,21 @@ NO_PATCH = "no triangles between these loops make one patch; subdivide the small
 
 
 @dataclass(frozen=True, eq=False)
+class Snapshot:
+    """A mesh as arrays, in the directions and lengths of the world but about the object's origin."""
+
+    positions: np.ndarray
+    """(n, 3), those of the active shape key."""
+    triangles: np.ndarray
+    polygons: np.ndarray
+    """(m,) the face that each triangle is a part of."""
+    to_local: np.ndarray
+    """(3, 3), back to the object's space."""
+    poses: list[np.ndarray]
+    """Positions of every shape key, `positions` among them; none without shape keys."""
+
+
+@dataclass(frozen=True, eq=False)
 class Filled:
     """A patch for a hole."""
 
@@ -36,24 +51,12 @@ class Filled:
 
 
 def fill(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    loops: Sequence[Sequence[int]],
-    *,
-    smooth: str,
-    polygons: np.ndarray | None = None,
-    poses: Sequence[np.ndarray] = (),
-    sharp: float | None = None,
-    creases: np.ndarray | None = None,
-    cells: str = "triangles",
-    progress: Progress | None = None,
+    at: Snapshot, loops: Sequence[Sequence[int]], progress: Progress | None = None, **options: Any
 ) -> list[Filled | str]:
     """Fill loops of a mesh: for each the patch, or the reason why there is none.
 
-    vertices : (n, 3), triangles : (m, 3), the mesh. loops : vertex indices in order. polygons : (m,), of which
-    each triangle is a part. poses : (n, 3) each, other positions of the same mesh. sharp, creases : which edges are
-    hard, as of `gridmesh.fill_hole`. cells : "triangles" or "quads". Raises NativeError without the module, and
-    CancelledError if `progress` or Ctrl-C asked to stop.
+    loops : vertex indices in order. options : `smooth`, `sharp`, `creases` and `cells` of `gridmesh.fill_holes`. Raises
+    NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
     """
     gridmesh = native("fill_holes")
     indices = [np.asarray(loop, np.int32) for loop in loops]
@@ -61,17 +64,9 @@ def fill(
     try:
         with cancelling(gridmesh):
             fills = gridmesh.fill_holes(
-                vertices,
-                triangles,
-                indices,
-                smooth=smooth,
-                polygons=polygons,
-                sharp=sharp,
-                creases=creases,
-                cells=cells,
-                progress=progress,
+                at.positions, at.triangles, indices, polygons=at.polygons, progress=progress, **options
             )
-            return [_filled(gridmesh, fill, vertices, poses, progress) for fill in fills]
+            return [_filled(gridmesh, fill, at, progress) for fill in fills]
     except gridmesh.GridMeshError as error:
         return [str(error)] * len(indices)
 
@@ -96,34 +91,18 @@ class Regridded:
 
 
 def regrid(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    area: np.ndarray,
-    *,
-    keep_shape: bool,
-    smooth: str,
-    polygons: np.ndarray | None = None,
-    cells: str = "triangles",
-    progress: Progress | None = None,
+    at: Snapshot, area: np.ndarray, progress: Progress | None = None, **options: Any
 ) -> Regridded | str:
     """Mesh an area anew, or tell why it cannot be.
 
-    vertices : (n, 3), triangles : (m, 3), the mesh. area : (f,) numbers of triangles, a disk. keep_shape : on the old
-    surface. polygons : (m,), of which each triangle is a part. cells : "triangles" or "quads". Raises
+    area : (f,) numbers of triangles, a disk. options : `keep_shape`, `smooth` and `cells` of `gridmesh.regrid`. Raises
     NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
     """
     gridmesh = native("regrid")
     try:
         with cancelling(gridmesh):
             done = gridmesh.regrid(
-                vertices,
-                triangles,
-                area,
-                keep_shape=keep_shape,
-                smooth=smooth,
-                polygons=polygons,
-                cells=cells,
-                progress=progress,
+                at.positions, at.triangles, area, polygons=at.polygons, progress=progress, **options
             )
     except gridmesh.GridMeshError as error:
         return str(error)
@@ -139,86 +118,54 @@ def regrid(
 
 
 def bridge(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
+    at: Snapshot,
     loop: Sequence[int],
     other: Sequence[int],
-    *,
-    smooth: str,
-    rows: int | None = None,
-    twist: float = 0.0,
-    polygons: np.ndarray | None = None,
-    poses: Sequence[np.ndarray] = (),
-    cells: str = "triangles",
     progress: Progress | None = None,
+    **options: Any,
 ) -> Filled | str:
     """Join two loops of a mesh by a tube: the patch, or the reason why there is none.
 
-    rows : of faces, None for as many as suit. twist : radians from the best fit. The others are as of `fill`. Raises
-    NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
+    options : `smooth`, `rows`, `twist` and `cells` of `gridmesh.bridge`. Raises NativeError without the module, and
+    CancelledError if `progress` or Ctrl-C asked to stop.
     """
-    options = {"smooth": smooth, "rows": rows, "twist": twist, "polygons": polygons, "cells": cells}
     ends = [np.asarray(it, np.int32) for it in (loop, other)]
-    gridmesh = native("bridge")
-    return _made(
-        lambda **more: gridmesh.bridge(vertices, triangles, *ends, **options, **more),
-        vertices,
-        poses,
-        progress,
-    )
+    return _made(native("bridge").bridge, at, ends, progress, options)
 
 
 def fill_loops(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    loops: Sequence[Sequence[int]],
-    *,
-    smooth: str,
-    polygons: np.ndarray | None = None,
-    poses: Sequence[np.ndarray] = (),
-    cells: str = "triangles",
-    progress: Progress | None = None,
+    at: Snapshot, loops: Sequence[Sequence[int]], progress: Progress | None = None, **options: Any
 ) -> Filled | str:
     """Join loops of a mesh by one patch that has them all as its boundary: the patch, or the reason why there is none.
 
-    loops : vertex indices in order, of each loop. `extend` of the patch takes values one loop after the other. The others are
-    as of `fill`. Raises NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
+    loops : vertex indices in order, of each loop. `extend` of the patch takes values one loop after the other. options :
+    `smooth` and `cells` of `gridmesh.fill_hole`. Raises NativeError without the module, and CancelledError if `progress` or
+    Ctrl-C asked to stop.
     """
-    options = {"smooth": smooth, "polygons": polygons, "cells": cells}
     indices = [np.asarray(loop, np.int32) for loop in loops]
-    gridmesh = native("fill_hole")
-    return _made(
-        lambda **more: gridmesh.fill_hole(vertices, triangles, indices, **options, **more),
-        vertices,
-        poses,
-        progress,
-        no_patch=NO_PATCH,
-    )
+    return _made(native("fill_hole").fill_hole, at, [indices], progress, options)
 
 
 def _made(
     make: Callable[..., Any],
-    vertices: np.ndarray,
-    poses: Sequence[np.ndarray],
+    at: Snapshot,
+    loops: Sequence[Any],
     progress: Progress | None,
-    no_patch: str = "",
+    options: dict[str, Any],
 ) -> Filled | str:
-    """The patch that a call of the module makes, or the reason why there is none. no_patch : said where the module finds none."""
+    """The patch that a function of the module makes, or the reason why there is none."""
     gridmesh = native()
     try:
         with cancelling(gridmesh):
-            return _filled(gridmesh, make(progress=progress), vertices, poses, progress)
+            made = make(
+                at.positions, at.triangles, *loops, polygons=at.polygons, progress=progress, **options
+            )
+            return _filled(gridmesh, made, at, progress)
     except gridmesh.GridMeshError as error:
-        return no_patch if no_patch and error.kind == "no_patch" else str(error)
+        return NO_PATCH if error.kind == "no_patch" and len(loops) == 1 else str(error)
 
 
-def _filled(
-    gridmesh: Any,
-    fill: Any,
-    vertices: np.ndarray,
-    poses: Sequence[np.ndarray],
-    progress: Progress | None,
-) -> Filled | str:
+def _filled(gridmesh: Any, fill: Any, at: Snapshot, progress: Progress | None) -> Filled | str:
     if isinstance(fill, gridmesh.GridMeshError):
         return str(fill)
 
@@ -227,7 +174,9 @@ def _filled(
         return None if progress is None else progress(1.0)
 
     try:
-        solved = [fill.vertices if pose is vertices else fill.refit(pose, progress=go_on) for pose in poses]
+        solved = [
+            fill.vertices if pose is at.positions else fill.refit(pose, progress=go_on) for pose in at.poses
+        ]
     except gridmesh.GridMeshError as error:
         if error.kind == "cancelled":
             raise

@@ -28,15 +28,14 @@ def make(
     matrix: np.ndarray,
     options: Any,
     *,
-    name: str = "Body",
-    collections: list[bpy.types.Collection] | None = None,
+    like: bpy.types.Object | None = None,
 ) -> bpy.types.Object:
     """Make a live body of one closed outline and its holes, with an outline object inside; return the body.
 
     rings : closed outlines (n, 2) or (n, 3), in the body's space, the first one around the others. widths : radius
     (n,) of the line at each point. matrix : (4, 4) from the body's space to the world. options : an operator, or
-    another body's properties, with the options that the body gets. collections : where the objects go; None: the
-    active collection, or one around it that is shown.
+    another body's properties, with the options that the body gets. like : an object whose name and collections the
+    body gets; None: the active collection, or one around it that is shown.
 
     Raises
     ------
@@ -44,7 +43,8 @@ def make(
         If that has no body; then nothing is changed.
     """
     with placing.Transaction() as transaction:
-        homes = collections or [placing.home(context, transaction)]
+        name = "Body" if like is None else like.name
+        homes = [placing.home(context, transaction)] if like is None else like.users_collection
         ob = transaction.new(bpy.data.objects, name, transaction.new(bpy.data.meshes, name))
         ob.matrix_basis = Matrix(matrix.tolist())
         source = drawn(transaction, rings, widths, name, context.scene.frame_current)

@@ -96,7 +96,7 @@ def measure(vertices: np.ndarray, corners: np.ndarray, offsets: np.ndarray) -> Q
     pinched = np.count_nonzero(used & (fans > 1))
     crowded = int(np.count_nonzero(uses > 2))
     component = _roots(n, ends)
-    topology = _topology(component, used, ends, uses, face, corners, n_faces)
+    topology = _topology(component, used, ends, uses, face, corners)
     simple = crowded + pinched == 0 and _orientable(edge, uses, a, face, n_faces)
     genus = least = None
     if simple and topology is not None:
@@ -182,9 +182,9 @@ def _topology(
     uses: np.ndarray,
     face: np.ndarray,
     corners: np.ndarray,
-    n_faces: int,
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Euler number and number of borders of every component; None without faces."""
+    n_faces = int(face.max(initial=-1)) + 1
     if n_faces == 0:
         return None
     names, at = np.unique(component[used], return_inverse=True)

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..fill.editmesh import Added, EditMesh, Snapshot
-from ..fill.patches import Regridded
+from ..fill.editmesh import Added, EditMesh
+from ..fill.patches import Regridded, Snapshot
 from .carried import Carried, Places
 
 _MEMBER = 0.5

@@ -11,7 +11,8 @@ import numpy as np
 
 from ..api import Progress, part_of
 from ..fill import patches
-from ..fill.editmesh import Added, EditMesh, MeshError, Snapshot
+from ..fill.editmesh import Added, EditMesh, MeshError
+from ..fill.patches import Snapshot
 from .regionmesh import AreaError, Region, areas, named_areas, replace
 
 
@@ -53,14 +54,12 @@ class Job:
         for index, faces in enumerate(self.areas):
             triangles = np.flatnonzero(np.isin(at.polygons, faces)).astype(np.int32)
             made = patches.regrid(
-                at.positions,
-                at.triangles,
+                at,
                 triangles,
+                part_of(progress, index / len(self.areas), (index + 1) / len(self.areas)),
                 keep_shape=keep_shape,
                 smooth=smooth,
-                polygons=at.polygons,
                 cells=cells,
-                progress=part_of(progress, index / len(self.areas), (index + 1) / len(self.areas)),
             )
             if not isinstance(made, str):
                 own = _chords([*made.quads.tolist(), *made.triangles.tolist()], len(at.positions))

@@ -143,7 +143,7 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
     clock.stage("patches");
     let patches = strips.into_iter().map(|strip| strip.rims).zip(closed).collect::<Vec<_>>();
     let last = progress.part(0.9, 1.0);
-    let mut made = Joined::new(&parts, &union, &outside, &patches, options.strict, report, last)?;
+    let mut made = Joined::new(&site, &patches, report, last)?;
     clock.stage("assemble");
     made.report.seconds = clock.seconds;
     progress.report(1.0)?;

@@ -6,7 +6,7 @@ use super::options::JoinReport;
 use super::parts::{Parts, volume};
 use super::patch::{Kind, Patch};
 use super::rims::Outside;
-use super::union::Union;
+use super::site::Site;
 use crate::error::{Error, Result};
 use crate::fill::surface::meet::{Box3, MOST, count_meetings, near_boxes};
 use crate::geometry::metrics::{check_mesh, min_angle};
@@ -48,14 +48,12 @@ impl Joined {
     /// # Errors
     /// [`Error::JoinFailed`], [`Error::Cancelled`]; [`Error::JoinIntersects`] if `strict`.
     pub(super) fn new(
-        parts: &Parts,
-        union: &Union,
-        outside: &Outside,
+        site: &Site<'_>,
         patches: &[(Vec<usize>, Patch)],
-        strict: bool,
         mut report: JoinReport,
         progress: Progress<'_>,
     ) -> Result<Joined> {
+        let Site { parts, union, outside, options, .. } = *site;
         let n = parts.vertices.len();
         let mut name = vec![NONE; n];
         let kept = || (0..parts.n_faces() as u32).filter(|&f| outside.faces[f as usize]);
@@ -111,7 +109,7 @@ impl Joined {
         near.dedup();
         let near = near.into_iter().map(|t| triangles[t as usize]).collect::<Vec<_>>();
         let (pairs, place) = count_meetings(at, &new, &near, false, MOST, progress)?;
-        if let (true, Some(at)) = (strict, place) {
+        if let (true, Some(at)) = (options.strict, place) {
             return Err(Error::JoinIntersects { pairs, at: at.into() });
         }
         let of = |kind: Kind| patches.iter().filter(|p| p.1.kind == kind).count();
