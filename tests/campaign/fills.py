@@ -119,9 +119,10 @@ def fins(rng, vertices, faces):
 def degenerate(rng, vertices, faces):
     more = []
     for _ in range(rng.integers(1, 12)):
-        i, k = (
-            faces[rng.integers(len(faces))][:2] if rng.random() < 0.3 else rng.integers(0, len(vertices), 2)
-        )
+        if len(faces) and rng.random() < 0.3:
+            i, k = faces[rng.integers(len(faces))][:2]
+        else:
+            i, k = rng.integers(0, len(vertices), 2)
         more.append([[i, i, k], [i, k, i], [k, i, i], [i, i, i]][rng.integers(4)])
     return vertices, np.r_[faces, more]
 
