@@ -221,6 +221,7 @@ def cut(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: 
                 edge_length=options.get("edge_length") or None,
                 gap=options.get("gap", 0.0),
                 smooth=smooth,
+                cells=options.get("cells", "triangles"),
                 extend_ends=options.get("extend_ends", True),
             )
         except cutsweep.CutError as error:
@@ -241,7 +242,8 @@ def _of_caps(division: cutting.Division, *, gap: bool) -> dict[str, Any]:
     report = division.report
     sides = 1 if gap else len(division.parts)
     return {
-        "triangles": sum(len(part.caps) for part in division.parts),
+        "triangles": sum(len(cap) == 3 for part in division.parts for cap in part.caps),
+        "quads": sum(len(cap) == 4 for part in division.parts for cap in part.caps),
         "irregular": report["cap_irregular"] * sides,
         "min_angle": report["cap_min_angle"],
     }

@@ -142,6 +142,7 @@ OPS: Mapping[str, Mapping[str, Param]] = {
         "cap": Param("switch", "close the pieces where they were cut (true)"),
         "edge_length": Param("number", "length of the edges along the cut; 0: as the mesh has them (0)"),
         "smooth": Param("choice", "shape of the caps (flat)", _SMOOTH),
+        "cells": _PATCH_CELLS,
         "gap": Param("number", "width of what is taken away (0)"),
         "extend_ends": Param("switch", "the ends of the stroke are continued through everything (true)"),
         "close_gaps": Param("number", f"{_GAPS} ({defaults.CUT_CLOSE_GAPS})", least=0, most=1),

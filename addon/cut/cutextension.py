@@ -26,14 +26,14 @@ class Extension:
         self._at, self._weights = at.reshape(part.sources.shape), part.weights
         n_old, n_new = len(part.old), len(part.places)
         in_cap = np.zeros(n_old + n_new, bool)
-        in_cap[part.caps] = True
+        in_cap[part.cap_triangles] = True
         in_cap[[index for face in part.faces for index in face]] = False
         self.inside = np.flatnonzero(in_cap[n_old:])
         """New vertices inside caps."""
-        rim = np.setdiff1d(part.caps, self.inside + n_old)
+        rim = np.setdiff1d(part.cap_triangles, self.inside + n_old)
         self.rim_old = rim[rim < n_old]
         """Old vertices on the rims of caps, numbered as in the part."""
-        self._caps, self._places = part.caps, np.vstack([old_places, part.places])
+        self._caps, self._places = part.cap_triangles, np.vstack([old_places, part.places])
 
     def __call__(self, needed: np.ndarray, rim_old: np.ndarray) -> np.ndarray:
         """Carry on values (len(needed), c) and those at the rim's old vertices (len(rim_old), c): (j, c)."""

@@ -96,7 +96,7 @@ class Surgery:
         self.written.caps += caps
         self._write_corners(part, extension, corners, made, caps)
         if self.surface.sharp_rims:
-            for a, b in rims_of(part.caps).tolist():
+            for a, b in rims_of(part.cap_triangles).tolist():
                 edge = self.bm.edges.get((verts[a], verts[b]))
                 if edge is not None:
                     edge.smooth = False
@@ -125,10 +125,9 @@ class Surgery:
         n_old, caps = len(part.old), []
         models = _models(part, self.faces)
         slot = self.surface.cap_slot
-        for face, model in zip(part.caps.tolist(), models, strict=True):
+        for face, model in zip(part.caps, models, strict=True):
             ring = [verts[index] for index in face]
-            a, b, c = face
-            if (a < n_old) + (b < n_old) + (c < n_old) > 1:
+            if sum(index < n_old for index in face) > 1:
                 if max(face) < n_old and self.bm.faces.get(ring) is not None:
                     raise CutError("a cap would lie on a face of the mesh; move the stroke a little")
                 self._add_missing_edges(face, ring, n_old)
@@ -245,7 +244,7 @@ class Surgery:
         written = np.array([loop is not None for loop in loops], bool)
         loops = [loop for loop in loops if loop is not None]
         cap_loops = [loop for face in caps for loop in face.loops]
-        cap_corners = part.caps.ravel()
+        cap_corners = [index for face in part.caps for index in face]
         floats = [
             (layer, kind == "uv")
             for kind in ("uv", *_FLOATS)
@@ -254,7 +253,7 @@ class Surgery:
         for layer, is_uv in floats:
             values = corners.interpolated(layer, is_uv=is_uv)
             _write(loops, layer, values[written], is_uv=is_uv)
-            if not len(cap_corners):
+            if not cap_corners:
                 continue
             if is_uv:
                 cap = _in_unit_square(self._unrolled(part))
@@ -269,7 +268,7 @@ class Surgery:
     def _unrolled(self, part: Part) -> np.ndarray:
         places = np.vstack([self.surface.model.vertices[part.old], part.places])
         inside = np.zeros(len(places), bool)
-        inside[part.caps] = True
+        inside[part.cap_triangles] = True
         flat = np.zeros((len(places), 2))
         flat[inside] = unrolled(places[inside], self.surface.stroke, self.surface.sweep)
         flat[inside] -= flat[inside].min(axis=0)
@@ -294,13 +293,13 @@ class Surgery:
 
 
 def _models(part: Part, faces: list[Any]) -> list[Any]:
-    """For each cap triangle, a face of the model with the material and smoothness of most around that cap."""
-    if not len(part.caps):
+    """For each face of the caps, a face of the model with the material and smoothness of most around that cap."""
+    if not part.caps:
         return []
     n = len(part.old) + len(part.places)
     in_cap = np.zeros(n, bool)
-    in_cap[part.caps] = True
-    cap_of = np.where(in_cap, connected(part.caps, n), -1).tolist()
+    in_cap[part.cap_triangles] = True
+    cap_of = np.where(in_cap, connected(part.cap_triangles, n), -1).tolist()
     around: dict[int, list[Any]] = {}
     for face, source in zip(part.faces, part.source_face, strict=True):
         for cap in {cap_of[index] for index in face}:
@@ -308,7 +307,7 @@ def _models(part: Part, faces: list[Any]) -> list[Any]:
                 around.setdefault(cap, []).append(faces[source])
     chosen = {cap: attributes.model_face(found) for cap, found in around.items()}
     default = attributes.model_face([faces[index] for index in part.kept[:1].tolist()])
-    return [chosen.get(cap_of[index], default) for index in part.caps[:, 0].tolist()]
+    return [chosen.get(cap_of[index], default) for index, *_ in part.caps]
 
 
 def _in_unit_square(points: np.ndarray) -> np.ndarray:

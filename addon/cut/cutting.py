@@ -74,15 +74,17 @@ class Part:
     """New faces, caps aside."""
     source_face: list[int]
     """The model's face that each of them was a part of."""
-    caps: np.ndarray
-    """(t, 3) triangles of the caps."""
+    caps: list[list[int]]
+    """Faces of the caps: triangles and quads."""
+    cap_triangles: np.ndarray
+    """(t, 3) the same, quads cut in two."""
     area: float
     """Area of the piece without caps."""
 
     @property
     def is_empty(self) -> bool:
         """Whether it has no faces."""
-        return not (len(self.kept) or self.faces or len(self.caps))
+        return not (len(self.kept) or self.faces or self.caps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,8 +193,14 @@ def _part(model: Model, piece: Any, taken: np.ndarray) -> Part:
     kept = _kept(model, in_model[corners], offsets, piece.source_face)
     is_cap = piece.source_face < 0
     made = np.flatnonzero(~kept & ~is_cap)
-    renamed = number[corners]
-    named, starts, ends = renamed.tolist(), offsets[made].tolist(), offsets[made + 1].tolist()
+    named = number[corners].tolist()
+
+    def rings(faces: np.ndarray) -> list[list[int]]:
+        starts, ends = offsets[faces].tolist(), offsets[faces + 1].tolist()
+        return [named[start:end] for start, end in zip(starts, ends, strict=True)]
+
+    caps = rings(np.flatnonzero(is_cap))
+    fans = [(cap[0], cap[k - 1], cap[k]) for cap in caps for k in range(2, len(cap))]
     return Part(
         side=piece.side,
         old=first[is_old].astype(np.int64),
@@ -200,9 +208,10 @@ def _part(model: Model, piece: Any, taken: np.ndarray) -> Part:
         places=vertices[~is_old],
         sources=source_vertices[~is_old],
         weights=source_weights[~is_old],
-        faces=[named[start:end] for start, end in zip(starts, ends, strict=True)],
+        faces=rings(made),
         source_face=piece.source_face[made].tolist(),
-        caps=renamed[np.repeat(is_cap, np.diff(offsets))].reshape(-1, 3),
+        caps=caps,
+        cap_triangles=np.array(fans, np.int64).reshape(-1, 3),
         area=_area(piece),
     )
 

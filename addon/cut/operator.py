@@ -20,9 +20,10 @@ from bpy.props import (
 
 from .. import api
 from ..data import defaults
-from ..text.messages import counted, listed
+from ..text.messages import counted, faces_counted, listed
 from ..text.telling import told
 from ..ui.progress import Pointer
+from ..ui.properties import PATCH_FACES
 from . import cutline, cutsweep, cutting
 from .cutobject import Caps, Target
 from .draw_operator import DrawnCut
@@ -35,7 +36,7 @@ class GRIDMESH_PG_cut_point(bpy.types.PropertyGroup):  # noqa: N801
 
 
 class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
-    """Cut the selected meshes along a stroke and close them with regular triangle patches"""  # noqa: D400 (the tooltip)
+    """Cut the selected meshes along a stroke and close them with regular patches of triangles or quads"""  # noqa: D400 (the tooltip)
 
     bl_idname = "object.gridmesh_cut"
     bl_label = "Cut & Cap"
@@ -125,6 +126,12 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             ("CURVATURE", "Curvature", "Bulging with the slope and the curvature of the model"),
         ],
         default="FLAT",
+    )
+    cells: EnumProperty(
+        name="Faces",
+        description="What caps are made of",
+        items=PATCH_FACES,
+        default=defaults.CELLS,
     )
     gap: FloatProperty(
         name="Gap",
@@ -247,6 +254,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
                     edge_length=self.edge_length or None,
                     gap=self.gap,
                     smooth=self.smooth.lower(),
+                    cells=self.cells.lower(),
                     extend_ends=self.extend_ends,
                 )
             except cutsweep.CutError as error:
@@ -276,6 +284,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         column = layout.column()
         column.active = self.use_cap
         column.prop(self, "smooth")
+        column.prop(self, "cells")
         column.prop(self, "use_cap_slot")
         if self.use_cap_slot:
             column.prop_search(self, "cap_material", bpy.data, "materials")
@@ -349,12 +358,12 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         def total(name: str) -> int:
             return sum(report[name] * n for report, n in zip(reports, sides, strict=True))
 
-        triangles = sum(len(part.caps) for part in parts)
+        faces = [len(face) for part in parts for face in part.caps]
         texts = [counted(len(parts), "piece")]
-        if triangles:
+        if faces:
             least = min(report["cap_min_angle"] for report in reports)
             texts += [
-                f"{counted(total('caps'), 'cap')}: {counted(triangles, 'triangle')}",
+                f"{counted(total('caps'), 'cap')}: {faces_counted(faces)}",
                 counted(total("cap_irregular"), "irregular vertex"),
                 f"smallest angle {degrees(least):.0f}°",
             ]

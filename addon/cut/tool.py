@@ -38,6 +38,7 @@ class GridMeshCutTool(bpy.types.WorkSpaceTool):
         layout.prop(options, "extend_ends")
         layout.prop(options, "use_cap")
         layout.prop(options, "smooth")
+        layout.prop(options, "cells")
         layout.prop(options, "gap")
         layout.prop(options, "pieces")
 

@@ -20,3 +20,15 @@ def listed(reasons: Iterable[str]) -> str:
     more = len(reasons) - _NAMED
     text = "\n".join(reason[:1].upper() + reason[1:] for reason in reasons[:_NAMED])
     return f"{text}\n... and {more} more" if more > 0 else text
+
+
+def faces_counted(sizes: Iterable[int]) -> str:
+    """Tell how many quads and triangles there are. sizes : corners of each face, three or four."""
+    sizes = list(sizes)
+    quads = sum(n == 4 for n in sizes)
+    triangles = len(sizes) - quads
+    if not quads:
+        return counted(triangles, "triangle")
+    if not triangles:
+        return counted(quads, "quad")
+    return f"{counted(quads, 'quad')} and {counted(triangles, 'triangle')}"

@@ -524,8 +524,9 @@ GERMAN = {
         "Die Enden des Strichs geradeaus durch alles fortsetzen; sonst nur so weit wie der Teil des Mesh, den der "
         "Strich quert"
     ),
-    "Cut the selected meshes along a stroke and close them with regular triangle patches": (
-        "Die ausgewählten Meshes an einem Strich schneiden und mit regelmäßigen Flicken aus Dreiecken schließen"
+    "Cut the selected meshes along a stroke and close them with regular patches of triangles or quads": (
+        "Die ausgewählten Meshes an einem Strich schneiden und mit regelmäßigen Flicken aus Dreiecken oder Vierecken "
+        "schließen"
     ),
     "Extend Ends": "Enden verlängern",
     "Direction": "Richtung",
@@ -684,6 +685,7 @@ GERMAN = {
         "Vierecke, vier um fast jeden Punkt, die die umgebenden fortsetzen; ein Dreieck, wo die Zahl der Kanten "
         "ungerade ist"
     ),
+    "What caps are made of": "Woraus Deckel bestehen",
     "What patches are made of": "Woraus Flicken bestehen",
     "Max Edges": "Höchstens Kanten",
     "Selected loops of open edges, and the whole holes that single selected edges or vertices lie on": (

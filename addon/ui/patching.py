@@ -11,7 +11,7 @@ from bpy.props import EnumProperty, StringProperty
 
 from .. import api
 from ..data import defaults
-from ..text.messages import counted
+from ..text.messages import faces_counted
 from ..text.telling import told
 from .properties import PATCH_FACES
 
@@ -70,11 +70,4 @@ class PatchFaces(PatchOptions):
 
 def faces_made(jobs: Sequence[Any]) -> str:
     """How many quads and triangles were added to the meshes of jobs."""
-    faces = [len(face.verts) for job in jobs for face in job.added.faces]
-    quads = sum(n == 4 for n in faces)
-    triangles = len(faces) - quads
-    if not quads:
-        return counted(triangles, "triangle")
-    if not triangles:
-        return counted(quads, "quad")
-    return f"{counted(quads, 'quad')} and {counted(triangles, 'triangle')}"
+    return faces_counted(len(face.verts) for job in jobs for face in job.added.faces)

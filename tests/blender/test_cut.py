@@ -43,6 +43,23 @@ def test_both_pieces_are_closed(make, edge_length):
 
 
 @pytest.mark.smoke
+@pytest.mark.parametrize("smooth", ["FLAT", "TANGENT"])
+@pytest.mark.parametrize("make", [cube, ball, torus])
+def test_caps_of_quads(make, smooth, capfd):
+    ob = make()
+    pieces = cut(
+        ob, line((-3, 0, 0.1), (3, 0, 0.3), 40, wave=0.1), edge_length=0.15, cells="QUADS", smooth=smooth
+    )
+    sizes = [[len(face.vertices) for face in caps(piece)] for piece in pieces]
+    assert sizes[0] == sizes[1]
+    assert set(sizes[0]) <= {3, 4}
+    assert sizes[0].count(3) <= 2
+    for piece in pieces:
+        check_sound(piece)
+    assert f": {2 * sizes[0].count(4)} quads" in capfd.readouterr().out
+
+
+@pytest.mark.smoke
 def test_caps_of_suzanne(capfd):
     """Below the eyes her head is closed all around the cut."""
     ob = suzanne()

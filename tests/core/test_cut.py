@@ -96,6 +96,26 @@ def test_closed_pieces_with_mirrored_caps(stroke, edge_length):
         assert done.report["defect"] <= 0.05 * edge_length
 
 
+@pytest.mark.parametrize("smooth", ["flat", "tangent"])
+@pytest.mark.parametrize("edge_length", [0.2, 0.23, 0.27, 0.3])
+@pytest.mark.parametrize("stroke", [[[-4, 0.3, 0], [0, -0.4, 0], [4, 0.5, 0]], circle(2, 0.1, 0.5)])
+def test_caps_of_quads(stroke, edge_length, smooth):
+    vertices, faces = torus()
+    done = gridmesh.cut(
+        vertices, faces, stroke, direction=DOWN, edge_length=edge_length, smooth=smooth, cells="quads"
+    )
+    report = done.report
+    for piece in done.pieces:
+        assert len(open_edges(piece)) == 0
+        sizes = np.diff(piece.offsets)[piece.source_face < 0]
+        assert (sizes == 4).sum() == report["cap_quads"] > 0
+        assert (sizes == 3).sum() == report["cap_triangles"]
+    assert report["cap_triangles"] % 2 == sum(map(len, done.pieces[0].cap_loops)) % 2
+    assert report["cap_triangles"] <= report["caps"]
+    assert np.degrees(report["cap_min_angle"]) > 20
+    assert sum(report["volumes"]) == pytest.approx(report["volume"], rel=0.01)
+
+
 def test_the_three_forms_of_faces_agree():
     stroke = ACROSS
     offsets = np.arange(7) * 4
@@ -236,6 +256,7 @@ def test_bulging_caps_close_too(smooth):
         ("invalid_option", {"direction": [0, 0, 0]}),
         ("invalid_option", {"keep": "top"}),
         ("invalid_option", {"smooth": "round"}),
+        ("invalid_option", {"cells": "hexagons"}),
         ("invalid_option", {"edge_length": -1}),
         ("invalid_option", {"gap": np.inf}),
         ("invalid_shape", {"direction": [0, 1]}),

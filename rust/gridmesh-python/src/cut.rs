@@ -7,6 +7,7 @@ use numpy::{PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 
+use crate::fill::shape;
 use crate::input::Argument;
 use crate::mesh::{as_positions, indices, narrowed, positions_argument, read_positions};
 use crate::piece::Piece;
@@ -43,6 +44,9 @@ use crate::{arrays, reports};
 ///     "flat": caps lie on the swept surface. The others bulge with the model, as fills do; caps with holes
 ///     lie flat all the same. A cap that would leave the model through its far side, or meet another cap, bulges
 ///     less ("reduced_caps" in the report).
+/// cells : {"triangles", "quads"}
+///     What caps are made of. A cap of quads has one triangle if its line, with those of its holes, has an odd number of
+///     edges; a cap with three loops or more may have one for each polygon that it is opened to.
 /// extend_ends : bool
 ///     True continues the ends of an open stroke to infinity. False continues them only as far as the part of the mesh
 ///     that the stroke itself crosses: cut lines that it does not meet stay whole, and parts of the mesh
@@ -88,8 +92,8 @@ use crate::{arrays, reports};
 /// 1.0
 #[pyfunction]
 #[pyo3(
-    signature = (vertices, faces, stroke, *, direction = None, eye = None, keep = None, cap = None, edge_length = None, gap = None, smooth = None, extend_ends = None, mirrors = None, mirror_distance = None, progress = None),
-    text_signature = "(vertices, faces, stroke, *, direction=None, eye=None, keep='both', cap=True, edge_length=None, gap=0.0, smooth='flat', extend_ends=True, mirrors=(), mirror_distance=0.0, progress=None)"
+    signature = (vertices, faces, stroke, *, direction = None, eye = None, keep = None, cap = None, edge_length = None, gap = None, smooth = None, cells = None, extend_ends = None, mirrors = None, mirror_distance = None, progress = None),
+    text_signature = "(vertices, faces, stroke, *, direction=None, eye=None, keep='both', cap=True, edge_length=None, gap=0.0, smooth='flat', cells='triangles', extend_ends=True, mirrors=(), mirror_distance=0.0, progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 pub fn cut(
@@ -104,6 +108,7 @@ pub fn cut(
     edge_length: Option<&Bound<'_, PyAny>>,
     gap: Option<&Bound<'_, PyAny>>,
     smooth: Option<&Bound<'_, PyAny>>,
+    cells: Option<&Bound<'_, PyAny>>,
     extend_ends: Option<&Bound<'_, PyAny>>,
     mirrors: Option<&Bound<'_, PyAny>>,
     mirror_distance: Option<&Bound<'_, PyAny>>,
@@ -133,6 +138,7 @@ pub fn cut(
         let it = Argument { name: "smooth", value, allowed: "'flat', 'tangent' or 'curvature'" };
         options.smooth = it.word(&words)?;
     }
+    options.cells = shape(cells)?;
     if let Some(value) = extend_ends {
         options.extend_ends = Argument { name: "extend_ends", value, allowed: "True or False" }.bool()?;
     }
@@ -269,8 +275,9 @@ pub fn polygons(faces: &Bound<'_, PyAny>) -> PyResult<(Vec<u32>, Vec<u32>)> {
 ///     Plain numbers: "cut_faces" (faces divided), "loops" (closed cut lines), "open_lines" (cut lines that end at
 ///     the border of an open mesh), "uncapped" (closed ones that bound no part of the swept surface),
 ///     "caps" (of one piece), "rings" (caps with holes), "pinched" (vertices doubled because a piece would touch itself there),
-///     "cap_triangles", "cap_vertices" (new ones inside caps), "cap_irregular" (those with a valence other than 6),
-///     "cap_min_angle" (radians), "cap_radius_ratio" (mean of twice the inscribed by the circumscribed radius), "folded" (caps
+///     "cap_triangles", "cap_quads", "cap_vertices" (new ones inside caps), "cap_irregular" (those with a valence other
+///     than 6, with quads 4), "cap_min_angle" (radians), "cap_radius_ratio" (mean of twice the inscribed by the
+///     circumscribed radius over the triangles), "folded" (caps
 ///     whose line crosses itself on the swept surface), "rim_min_angle" (smallest angle of a face along the cut, radians), "defect" (largest distance
 ///     of rebuilt faces from the old surface), "volumes" (of the pieces), "volume" (of the input), "repeated"
 ///     (divisions and caps that had to be made in another way), "reduced_caps" (caps that bulge less than they should
@@ -332,6 +339,7 @@ fn report(py: Python<'_>, report: &CutReport) -> PyResult<Py<PyDict>> {
     dict.set_item("rings", report.rings)?;
     dict.set_item("pinched", report.pinched)?;
     dict.set_item("cap_triangles", report.cap_triangles)?;
+    dict.set_item("cap_quads", report.cap_quads)?;
     dict.set_item("cap_vertices", report.cap_vertices)?;
     dict.set_item("cap_irregular", report.cap_irregular)?;
     dict.set_item("cap_min_angle", report.cap_min_angle)?;

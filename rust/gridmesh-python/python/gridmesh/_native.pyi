@@ -341,6 +341,7 @@ def cut(
     edge_length: float | None = None,
     gap: float = 0.0,
     smooth: Literal["flat", "tangent", "curvature"] = "flat",
+    cells: Literal["triangles", "quads"] = "triangles",
     extend_ends: bool = True,
     mirrors: Sequence[Sequence[Sequence[float]]] | npt.NDArray[np.float64] = (),
     mirror_distance: float = 0.0,

@@ -25,6 +25,12 @@ impl<'a> Polygons<'a> {
         self.len() == 0
     }
 
+    /// The corners of each face.
+    pub fn iter(self) -> impl Iterator<Item = &'a [u32]> {
+        let Polygons { corners, offsets } = self;
+        offsets.windows(2).map(move |w| &corners[w[0] as usize..w[1] as usize])
+    }
+
     /// The corners of a face.
     pub fn face(&self, f: usize) -> &'a [u32] {
         &self.corners[self.offsets[f] as usize..self.offsets[f + 1] as usize]

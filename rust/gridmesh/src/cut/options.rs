@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::error::{Error, Result, told, told_all};
 use crate::fill::options::Smooth;
+use crate::options::CellShape;
 
 /// Which pieces to return.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,6 +72,8 @@ pub struct CutOptions {
     pub gap: f64,
     /// How caps continue the surface.
     pub smooth: Smooth,
+    /// The faces of caps. Of quads, one for each polygon with an odd number of edges is a triangle.
+    pub cells: CellShape,
     /// Continue the ends of an open stroke to infinity. Otherwise they are continued as far as the part of the
     /// mesh that the stroke itself crosses: only those cut lines are cut that it meets, and others around the
     /// same caps. What it does not cross stays whole, in the larger piece, or in the only one that is kept.
@@ -89,6 +92,7 @@ impl CutOptions {
             edge_length: None,
             gap: 0.0,
             smooth: Smooth::Flat,
+            cells: CellShape::Triangle,
             extend_ends: true,
             mirrors: vec![],
         }

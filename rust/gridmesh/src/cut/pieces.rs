@@ -131,8 +131,14 @@ fn one(
             rim = rim.min(least);
         }
     }
-    for &[a, b, c] in &caps.triangles {
-        add(if left { [a, c, b] } else { [a, b, c] }, -1);
+    for face in caps.faces().iter() {
+        let at = corners.len();
+        corners.extend(face);
+        if left {
+            corners[at + 1..].reverse();
+        }
+        offsets.push(corners.len() as u32);
+        source_face.push(-1);
     }
 
     let mut new = vec![u32::MAX; n_before + caps.vertices.len()];

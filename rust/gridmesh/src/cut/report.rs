@@ -19,15 +19,17 @@ pub struct CutReport {
     pub rings: usize,
     /// Vertices doubled because a piece would touch itself there.
     pub pinched: usize,
-    /// Triangles of the caps of one piece.
+    /// Triangles of the caps of one piece; with quads one for each polygon with an odd number of edges.
     pub cap_triangles: usize,
+    /// Quads of the caps of one piece.
+    pub cap_quads: usize,
     /// Vertices inside caps.
     pub cap_vertices: usize,
-    /// Of those, with a valence other than six.
+    /// Of those, with a valence other than six, with quads other than four: poles.
     pub cap_irregular: usize,
-    /// Smallest angle of a cap triangle, in radians; pi without caps.
+    /// Smallest angle of a cap's face, in radians; pi without caps.
     pub cap_min_angle: f64,
-    /// Mean of twice the inscribed by the circumscribed radius over the caps; 1 without caps.
+    /// Mean of twice the inscribed by the circumscribed radius over the triangles of the caps; 1 without them.
     pub cap_radius_ratio: f64,
     /// Caps that bulge less than they should, or not at all, because they would leave the model or repeat one of its edges,
     /// or their line has edges without a length or touches itself.
@@ -63,6 +65,7 @@ impl CutReport {
             + other.cap_radius_ratio * other.cap_triangles as f64)
             / triangles;
         self.cap_triangles += other.cap_triangles;
+        self.cap_quads += other.cap_quads;
         self.cap_vertices += other.cap_vertices;
         self.cap_irregular += other.cap_irregular;
         self.cap_min_angle = self.cap_min_angle.min(other.cap_min_angle);

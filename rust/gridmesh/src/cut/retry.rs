@@ -85,7 +85,7 @@ fn divide_with(
         tally.stage("caps");
         caps
     } else {
-        Caps::default()
+        Caps::new(vec![])
     };
     progress.report(0.9)?;
     let pieces = pieces::assemble(cutting, &parted, &loops, &caps, &mut tally);

@@ -91,7 +91,7 @@ impl Fill {
     }
 
     /// The edges of the new faces, once for each face, lower vertex first.
-    pub(in crate::fill) fn sides(&self) -> impl Iterator<Item = [u32; 2]> {
+    pub(crate) fn sides(&self) -> impl Iterator<Item = [u32; 2]> {
         let quads = self.quads.iter().flat_map(|q| [0, 1, 2, 3].map(|k| [q[k], q[(k + 1) % 4]]));
         self.triangles.iter().flat_map(edges).chain(quads.map(|[a, b]| [a.min(b), a.max(b)]))
     }

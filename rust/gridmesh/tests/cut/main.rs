@@ -3,6 +3,7 @@
 
 mod hostile;
 mod models;
+mod quads;
 mod random;
 mod rims;
 

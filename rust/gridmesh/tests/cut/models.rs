@@ -76,6 +76,19 @@ pub fn triangles(piece: &Piece) -> Vec<[u32; 3]> {
     (0..faces.len()).flat_map(fan).collect()
 }
 
+/// An edge that has other than two faces, which run along it in opposite directions.
+pub fn open_edge(piece: &Piece) -> Option<[u32; 2]> {
+    let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
+    let mut sides: BTreeMap<[u32; 2], usize> = BTreeMap::new();
+    for face in faces.iter() {
+        for k in 0..face.len() {
+            *sides.entry([face[k], face[(k + 1) % face.len()]]).or_default() += 1;
+        }
+    }
+    let mut all = sides.iter();
+    all.find(|([a, b], count)| **count != 1 || !sides.contains_key(&[*b, *a])).map(|(side, _)| *side)
+}
+
 pub fn assert_closed(cut: &Cut) {
     for piece in &cut.pieces {
         let check = check_mesh(piece.vertices.len(), &triangles(piece));

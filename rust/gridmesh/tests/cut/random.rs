@@ -9,6 +9,7 @@ use glam::{DMat3, DVec3};
 use gridmesh::cut::{Cut, CutOptions, Keep, Polygons, Sweep};
 use gridmesh::fill::Smooth;
 use gridmesh::geometry::metrics::check_mesh;
+use gridmesh::options::CellShape;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
@@ -29,6 +30,7 @@ struct Case {
     length: Option<f64>,
     gap: bool,
     smooth: usize,
+    quads: bool,
     keep: usize,
     extend: bool,
 }
@@ -37,10 +39,11 @@ fn cases() -> impl Strategy<Value = Case> {
     let unit = -1.0..1.0f64;
     let shape = (0..6usize, 4..24u32, [0.0..TAU, 0.0..TAU, 0.0..TAU], 0..8usize);
     let stroke = (0..5usize, 2..60u32, [unit.clone(), unit.clone(), unit.clone(), unit], 0..4usize);
-    let options = (0..3usize, 0..4usize, 0..6usize, 0..5usize, 0..4usize, any::<bool>());
+    let faces = (0..5usize, any::<bool>());
+    let options = (0..3usize, 0..4usize, 0..6usize, faces, 0..4usize, any::<bool>());
     (shape, stroke, options).prop_map(
         |((model, detail, turn, thin), (stroke, points, place, rough), options)| {
-            let (sweep, length, gap, smooth, keep, extend) = options;
+            let (sweep, length, gap, (smooth, quads), keep, extend) = options;
             Case {
                 model,
                 detail,
@@ -54,6 +57,7 @@ fn cases() -> impl Strategy<Value = Case> {
                 length: [None, Some(0.1), Some(0.25), Some(0.8)][length],
                 gap: gap == 0,
                 smooth,
+                quads,
                 keep,
                 extend,
             }
@@ -117,6 +121,7 @@ impl Case {
                 [self.smooth],
             keep: [Keep::Both, Keep::Both, Keep::Left, Keep::Right][self.keep],
             extend_ends: self.extend,
+            cells: if self.quads { CellShape::Quad } else { CellShape::Triangle },
             ..CutOptions::new(sweep)
         }
     }
@@ -158,8 +163,11 @@ fn boxes(teeth: u32) -> Mesh {
 /// What a case breaks, if anything.
 fn wrong(case: &Case, mesh: &Mesh, cut: &Cut) -> Option<String> {
     for piece in &cut.pieces {
+        if let Some(edge) = open_edge(piece) {
+            return Some(format!("{:?} is not closed at the edge {edge:?}", piece.side));
+        }
         let check = check_mesh(piece.vertices.len(), &triangles(piece));
-        if !check.watertight {
+        if !(case.quads || check.watertight) {
             return Some(format!("{:?} is not closed: {check:?}", piece.side));
         }
         if piece.source_vertices.iter().flatten().any(|&v| v as usize >= mesh.0.len())
@@ -167,6 +175,9 @@ fn wrong(case: &Case, mesh: &Mesh, cut: &Cut) -> Option<String> {
         {
             return Some("sources".into());
         }
+    }
+    if let Some(reason) = wrong_caps(case, cut) {
+        return Some(reason);
     }
     let report = &cut.report;
     let size = mesh.0.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -209,6 +220,27 @@ fn wrong(case: &Case, mesh: &Mesh, cut: &Cut) -> Option<String> {
         }
     }
     None
+}
+
+/// What is wrong with the faces of the caps.
+fn wrong_caps(case: &Case, cut: &Cut) -> Option<String> {
+    let report = &cut.report;
+    let piece = cut.pieces.first()?;
+    let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
+    let caps = (0..faces.len()).filter(|&f| piece.source_face[f] < 0).map(|f| faces.face(f).len());
+    let count = |n: usize| caps.clone().filter(|&corners| corners == n).count();
+    let whole = if case.gap { None } else { Some([count(3), count(4)]) };
+    if whole.is_some_and(|whole| whole != [report.cap_triangles, report.cap_quads]) {
+        return Some(format!("{whole:?} faces in the caps, {report:?}"));
+    }
+    match case.quads {
+        // A ring is opened to two polygons or more, each of which may have a triangle.
+        true if report.rings == 0 && report.cap_triangles > report.caps => {
+            Some(format!("{} triangles", report.cap_triangles))
+        }
+        false if report.cap_quads > 0 => Some(format!("{} quads", report.cap_quads)),
+        _ => None,
+    }
 }
 
 /// Processor time of this process, all threads; 0 where the system does not tell.

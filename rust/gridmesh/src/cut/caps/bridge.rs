@@ -13,6 +13,8 @@ pub(in crate::cut) struct Bridges<'a> {
     pub taken: &'a FxHashSet<(u32, u32)>,
     /// Number of the first one.
     pub first: u32,
+    /// The polygons shall have an even number of edges each, as far as there are even numbers to divide.
+    pub even: bool,
     /// Place and height of each.
     pub spots: Vec<DVec2>,
 }
@@ -93,15 +95,22 @@ impl Bridges<'_> {
             all.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
             all.into_iter().take(4000).find(|l| is_clear(&walls, outline[l.1].at, hole[l.2].at))
         })?;
-        let [one, two] = [first, second].map(|(_, from, to)| {
-            let over = self.bridge(&outline, from, &hole, to);
+        let [one, mut two] = [first, second].map(|(_, from, to)| {
+            let over = self.bridge(&outline, from, &hole, to, 0);
             Bridge { from, to, over }
         });
-        let halves = [walk(&outline, &hole, &two, &one), walk(&outline, &hole, &one, &two)];
+        let apart =
+            |one: &Bridge, two: &Bridge| [walk(&outline, &hole, two, one), walk(&outline, &hole, one, two)];
+        let mut halves = apart(&one, &two);
         let mut shares = [vec![], vec![]];
         for other in holes {
             let k = usize::from(!is_within(&halves[0], other[0].at));
             shares[k].push(other);
+        }
+        if self.even && [0, 1].map(|k| is_odd(&halves[k], &shares[k])) == [true; 2] {
+            self.spots.truncate(self.spots.len() - two.over.len());
+            two.over = self.bridge(&outline, two.from, &hole, two.to, 1);
+            halves = apart(&one, &two);
         }
         for (half, share) in halves.into_iter().zip(shares) {
             self.open_sheet(half, share, pieces)?;
@@ -119,8 +128,8 @@ impl Bridges<'_> {
     ) -> Option<[Opened; 2]> {
         let tube = Tube::new(lower, upper, width);
         let [first, second] = tube.links(&holes)?;
-        let [one, two] = [first, second].map(|(_, from, to)| {
-            let over = self.bridge(&tube.low, from, &tube.high, to);
+        let [one, mut two] = [first, second].map(|(_, from, to)| {
+            let over = self.bridge(&tube.low, from, &tube.high, to, 0);
             Bridge { from, to, over }
         });
         let outlines = [tube.walk(&one, &two), tube.walk(&two, &one)];
@@ -135,11 +144,16 @@ impl Bridges<'_> {
             let moved = hole.iter().map(|s| Spot { at: s.at + DVec2::new(shift, 0.0), ..*s }).collect();
             sheets[k].1.push(moved);
         }
+        if self.even && sheets.iter().all(|(outline, holes)| is_odd(outline, holes)) {
+            self.spots.truncate(self.spots.len() - two.over.len());
+            two.over = self.bridge(&tube.low, two.from, &tube.high, two.to, 1);
+            [sheets[0].0, sheets[1].0] = [tube.walk(&one, &two), tube.walk(&two, &one)];
+        }
         Some(sheets)
     }
 
-    /// New vertices from one spot to another, about as far apart as the vertices at its ends.
-    fn bridge(&mut self, from: &[Spot], i: usize, to: &[Spot], j: usize) -> Vec<Spot> {
+    /// New vertices from one spot to another, about as far apart as the vertices at its ends, and `more`.
+    fn bridge(&mut self, from: &[Spot], i: usize, to: &[Spot], j: usize, more: usize) -> Vec<Spot> {
         let beside = |around: &[Spot], k: usize| {
             let n = around.len();
             let p = around[k].at;
@@ -150,7 +164,7 @@ impl Bridges<'_> {
         let step = 0.5 * (beside(from, i) + beside(to, j));
         let steps = (p.distance(q) / step.max(f64::MIN_POSITIVE)).round().clamp(1.0, 1000.0) as usize;
         let (a, b) = (from[i].node, to[j].node);
-        let steps = if self.taken.contains(&(a.min(b), a.max(b))) { steps.max(2) } else { steps };
+        let steps = if self.taken.contains(&(a.min(b), a.max(b))) { steps.max(2) } else { steps } + more;
         (1..steps)
             .map(|k| {
                 let at = p.lerp(q, k as f64 / steps as f64);
@@ -159,6 +173,11 @@ impl Bridges<'_> {
             })
             .collect()
     }
+}
+
+/// Whether an outline and its holes have an odd number of edges in sum.
+fn is_odd(outline: &[Spot], holes: &[Vec<Spot>]) -> bool {
+    (outline.len() + holes.iter().map(Vec::len).sum::<usize>()) % 2 == 1
 }
 
 /// Two loops around a closed sheet, unrolled.

@@ -9,7 +9,7 @@ use super::regions::Spot;
 use crate::cut::caps::capper::{Capper, key};
 use crate::cut::divide::node::Node;
 use crate::cut::input::triangles;
-use crate::cut::options::Keep;
+use crate::cut::options::{CutOptions, Keep};
 use crate::error::{Error, Result};
 use crate::fill::fill_hole;
 use crate::fill::options::FillOptions;
@@ -48,21 +48,19 @@ impl Capper<'_> {
         positions.extend(self.parted.nodes.iter().map(|node| node.position));
         let around = self.side(left);
         let nodes = outline.iter().map(|s| s.node).collect::<Vec<_>>();
-        let options = FillOptions { smooth: self.cutting.options.smooth, ..FillOptions::default() };
+        let CutOptions { smooth, cells, .. } = *self.cutting.options;
+        let options = FillOptions { smooth, cells, ..FillOptions::default() };
         let fill = match fill_hole(&positions, &around, &nodes, &options, progress) {
             // What is filled in space is held to more than what is filled in the unrolled surface.
             Err(Error::ZeroLengthEdge { .. } | Error::SelfTouching { .. }) => return Ok(Bulged::Flat),
             fill => fill?,
         };
         let place: FxHashMap<u32, usize> = nodes.iter().enumerate().map(|(k, &v)| (v, k)).collect();
-        let repeats = |t: &[u32; 3]| {
-            (0..3).any(|k| {
-                let (a, b) = (t[k], t[(k + 1) % 3]);
-                let (Some(&i), Some(&j)) = (place.get(&a), place.get(&b)) else { return false };
-                (i + 1) % n != j && (j + 1) % n != i && self.edges.contains(&key(a, b))
-            })
+        let repeats = |[a, b]: [u32; 2]| {
+            let (Some(&i), Some(&j)) = (place.get(&a), place.get(&b)) else { return false };
+            (i + 1) % n != j && (j + 1) % n != i && self.edges.contains(&key(a, b))
         };
-        if fill.triangles.iter().any(repeats) {
+        if fill.sides().any(repeats) {
             return Ok(Bulged::Flat);
         }
         // Without a bulge: what hangs evenly in the rim.
@@ -71,6 +69,7 @@ impl Capper<'_> {
         let level = level.chunks_exact(3).map(DVec3::from_slice).collect::<Vec<_>>();
         let other = if both { self.side(!left) } else { vec![] };
         let room = Room::new(self, &positions, [&around, &other], &nodes, inverted);
+        let facets = fill.facets();
         let mut chosen = None;
         for share in SHARES {
             progress.report(1.0)?;
@@ -79,7 +78,7 @@ impl Capper<'_> {
                 .zip(&fill.vertices)
                 .map(|(&l, &p)| if share < 1.0 { l.lerp(p, share) } else { p });
             let at = at.collect::<Vec<_>>();
-            if room.holds(&at, &fill.triangles, progress.part(1.0, 1.0))? {
+            if room.holds(&at, &facets, progress.part(1.0, 1.0))? {
                 chosen = Some((share, at));
                 break;
             }
@@ -96,13 +95,13 @@ impl Capper<'_> {
             let near = tree.nearest_neighbor(position.to_array()).map_or(nodes[0], |near| near.data);
             self.caps.vertices.push(Node { position, ..self.parted.source(self.cutting.vertices, near) });
         }
-        for t in &fill.triangles {
-            let mut t = t.map(|v| if v < old { v } else { base + v - old });
-            // Wound for the piece that it was made for.
-            if left {
-                t.swap(1, 2);
-            }
-            self.push(t, base);
+        let name = |v: u32| if v < old { v } else { base + v - old };
+        // Wound for the piece that they were made for.
+        for quad in &fill.quads {
+            self.push(&quad.map(name), left, base);
+        }
+        for triangle in &fill.triangles {
+            self.push(&triangle.map(name), left, base);
         }
         Ok(if share < 1.0 { Bulged::Reduced } else { Bulged::Whole })
     }
@@ -121,7 +120,7 @@ impl Capper<'_> {
 }
 
 /// What a cap must not leave: the faces of the pieces that it closes, and the other caps.
-struct Room<'a> {
+struct Room {
     /// Of the mesh, of the divided faces, and of other caps.
     positions: Vec<DVec3>,
     /// Number of those that a fill knows.
@@ -129,14 +128,14 @@ struct Room<'a> {
     near: Vec<[u32; 3]>,
     /// Edges of the rim, and the third corners of the faces on both sides: that of the piece which the cap continues first.
     wedges: FxHashMap<(u32, u32), [u32; 2]>,
-    caps: &'a [[u32; 3]],
+    caps: Vec<[u32; 3]>,
     /// The model's faces look inward.
     inverted: bool,
 }
 
-impl<'a> Room<'a> {
+impl Room {
     fn new(
-        capper: &'a Capper<'_>,
+        capper: &Capper<'_>,
         positions: &[DVec3],
         [own, other]: [&[[u32; 3]]; 2],
         nodes: &[u32],
@@ -159,7 +158,7 @@ impl<'a> Room<'a> {
         }
         rim.retain(|_, corners| corners.iter().all(|&v| v != u32::MAX));
         let near = own.iter().chain(other).copied().collect();
-        Room { positions, known, near, wedges: rim, caps: &capper.caps.triangles, inverted }
+        Room { positions, known, near, wedges: rim, caps: capper.caps.triangles().collect(), inverted }
     }
 
     /// True if a cap with these new vertices meets nothing but its rim, and lies inside along it.
@@ -180,7 +179,7 @@ impl<'a> Room<'a> {
             .flatten()
             .map(|t| self.near[t as usize])
             .collect();
-        old.extend(self.caps);
+        old.extend(&self.caps);
         Ok(count_meetings(position, &new, &old, false, 1, progress)?.0 == 0)
     }
 

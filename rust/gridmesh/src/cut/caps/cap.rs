@@ -16,12 +16,13 @@ use crate::cut::sheet::Sheet;
 use crate::error::{Error, Result};
 use crate::fill::options::Smooth;
 use crate::fill::parallel::in_parallel;
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Polygons filled between two reports of progress.
 const BATCH: usize = 16;
 
-/// Closes the pieces along the cut, with the same triangles for both.
+/// Closes the pieces along the cut, with the same faces for both.
 pub(in crate::cut) fn close(
     cutting: Cutting<'_>,
     parted: &Parted,
@@ -41,7 +42,7 @@ pub(in crate::cut) fn close(
         edges: FxHashSet::default(),
         facets: FxHashSet::default(),
         first,
-        caps: Caps { vertices: seams.vertices, triangles: vec![] },
+        caps: Caps::new(seams.vertices),
         seams: seams.edges,
     };
     capper.reserve();
@@ -92,6 +93,7 @@ fn open_ring(capper: &mut Capper<'_>, region: Region, report: &mut CutReport) ->
     let mut bridges = Bridges {
         taken: &capper.edges,
         first: capper.first + capper.caps.vertices.len() as u32,
+        even: capper.cutting.options.cells == CellShape::Quad,
         spots: vec![],
     };
     // An angle between rays of the eye as the length that it spans.

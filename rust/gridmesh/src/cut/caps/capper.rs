@@ -11,21 +11,51 @@ use crate::cut::caps::sources;
 use crate::cut::cutting::Cutting;
 use crate::cut::divide::node::Node;
 use crate::cut::divide::parted::Parted;
+use crate::cut::input::Polygons;
 use crate::cut::options::Keep;
 use crate::cut::report::Tally;
 use crate::cut::sheet::Sheet;
 use crate::cut::sheet::roll::Roll;
 use crate::error::{Error, Result};
 use crate::fill::planar::flat::{FlatFill, FlatOptions, fill_flat};
+use crate::fill::planar::quads::fill_flat_quads;
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// What closes the pieces.
-#[derive(Default)]
 pub(in crate::cut) struct Caps {
     /// New vertices, numbered after those of the divided mesh.
     pub vertices: Vec<Node>,
-    /// As the right piece needs them.
-    pub triangles: Vec<[u32; 3]>,
+    /// Corners of the faces, which are triangles and quads, wound as the right piece needs them.
+    corners: Vec<u32>,
+    /// Where each face begins, and the end.
+    offsets: Vec<u32>,
+}
+
+impl Caps {
+    /// No faces yet.
+    pub fn new(vertices: Vec<Node>) -> Caps {
+        Caps { vertices, corners: vec![], offsets: vec![0] }
+    }
+
+    pub fn faces(&self) -> Polygons<'_> {
+        Polygons { corners: &self.corners, offsets: &self.offsets }
+    }
+
+    /// The faces as triangles, quads cut in two.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
+        self.faces().iter().flat_map(|face| (2..face.len()).map(|k| [face[0], face[k - 1], face[k]]))
+    }
+
+    /// Adds a face; `turned`: it is wound for the left piece.
+    fn push(&mut self, face: &[u32], turned: bool) {
+        let first = self.corners.len();
+        self.corners.extend(face);
+        if turned {
+            self.corners[first + 1..].reverse();
+        }
+        self.offsets.push(self.corners.len() as u32);
+    }
 }
 
 pub(in crate::cut) struct Capper<'a> {
@@ -34,12 +64,31 @@ pub(in crate::cut) struct Capper<'a> {
     pub(crate) sheet: &'a Sheet,
     /// Edges between vertices of the cut that are there already, and triangles.
     pub edges: FxHashSet<(u32, u32)>,
-    pub(crate) facets: FxHashSet<[u32; 3]>,
+    pub(crate) facets: FxHashSet<Facet>,
     /// Number of the first new vertex.
     pub first: u32,
     pub caps: Caps,
     /// Edges of the caps along planes of symmetry.
     pub(crate) seams: FxHashSet<(u32, u32)>,
+}
+
+/// The corners of a triangle or quad, sorted; a triangle has [`u32::MAX`] as its last.
+type Facet = [u32; 4];
+
+/// The facet of a face; `None` if it has more corners than a quad.
+fn facet(corners: impl ExactSizeIterator<Item = u32>) -> Option<Facet> {
+    let mut facet = [u32::MAX; 4];
+    if corners.len() > facet.len() {
+        return None;
+    }
+    corners.zip(&mut facet).for_each(|(v, place)| *place = v);
+    facet.sort_unstable();
+    Some(facet)
+}
+
+/// The edges of a face.
+fn sides(face: &[u32]) -> impl Iterator<Item = (u32, u32)> {
+    (0..face.len()).map(|k| key(face[k], face[(k + 1) % face.len()]))
 }
 
 /// An edge, its lower vertex first.
@@ -63,12 +112,8 @@ impl Capper<'_> {
                     self.edges.insert((a.min(b), a.max(b)));
                 }
             }
-            if let [a, b, c] = *corners
-                && on == 3
-            {
-                let mut facet = [a, b, c];
-                facet.sort_unstable();
-                self.facets.insert(facet);
+            if on == n {
+                self.facets.extend(facet(corners.iter().copied()));
             }
         };
         // Of a piece that is not kept nothing can be repeated.
@@ -93,11 +138,10 @@ impl Capper<'_> {
         let roll = Roll::new(self.sheet, polygon);
         let flat = polygon.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
         let taken = |i: usize, j: usize| self.edges.contains(&key(polygon[i].node, polygon[j].node));
-        let mut single = true;
-        if let [a, b, c] = polygon {
-            let mut facet = [a.node, b.node, c.node];
-            facet.sort_unstable();
-            single = !self.facets.contains(&facet);
+        let own = facet(polygon.iter().map(|s| s.node));
+        let single = own.is_none_or(|own| !self.facets.contains(&own));
+        if self.cutting.options.cells == CellShape::Quad {
+            return fill_flat_quads(&flat, &vec![2.0; n], &taken, single, progress);
         }
         let mut options = FlatOptions { single, ..FlatOptions::default() };
         if n > LARGE {
@@ -112,11 +156,13 @@ impl Capper<'_> {
     /// True if a patch has an edge across its polygon that exists by now.
     pub(crate) fn repeats(&self, polygon: &[Spot], patch: &FlatFill) -> bool {
         let n = polygon.len();
-        patch.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]).any(|[a, b]| {
-            let (i, j) = (a.min(b) as usize, a.max(b) as usize);
+        let is_taken = |(a, b): (u32, u32)| {
+            let (i, j) = (a as usize, b as usize);
             let (Some(p), Some(q)) = (polygon.get(i), polygon.get(j)) else { return false };
-            j - i > 1 && j - i < n - 1 && self.edges.contains(&(p.node.min(q.node), p.node.max(q.node)))
-        })
+            j - i > 1 && j - i < n - 1 && self.edges.contains(&key(p.node, q.node))
+        };
+        patch.quads().any(|q| sides(&q).any(is_taken))
+            || patch.single().iter().any(|t| sides(t).any(is_taken))
     }
 
     /// Makes vertices and triangles of a patch.
@@ -142,12 +188,11 @@ impl Capper<'_> {
             (node.source, node.weights) = (from.source, from.weights);
             self.caps.vertices.push(node);
         }
-        for t in &patch.triangles {
-            let mut t = t.map(name);
-            if inverted {
-                t.swap(1, 2);
-            }
-            self.push(t, base);
+        for quad in patch.quads() {
+            self.push(&quad.map(name), inverted, base);
+        }
+        for triangle in patch.single() {
+            self.push(&triangle.map(name), inverted, base);
         }
         progress.report(1.0)
     }
@@ -181,21 +226,22 @@ impl Capper<'_> {
         }
     }
 
-    /// Adds a triangle of a patch whose own vertices begin with `base`; others ask only for edges between vertices
-    /// that they know.
-    pub fn push(&mut self, t: [u32; 3], base: u32) {
-        let edges = (0..3).map(|k| key(t[k], t[(k + 1) % 3]));
-        self.edges.extend(edges.filter(|edge| edge.1 < base));
-        self.caps.triangles.push(t);
+    /// Adds a face of a patch whose own vertices begin with `base`; others ask only for edges between vertices that they know.
+    /// `turned`: it is wound for the left piece.
+    pub fn push(&mut self, face: &[u32], turned: bool, base: u32) {
+        self.edges.extend(sides(face).filter(|edge| edge.1 < base));
+        self.caps.push(face, turned);
     }
 
-    /// Refuses caps that do not close what they should: each edge has two cap triangles, or one and is of the
-    /// cut.
+    /// Refuses caps that do not close what they should: each edge has two cap faces, or one and is of the cut.
     pub(crate) fn prove(&self) -> Result<()> {
-        // Each edge once for each triangle, with its direction last.
+        // Each edge once for each face, with its direction last.
         let directed = |a: u32, b: u32| (key(a, b), a < b);
-        let triangles = self.caps.triangles.par_iter().with_min_len(4096);
-        let edges = triangles.flat_map_iter(|t| (0..3).map(move |k| directed(t[k], t[(k + 1) % 3])));
+        let faces = self.caps.faces();
+        let edges = (0..faces.len()).into_par_iter().with_min_len(4096).flat_map_iter(|f| {
+            let face = faces.face(f);
+            (0..face.len()).map(move |k| directed(face[k], face[(k + 1) % face.len()]))
+        });
         let mut edges: Vec<((u32, u32), bool)> = edges.collect();
         edges.par_sort_unstable();
         let is_right = |group: &[((u32, u32), bool)]| {
@@ -221,29 +267,48 @@ impl Capper<'_> {
             Some(k) => self.caps.vertices[k as usize].position,
             None => self.parted.position(self.cutting.vertices, v),
         };
-        let mut valence = vec![0u32; self.caps.vertices.len()];
+        let faces = self.caps.faces();
+        let mut at = vec![0u32; self.caps.vertices.len()];
+        for v in faces.iter().flatten().filter_map(|v| v.checked_sub(self.first)) {
+            at[v as usize] += 1;
+        }
         // Sums of equal stretches, added up in their order.
         const STRETCH: usize = 8192;
-        let sum = |triangles: &[[u32; 3]]| {
-            let shapes = triangles.iter().map(|t| shape(t.map(position)));
-            shapes.fold((f64::INFINITY, 0.0), |(least, sum), (angle, ratio)| (angle.min(least), sum + ratio))
+        let sum = |k: usize| {
+            let here = k * STRETCH..((k + 1) * STRETCH).min(faces.len());
+            here.fold((f64::INFINITY, 0.0), |(least, sum), f| match *faces.face(f) {
+                [a, b, c] => {
+                    let (angle, ratio) = shape([a, b, c].map(position));
+                    (angle.min(least), sum + ratio)
+                }
+                ref face => (least_corner(face, position).min(least), sum),
+            })
         };
-        let sums: Vec<(f64, f64)> = self.caps.triangles.par_chunks(STRETCH).map(sum).collect();
+        let sums: Vec<(f64, f64)> = (0..faces.len().div_ceil(STRETCH)).into_par_iter().map(sum).collect();
         let mut ratios = 0.0;
         for (angle, ratio) in sums {
             report.cap_min_angle = report.cap_min_angle.min(angle);
             ratios += ratio;
         }
-        for v in self.caps.triangles.iter().flatten().filter_map(|v| v.checked_sub(self.first)) {
-            valence[v as usize] += 1;
-        }
-        report.cap_triangles = self.caps.triangles.len();
-        report.cap_vertices = valence.len();
-        report.cap_irregular = valence.iter().filter(|&&v| v != 6).count();
-        if !self.caps.triangles.is_empty() {
-            report.cap_radius_ratio = ratios / self.caps.triangles.len() as f64;
+        report.cap_triangles = faces.iter().filter(|face| face.len() == 3).count();
+        report.cap_quads = faces.len() - report.cap_triangles;
+        report.cap_vertices = at.len();
+        let regular = if self.cutting.options.cells == CellShape::Quad { 4 } else { 6 };
+        report.cap_irregular = at.iter().filter(|&&n| n != regular).count();
+        if report.cap_triangles > 0 {
+            report.cap_radius_ratio = ratios / report.cap_triangles as f64;
         }
     }
+}
+
+/// Smallest angle between neighbouring edges of a face.
+fn least_corner(face: &[u32], position: impl Fn(u32) -> DVec3) -> f64 {
+    let n = face.len();
+    let corner = |k: usize| {
+        let [before, here, after] = [k + n - 1, k, k + 1].map(|k| position(face[k % n]));
+        (before - here).angle_between(after - here)
+    };
+    (0..n).map(corner).fold(f64::INFINITY, f64::min)
 }
 
 /// Smallest angle of a triangle, and twice its inscribed by its circumscribed radius.

@@ -102,6 +102,21 @@ pub(crate) struct FlatFill {
     pub candidates: usize,
 }
 
+impl FlatFill {
+    /// The faces that are quads.
+    pub fn quads(&self) -> impl Iterator<Item = [u32; 4]> {
+        self.triangles[..2 * self.quads].chunks_exact(2).map(|pair| {
+            let ([a, b, c], [.., d]) = (pair[0], pair[1]);
+            [a, b, c, d]
+        })
+    }
+
+    /// The faces that are triangles.
+    pub fn single(&self) -> &[[u32; 3]] {
+        &self.triangles[2 * self.quads..]
+    }
+}
+
 /// Fills a loop in the plane.
 ///
 /// * `polygon`: n >= 3 points, counter-clockwise, simple if possible.

@@ -15,6 +15,9 @@ const MOST: f64 = 135.0;
 /// What a pole costs.
 const POLE: f64 = 0.22;
 
+/// What a quad costs that has an edge of the mesh from corner to corner: it lies on a face, and cut in two it may repeat that edge.
+const LYING: f64 = 1.0;
+
 /// What a quad too much or too few at each loop vertex costs.
 const EXCESS: f64 = 0.6;
 
@@ -42,6 +45,11 @@ pub(super) fn measure(
             repeated += usize::from(taken(i, j));
         }
     };
+    let spans = |a: u32, b: u32| {
+        let (i, j) = (a.min(b) as usize, a.max(b) as usize);
+        j < n && taken(i, j)
+    };
+    let lying = cells.quads.iter().filter(|q| spans(q[0], q[2]) || spans(q[1], q[3])).count();
     for quad in &cells.quads {
         (0..4).for_each(|k| side(quad[k], quad[(k + 1) % 4]));
         quad.iter().for_each(|&v| faces[v as usize] += 1);
@@ -85,6 +93,7 @@ pub(super) fn measure(
         folded
             + EXCESS * excess / n as f64
             + POLE * poles as f64
+            + LYING * lying as f64
             + (off / count).to_degrees() / 30.0
             + beyond(LEAST - least.to_degrees(), 20.0)
             + beyond(most.to_degrees() - MOST, 25.0)

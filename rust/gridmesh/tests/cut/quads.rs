@@ -1,0 +1,89 @@
+//! Caps of quads.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+use gridmesh::cut::{CutOptions, Keep, Piece, Polygons, Sweep};
+use gridmesh::fill::Smooth;
+use gridmesh::options::CellShape;
+
+use crate::models::*;
+
+fn options(edge_length: Option<f64>, smooth: Smooth) -> CutOptions {
+    let sweep = Sweep::Along(DVec3::new(0.0, 0.0, -1.0));
+    CutOptions { edge_length, smooth, cells: CellShape::Quad, ..CutOptions::new(sweep) }
+}
+
+/// Corners of the cap's faces.
+fn caps(piece: &Piece) -> Vec<&[u32]> {
+    let faces = Polygons { corners: &piece.corners, offsets: &piece.offsets };
+    faces.iter().zip(&piece.source_face).filter(|(_, from)| **from < 0).map(|(face, _)| face).collect()
+}
+
+#[test]
+fn a_cap_is_all_quads_and_has_one_triangle_if_its_line_is_odd() {
+    let lines = [vec![DVec3::new(-3.0, 0.1, 0.0), DVec3::new(3.0, -0.2, 0.0)], circle(0.1, 0.2, 0.4, 40)];
+    for (stroke, smooth) in lines.iter().flat_map(|s| [(s, Smooth::Flat), (s, Smooth::Tangent)]) {
+        for length in [0.11, 0.13, 0.17, 0.2] {
+            let cut = ball(16).cut(stroke, &options(Some(length), smooth)).unwrap();
+            let [left, right] = &cut.pieces[..] else { panic!() };
+            assert_eq!([open_edge(left), open_edge(right)], [None; 2]);
+            let edges = left.cap_loops.iter().map(Vec::len).sum::<usize>();
+            assert_eq!(cut.report.cap_triangles, edges % 2, "{length} {smooth:?} {:?}", cut.report);
+            assert_eq!(caps(left).len(), cut.report.cap_triangles + cut.report.cap_quads);
+            assert!(cut.report.cap_min_angle.to_degrees() > 30.0, "{:?}", cut.report);
+            let sum: f64 = cut.report.volumes.iter().sum();
+            assert!((sum - cut.report.volume).abs() < 0.02 * cut.report.volume);
+        }
+    }
+}
+
+#[test]
+fn both_pieces_have_the_same_caps_turned_around() {
+    let stroke = [DVec3::new(-3.0, 0.1, 0.0), DVec3::new(3.0, -0.2, 0.0)];
+    for smooth in [Smooth::Flat, Smooth::Curvature] {
+        let cut = ball(14).cut(&stroke, &options(Some(0.15), smooth)).unwrap();
+        let [left, right] = &cut.pieces[..] else { panic!() };
+        let at = |piece: &Piece, face: &[u32]| {
+            let bits = |v: &u32| piece.vertices[*v as usize].to_array().map(f64::to_bits);
+            face.iter().map(bits).collect::<Vec<_>>()
+        };
+        for (l, r) in caps(left).into_iter().zip(caps(right)) {
+            let mut turned = at(right, r);
+            turned[1..].reverse();
+            assert_eq!(at(left, l), turned);
+        }
+    }
+}
+
+#[test]
+fn a_ring_is_opened_so_that_all_its_faces_are_quads() {
+    let mut seen = 0;
+    for n in 12..24 {
+        let ring = torus(n, 11);
+        let stroke = [DVec3::new(-5.0, 0.03, 0.0), DVec3::new(5.0, 0.05, 0.0)];
+        // Flat on its side, cut along its equator: a ring as the cap.
+        let turned = Mesh(ring.0.iter().map(|p| DVec3::new(p.x, p.z, p.y)).collect(), ring.1, ring.2);
+        for length in [0.15, 0.2, 0.25] {
+            let cut = turned.cut(&stroke, &options(Some(length), Smooth::Flat)).unwrap();
+            assert_eq!(cut.report.rings, 1);
+            assert_eq!(cut.pieces.iter().find_map(open_edge), None);
+            let edges = cut.pieces[0].cap_loops.iter().map(Vec::len).sum::<usize>();
+            assert_eq!(cut.report.cap_triangles, edges % 2);
+            seen += 1 - edges % 2;
+        }
+    }
+    assert!(seen > 5);
+}
+
+#[test]
+fn what_is_kept_alone_has_the_cap_of_both() {
+    let stroke = (0..30)
+        .map(|k| DVec3::new(-2.0 + 4.0 * f64::from(k) / 29.0, 0.3 * (TAU * f64::from(k) / 15.0).sin(), 0.0))
+        .collect::<Vec<_>>();
+    let both = ball(12).cut(&stroke, &options(Some(0.2), Smooth::Flat)).unwrap();
+    let left = CutOptions { keep: Keep::Left, ..options(Some(0.2), Smooth::Flat) };
+    let left = ball(12).cut(&stroke, &left).unwrap();
+    assert_eq!(left.pieces[0].corners, both.pieces[0].corners);
+    assert!(left.report.cap_quads > 20);
+}
