@@ -7,4 +7,5 @@ pub(crate) mod capper;
 pub(crate) mod loops;
 pub(crate) mod mirrored;
 pub(crate) mod regions;
+pub(crate) mod ring;
 pub(crate) mod sources;

@@ -57,7 +57,22 @@ fn both_pieces_have_the_same_caps_turned_around() {
 }
 
 #[test]
-fn a_ring_is_opened_so_that_all_its_faces_are_quads() {
+fn a_ring_around_a_hole_in_its_middle_is_a_tube_with_hardly_a_pole() {
+    let ring = torus(40, 24);
+    let turned = Mesh(ring.0.iter().map(|p| DVec3::new(p.x, p.z, p.y)).collect(), ring.1, ring.2);
+    for length in [0.15, 0.2, 0.25, 0.3] {
+        let stroke = [DVec3::new(-5.0, 0.1, 0.0), DVec3::new(5.0, 0.3, 0.0)];
+        let quads = turned.cut(&stroke, &options(Some(length), Smooth::Flat)).unwrap().report;
+        assert_eq!(quads.rings, 1);
+        assert!(quads.cap_irregular <= 8, "{quads:?}");
+        let triangles = CutOptions { cells: CellShape::Triangle, ..options(Some(length), Smooth::Flat) };
+        let triangles = turned.cut(&stroke, &triangles).unwrap().report;
+        assert!(100 * triangles.cap_irregular <= triangles.cap_vertices, "{triangles:?}");
+    }
+}
+
+#[test]
+fn rings_are_all_quads_where_their_edges_are_even() {
     let mut seen = 0;
     for n in 12..24 {
         let ring = torus(n, 11);

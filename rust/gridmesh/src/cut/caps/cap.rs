@@ -57,6 +57,18 @@ pub(in crate::cut) fn close(
                 let is_flat = cutting.options.smooth == Smooth::Flat || is_seamed;
                 if is_flat { &mut polygons } else { &mut bulging }.push(outline);
             }
+            Region::Sheet { outline, holes } if holes.len() == 1 => {
+                let ring = [&outline[..], &holes[0]].concat();
+                match capper.ring(&ring, outline.len(), progress.part(0.0, 0.0))? {
+                    Some(patch) => {
+                        report.rings += 1;
+                        capper.roll_up(&ring, &patch, found.inverted, progress.part(0.0, 0.0))?;
+                    }
+                    None => {
+                        polygons.extend(open_ring(&mut capper, Region::Sheet { outline, holes }, report)?)
+                    }
+                }
+            }
             ring => polygons.extend(open_ring(&mut capper, ring, report)?),
         }
     }

@@ -87,7 +87,7 @@ fn facet(corners: impl ExactSizeIterator<Item = u32>) -> Option<Facet> {
 }
 
 /// The edges of a face.
-fn sides(face: &[u32]) -> impl Iterator<Item = (u32, u32)> {
+pub(in crate::cut) fn sides(face: &[u32]) -> impl Iterator<Item = (u32, u32)> {
     (0..face.len()).map(|k| key(face[k], face[(k + 1) % face.len()]))
 }
 
