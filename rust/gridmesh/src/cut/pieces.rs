@@ -97,17 +97,22 @@ fn whole_volume(vertices: &[DVec3], origin: DVec3, faces: Polygons<'_>) -> f64 {
     sums.iter().sum::<f64>() / 6.0
 }
 
-/// A piece, the smallest angle along its rim, and how many vertices were doubled.
-fn one(
+/// Faces of one side, with the vertices of the divided mesh and the caps.
+struct Faces {
+    corners: Vec<u32>,
+    offsets: Vec<u32>,
+    source_face: Vec<i32>,
+    /// The smallest angle along the cut.
+    rim: f64,
+}
+
+fn faces_of(
     Cutting { vertices, faces, .. }: Cutting<'_>,
     parted: &Parted,
-    loops: &Loops,
     caps: &Caps,
-    side: Side,
+    left: bool,
     on_cut: &[bool],
-) -> (Piece, f64, usize) {
-    let left = side == Side::Left;
-    let n_before = parted.n_old + parted.nodes.len();
+) -> Faces {
     let mut corners: Vec<u32> = Vec::with_capacity(faces.corners.len());
     let mut offsets = vec![0u32];
     let mut source_face = vec![];
@@ -140,7 +145,21 @@ fn one(
         offsets.push(corners.len() as u32);
         source_face.push(-1);
     }
+    Faces { corners, offsets, source_face, rim }
+}
 
+/// A piece, the smallest angle along its rim, and how many vertices were doubled.
+fn one(
+    cutting: Cutting<'_>,
+    parted: &Parted,
+    loops: &Loops,
+    caps: &Caps,
+    side: Side,
+    on_cut: &[bool],
+) -> (Piece, f64, usize) {
+    let left = side == Side::Left;
+    let n_before = parted.n_old + parted.nodes.len();
+    let Faces { mut corners, offsets, source_face, rim } = faces_of(cutting, parted, caps, left, on_cut);
     let mut new = vec![u32::MAX; n_before + caps.vertices.len()];
     for &v in &corners {
         new[v as usize] = 0;
@@ -153,7 +172,7 @@ fn one(
     corners.iter_mut().for_each(|v| *v = new[*v as usize]);
     let nodes = old.iter().map(|&v| match (v as usize).checked_sub(n_before) {
         Some(k) => caps.vertices[k],
-        None => parted.source(vertices, v),
+        None => parted.source(cutting.vertices, v),
     });
     let mut nodes = nodes.collect::<Vec<Node>>();
     let watched = old.iter().map(|&v| on_cut.get(v as usize).copied().unwrap_or(false)).collect::<Vec<_>>();

@@ -90,6 +90,16 @@ pub(crate) struct Job<'a> {
     pub(crate) states: Meter,
 }
 
+/// Boundaries on several lattices.
+struct Boundaries {
+    /// The cheapest first.
+    outlines: Vec<(Lattice, Outline)>,
+    /// Some lattice gives a boundary, though maybe not of the number asked for.
+    is_passable: bool,
+    /// Why the first of the others gives none.
+    obstacle: Option<Obstacle>,
+}
+
 impl Job<'_> {
     pub(crate) fn lap(&mut self, stage: &'static str, since: Instant) {
         let spent = since.elapsed().as_secs_f64();
@@ -147,26 +157,8 @@ impl Job<'_> {
                 return Ok(Ok(self.report(found)));
             }
         }
-        let found: Vec<Result<Result<(Lattice, Outline), Miss>>> = lattices
-            .par_iter()
-            .map(|&(angle, shift)| self.outline(asked, effort, angle, shift, progress.part(0.0, 0.3)))
-            .collect();
-        let mut obstacle = None;
-        let mut outlines = Vec::new();
-        let mut is_passable = self.symmetry.is_some();
-        for found in found {
-            match found? {
-                Ok(found) => {
-                    is_passable = true;
-                    outlines.push(found);
-                }
-                Err(miss) => {
-                    is_passable |= miss.is_of_count;
-                    obstacle = obstacle.or(Some(miss.obstacle));
-                }
-            }
-        }
-        outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        let Boundaries { mut outlines, is_passable, mut obstacle } =
+            self.boundaries(&lattices, asked, effort, progress.part(0.0, 0.3))?;
         if let Some(bent) = &bent {
             outlines.retain(|(_, outline)| outline.cost < bent.score());
         }
@@ -221,17 +213,47 @@ impl Job<'_> {
         {
             best = Some(bent);
         }
-        if let Some(best) = best {
-            if let Some(reason) = best.placed.fault(self.options) {
-                let at = best.placed.patch.inlets.first().map_or(self.centre, |inlet| inlet[0]);
-                return Ok(Err(Obstacle::new(reason, at)));
+        match (best, obstacle) {
+            (Some(best), _) => Ok(match best.placed.fault(self.options) {
+                Some(reason) => {
+                    let at = best.placed.patch.inlets.first().map_or(self.centre, |inlet| inlet[0]);
+                    Err(Obstacle::new(reason, at))
+                }
+                None => Ok(self.report(best)),
+            }),
+            (None, Some(obstacle)) => Ok(Err(obstacle)),
+            (None, None) => Err(Error::Internal { reason: "no lattice was tried" }),
+        }
+    }
+
+    /// The cheapest boundaries on lattices, in parallel.
+    fn boundaries(
+        &self,
+        lattices: &[(f64, DVec2)],
+        asked: Asked,
+        effort: Effort,
+        progress: Progress<'_>,
+    ) -> Result<Boundaries> {
+        let found: Vec<Result<Result<(Lattice, Outline), Miss>>> = lattices
+            .par_iter()
+            .map(|&(angle, shift)| self.outline(asked, effort, angle, shift, progress))
+            .collect();
+        let (mut outlines, mut obstacle) = (vec![], None);
+        let mut is_passable = self.symmetry.is_some();
+        for found in found {
+            match found? {
+                Ok(found) => {
+                    is_passable = true;
+                    outlines.push(found);
+                }
+                Err(miss) => {
+                    is_passable |= miss.is_of_count;
+                    obstacle = obstacle.or(Some(miss.obstacle));
+                }
             }
-            return Ok(Ok(self.report(best)));
         }
-        match obstacle {
-            Some(obstacle) => Ok(Err(obstacle)),
-            None => Err(Error::Internal { reason: "no lattice was tried" }),
-        }
+        outlines.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        Ok(Boundaries { outlines, is_passable, obstacle })
     }
 
     /// True if no straight lattice is tried beside a bent one: it has no faults and hardly more turns than

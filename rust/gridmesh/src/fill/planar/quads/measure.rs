@@ -58,30 +58,10 @@ pub(super) fn measure(
         (0..3).for_each(|k| side(triangle[k], triangle[(k + 1) % 3]));
         triangle.iter().for_each(|&v| faces[v as usize] += 1);
     }
-    let corners = |quad: &[u32; 4]| {
-        let quad = *quad;
-        (0..4).map(move |k| [quad[(k + 3) % 4], quad[k], quad[(k + 1) % 4]])
-    };
     let all: Vec<[u32; 3]> = cells.quads.iter().flat_map(corners).chain(cells.odd).collect();
     let centre = positions[..n].iter().sum::<DVec2>() / n as f64;
     let embedded = first_inverted(positions, &all, centre).is_none();
-    let (mut least, mut most, mut off, mut ratio) = (PI, 0.0f64, 0.0, 0.0);
-    for [a, b, c] in cells.quads.iter().flat_map(corners).map(|c| c.map(|v| positions[v as usize])) {
-        let (back, ahead) = (a - b, c - b);
-        let angle = ahead.perp_dot(back).atan2(ahead.dot(back));
-        // Beyond a straight angle a corner is concave, or its quad inverted.
-        let angle = if angle.is_finite() { angle.rem_euclid(2.0 * PI) } else { 2.0 * PI };
-        least = least.min(angle);
-        most = most.max(angle);
-        off += (angle - FRAC_PI_2).abs();
-        ratio += angle.sin().max(0.0);
-    }
-    for [a, b, c] in cells.odd.iter().map(|t| t.map(|v| positions[v as usize])) {
-        for (u, v) in [(b - a, c - a), (c - b, a - b), (a - c, b - c)] {
-            let angle = u.perp_dot(v).atan2(u.dot(v));
-            least = least.min(if angle.is_finite() { angle } else { -1.0 });
-        }
-    }
+    let Corners { least, most, off, ratio } = Corners::of(positions, cells);
     let count = (4 * cells.quads.len()).max(1) as f64;
     let poles = faces[n..].iter().filter(|&&f| f != 4).count();
     let excess: f64 = wanted.iter().zip(&faces).map(|(w, &f)| (f as f64 - w).abs()).sum();
@@ -109,4 +89,44 @@ pub(super) fn measure(
         repeated,
     };
     Measured { quality, badness }
+}
+
+/// The corners of the faces, in radians.
+struct Corners {
+    least: f64,
+    /// Of quads.
+    most: f64,
+    /// Sum of how far those of quads are from right angles.
+    off: f64,
+    /// Sum of the sines of those of quads that are less than straight.
+    ratio: f64,
+}
+
+impl Corners {
+    fn of(positions: &[DVec2], cells: &Cells) -> Corners {
+        let (mut least, mut most, mut off, mut ratio) = (PI, 0.0f64, 0.0, 0.0);
+        for [a, b, c] in cells.quads.iter().flat_map(corners).map(|c| c.map(|v| positions[v as usize])) {
+            let (back, ahead) = (a - b, c - b);
+            let angle = ahead.perp_dot(back).atan2(ahead.dot(back));
+            // Beyond a straight angle a corner is concave, or its quad inverted.
+            let angle = if angle.is_finite() { angle.rem_euclid(2.0 * PI) } else { 2.0 * PI };
+            least = least.min(angle);
+            most = most.max(angle);
+            off += (angle - FRAC_PI_2).abs();
+            ratio += angle.sin().max(0.0);
+        }
+        for [a, b, c] in cells.odd.iter().map(|t| t.map(|v| positions[v as usize])) {
+            for (u, v) in [(b - a, c - a), (c - b, a - b), (a - c, b - c)] {
+                let angle = u.perp_dot(v).atan2(u.dot(v));
+                least = least.min(if angle.is_finite() { angle } else { -1.0 });
+            }
+        }
+        Corners { least, most, off, ratio }
+    }
+}
+
+/// Each corner of a quad with those beside it.
+fn corners(quad: &[u32; 4]) -> impl Iterator<Item = [u32; 3]> {
+    let quad = *quad;
+    (0..4).map(move |k| [quad[(k + 3) % 4], quad[k], quad[(k + 1) % 4]])
 }
