@@ -143,7 +143,7 @@ def fill_loops(
     Ctrl-C asked to stop.
     """
     indices = [np.asarray(loop, np.int32) for loop in loops]
-    return _made(native("fill_hole").fill_hole, at, [indices], progress, options)
+    return _made(native("fill_hole").fill_hole, at, [indices], progress, options, no_patch=NO_PATCH)
 
 
 def _made(
@@ -152,8 +152,13 @@ def _made(
     loops: Sequence[Any],
     progress: Progress | None,
     options: dict[str, Any],
+    *,
+    no_patch: str = "",
 ) -> Filled | str:
-    """The patch that a function of the module makes, or the reason why there is none."""
+    """The patch that a function of the module makes, or the reason why there is none.
+
+    no_patch : said where the module finds none; empty: what the module says.
+    """
     gridmesh = native()
     try:
         with cancelling(gridmesh):
@@ -162,7 +167,7 @@ def _made(
             )
             return _filled(gridmesh, made, at, progress)
     except gridmesh.GridMeshError as error:
-        return NO_PATCH if error.kind == "no_patch" and len(loops) == 1 else str(error)
+        return no_patch if no_patch and error.kind == "no_patch" else str(error)
 
 
 def _filled(gridmesh: Any, fill: Any, at: Snapshot, progress: Progress | None) -> Filled | str:

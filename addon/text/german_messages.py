@@ -897,6 +897,7 @@ _LIBRARY_PARTS = {
     "an edge has its ends on the wrong sides": "eine Kante hat ihre Enden auf den falschen Seiten",
     "an edge of a face is missing": "eine Kante einer Fläche fehlt",
     "an inlet is narrower than the grid": "eine Bucht ist schmaler als das Gitter",
+    "every cap of quads repeats an edge of the mesh": "jeder Deckel aus Vierecken wiederholt eine Kante des Meshs",
     "cut lines touch each other": "Schnittlinien berühren sich",
     "edge {} of the loop passes through another vertex": (
         "Kante {0} der Schleife geht durch einen anderen Punkt"

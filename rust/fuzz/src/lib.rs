@@ -96,7 +96,8 @@ pub fn regrid(data: &[u8]) {
     let before = check_mesh(vertices.len(), &triangles);
     whole.extend(&done.fill.triangles);
     let after = check_mesh(vertices.len() + done.fill.vertices.len(), &whole);
-    assert_eq!(before.boundary_edges, after.boundary_edges);
+    // Where more than two triangles meet in an edge of the region, those outside are left with open edges.
+    assert!(before.bad_edges > 0 || before.boundary_edges == after.boundary_edges);
     assert!(after.bad_edges <= before.bad_edges && done.off.is_finite());
 }
 

@@ -46,7 +46,7 @@ use crate::{arrays, reports};
 ///     less ("reduced_caps" in the report).
 /// cells : {"triangles", "quads"}
 ///     What caps are made of. A cap of quads has one triangle if its line, with those of its holes, has an odd number of
-///     edges; a cap with three loops or more may have one for each polygon that it is opened to.
+///     edges.
 /// extend_ends : bool
 ///     True continues the ends of an open stroke to infinity. False continues them only as far as the part of the mesh
 ///     that the stroke itself crosses: cut lines that it does not meet stay whole, and parts of the mesh

@@ -2,7 +2,7 @@
 //!
 //! [`cut`] does it all. The stroke and the surface that it sweeps are a `sheet::Sheet`; `locate` finds the
 //! faces it meets, `cross` where it meets their edges, `split` divides them, `rim` makes the edges along
-//! the cut even, `loops` and `regions` find what is to be capped, `cap` and `bridge` cap it, `pieces` puts the pieces
+//! the cut even, `loops` and `regions` find what is to be capped, `cap`, `ring` and `bridge` cap it, `pieces` puts the pieces
 //! together; `attempt` is one way through these stages, `retry` says which ways are tried.
 
 mod attempt;
@@ -61,7 +61,7 @@ pub struct Cut {
 /// stroke, what is within a hundredth of it counts as straight.
 ///
 /// Caps lie on the swept surface (with [`Smooth::Flat`](crate::fill::Smooth)), both pieces get the same vertices and
-/// triangles, the right one's wound the other way. Cut lines that are not closed, because the mesh is not, get no
+/// faces, the right one's wound the other way. Cut lines that are not closed, because the mesh is not, get no
 /// cap. Linear in the size of the mesh, all but one pass local to the cut; the same input gives the same output
 /// for any number of threads.
 ///

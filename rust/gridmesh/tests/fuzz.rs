@@ -82,6 +82,17 @@ fn pictures_keep_their_promises() {
     run(targets::picture, 1500);
 }
 
+/// A third triangle at an edge inside the region.
+#[test]
+fn what_hangs_on_a_region_keeps_its_edges_open() {
+    targets::regrid(&[
+        10, 251, 255, 232, 93, 232, 232, 247, 255, 255, 255, 191, 255, 78, 255, 255, 255, 255, 255, 36, 255,
+        255, 255, 255, 255, 255, 255, 255, 255, 127, 255, 255, 255, 93, 255, 255, 8, 10, 1, 7, 170, 170, 170,
+        255, 247, 255, 255, 255, 191, 255, 78, 255, 1, 0, 0, 3, 36, 255, 255, 255, 255, 255, 255, 255, 255,
+        255, 127, 255, 255, 255, 93, 170, 170, 232, 232, 251, 55, 255, 255, 255, 232,
+    ]);
+}
+
 /// A place around the axis of a tube that rounding put before the first vertex of a loop.
 #[test]
 fn a_vertex_at_the_seam_of_a_tube_is_found() {

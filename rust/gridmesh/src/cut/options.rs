@@ -72,7 +72,7 @@ pub struct CutOptions {
     pub gap: f64,
     /// How caps continue the surface.
     pub smooth: Smooth,
-    /// The faces of caps. Of quads, one for each polygon with an odd number of edges is a triangle.
+    /// The faces of caps. A cap of quads has one triangle if its lines have an odd number of edges in sum.
     pub cells: CellShape,
     /// Continue the ends of an open stroke to infinity. Otherwise they are continued as far as the part of the
     /// mesh that the stroke itself crosses: only those cut lines are cut that it meets, and others around the

@@ -19,7 +19,7 @@ pub struct CutReport {
     pub rings: usize,
     /// Vertices doubled because a piece would touch itself there.
     pub pinched: usize,
-    /// Triangles of the caps of one piece; with quads one for each polygon with an odd number of edges.
+    /// Triangles of the caps of one piece; with quads one for each cap whose lines have an odd number of edges in sum.
     pub cap_triangles: usize,
     /// Quads of the caps of one piece.
     pub cap_quads: usize,
@@ -60,10 +60,12 @@ impl CutReport {
         self.caps += other.caps;
         self.rings += other.rings;
         self.pinched += other.pinched;
-        let triangles = (self.cap_triangles + other.cap_triangles).max(1) as f64;
-        self.cap_radius_ratio = (self.cap_radius_ratio * self.cap_triangles as f64
-            + other.cap_radius_ratio * other.cap_triangles as f64)
-            / triangles;
+        let triangles = self.cap_triangles + other.cap_triangles;
+        if triangles > 0 {
+            self.cap_radius_ratio = (self.cap_radius_ratio * self.cap_triangles as f64
+                + other.cap_radius_ratio * other.cap_triangles as f64)
+                / triangles as f64;
+        }
         self.cap_triangles += other.cap_triangles;
         self.cap_quads += other.cap_quads;
         self.cap_vertices += other.cap_vertices;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use gridmesh::cut::{CutOptions, Keep, Piece, Polygons, Sweep};
+use gridmesh::cut::{CutOptions, Keep, Mirror, Piece, Polygons, Sweep};
 use gridmesh::fill::Smooth;
 use gridmesh::options::CellShape;
 
@@ -101,4 +101,73 @@ fn what_is_kept_alone_has_the_cap_of_both() {
     let left = ball(12).cut(&stroke, &left).unwrap();
     assert_eq!(left.pieces[0].corners, both.pieces[0].corners);
     assert!(left.report.cap_quads > 20);
+}
+
+/// A ball with small balls cut out of it at these places, as (x, y, radius).
+fn hollow(cavities: &[[f64; 3]]) -> Mesh {
+    let mut whole = ball(16);
+    for &[x, y, radius] in cavities {
+        let small = ball(8);
+        let n = whole.0.len() as u32;
+        whole.0.extend(small.0.iter().map(|p| radius * *p + DVec3::new(x, 0.0, y)));
+        for face in small.faces().iter() {
+            whole.1.extend(face.iter().rev().map(|v| v + n));
+            whole.2.push(whole.1.len() as u32);
+        }
+    }
+    whole
+}
+
+#[test]
+fn caps_with_several_holes_or_one_aside_have_one_triangle_at_most() {
+    let stroke = [DVec3::new(-3.0, 0.01, 0.0), DVec3::new(3.0, 0.02, 0.0)];
+    let aside = [0.55, 0.1, 0.2];
+    for cavities in
+        [vec![aside], vec![aside, [-0.4, 0.0, 0.3]], vec![aside, [-0.4, 0.3, 0.25], [-0.3, -0.4, 0.2]]]
+    {
+        for length in [0.06, 0.08, 0.1, 0.12] {
+            let cut = hollow(&cavities).cut(&stroke, &options(Some(length), Smooth::Flat)).unwrap();
+            assert_eq!((cut.report.caps, cut.report.rings), (1, 1));
+            assert_eq!(cut.pieces.iter().find_map(open_edge), None);
+            let edges = cut.pieces[0].cap_loops.iter().map(Vec::len).sum::<usize>();
+            assert_eq!(cut.report.cap_triangles, edges % 2, "{cavities:?} {length}");
+        }
+    }
+}
+
+#[test]
+fn a_ring_closed_along_a_plane_of_symmetry_has_sources_in_the_mesh() {
+    let whole = hollow(&[]);
+    let half = CutOptions { keep: Keep::Right, cap: false, ..options(None, Smooth::Flat) };
+    let across = [DVec3::new(0.0, -3.0, 0.0), DVec3::new(0.0, 3.0, 0.0)];
+    let half = whole.cut(&across, &half).unwrap().pieces.remove(0);
+    let n = half.vertices.len() as u32;
+    let small = ball(8);
+    let mut mesh = Mesh(half.vertices, half.corners, half.offsets);
+    let side = mesh.0.iter().map(|p| p.x).sum::<f64>().signum();
+    mesh.0.extend(small.0.iter().map(|p| 0.15 * *p + DVec3::new(0.4 * side, 0.0, 0.0)));
+    for face in small.faces().iter() {
+        mesh.1.extend(face.iter().rev().map(|v| v + n));
+        mesh.2.push(mesh.1.len() as u32);
+    }
+    let mirrors = vec![Mirror { point: DVec3::ZERO, normal: DVec3::X, within: 1e-9 }];
+    let stroke = [DVec3::new(-3.0, 0.01, 0.0), DVec3::new(3.0, 0.02, 0.0)];
+    for cells in [CellShape::Triangle, CellShape::Quad] {
+        let options = CutOptions { cells, mirrors: mirrors.clone(), ..options(Some(0.08), Smooth::Flat) };
+        let cut = mesh.cut(&stroke, &options).unwrap();
+        assert_eq!(cut.report.rings, 1);
+        for piece in &cut.pieces {
+            let sources = piece.source_vertices.iter().flatten();
+            assert!(sources.max().is_some_and(|&v| (v as usize) < mesh.0.len()), "{cells:?}");
+        }
+    }
+}
+
+#[test]
+fn a_gap_between_caps_of_quads_leaves_their_ratio_at_one() {
+    let stroke = [DVec3::new(-3.0, 0.1, 0.0), DVec3::new(3.0, 0.1, 0.0)];
+    let options = CutOptions { gap: 0.2, ..options(Some(0.2), Smooth::Flat) };
+    let report = ball(16).cut(&stroke, &options).unwrap().report;
+    assert!(report.cap_quads > 0);
+    assert!(report.cap_triangles > 0 || report.cap_radius_ratio == 1.0, "{report:?}");
 }

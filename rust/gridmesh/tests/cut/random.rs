@@ -234,8 +234,8 @@ fn wrong_caps(case: &Case, cut: &Cut) -> Option<String> {
         return Some(format!("{whole:?} faces in the caps, {report:?}"));
     }
     match case.quads {
-        // A ring is opened to two polygons or more, each of which may have a triangle.
-        true if report.rings == 0 && report.cap_triangles > report.caps => {
+        // A cap made in a simpler way may be several polygons.
+        true if report.repeated == 0 && report.cap_triangles > report.caps => {
             Some(format!("{} triangles", report.cap_triangles))
         }
         false if report.cap_quads > 0 => Some(format!("{} quads", report.cap_quads)),

@@ -99,9 +99,9 @@ impl Bridges<'_> {
             let over = self.bridge(&outline, from, &hole, to, 0);
             Bridge { from, to, over }
         });
-        let apart =
+        let divided =
             |one: &Bridge, two: &Bridge| [walk(&outline, &hole, two, one), walk(&outline, &hole, one, two)];
-        let mut halves = apart(&one, &two);
+        let mut halves = divided(&one, &two);
         let mut shares = [vec![], vec![]];
         for other in holes {
             let k = usize::from(!is_within(&halves[0], other[0].at));
@@ -110,7 +110,7 @@ impl Bridges<'_> {
         if self.even && [0, 1].map(|k| is_odd(&halves[k], &shares[k])) == [true; 2] {
             self.spots.truncate(self.spots.len() - two.over.len());
             two.over = self.bridge(&outline, two.from, &hole, two.to, 1);
-            halves = apart(&one, &two);
+            halves = divided(&one, &two);
         }
         for (half, share) in halves.into_iter().zip(shares) {
             self.open_sheet(half, share, pieces)?;

@@ -52,7 +52,9 @@ impl Capper<'_> {
         let options = FillOptions { smooth, cells, ..FillOptions::default() };
         let fill = match fill_hole(&positions, &around, &nodes, &options, progress) {
             // What is filled in space is held to more than what is filled in the unrolled surface.
-            Err(Error::ZeroLengthEdge { .. } | Error::SelfTouching { .. }) => return Ok(Bulged::Flat),
+            Err(Error::ZeroLengthEdge { .. } | Error::SelfTouching { .. } | Error::NoPatch { .. }) => {
+                return Ok(Bulged::Flat);
+            }
             fill => fill?,
         };
         let place: FxHashMap<u32, usize> = nodes.iter().enumerate().map(|(k, &v)| (v, k)).collect();

@@ -49,7 +49,7 @@ pub(in crate::cut) fn close(
     let report = &mut tally.report;
     report.uncapped = found.uncapped;
     report.caps = found.regions.len();
-    let (mut polygons, mut bulging) = (vec![], vec![]);
+    let (mut polygons, mut bulging, mut rings) = (vec![], vec![], vec![]);
     for region in found.regions {
         match region {
             Region::Sheet { outline, holes } if holes.is_empty() => {
@@ -63,6 +63,7 @@ pub(in crate::cut) fn close(
                     Some(patch) => {
                         report.rings += 1;
                         capper.roll_up(&ring, &patch, found.inverted, progress.part(0.0, 0.0))?;
+                        rings.push(ring);
                     }
                     None => {
                         polygons.extend(open_ring(&mut capper, Region::Sheet { outline, holes }, report)?)
@@ -87,7 +88,7 @@ pub(in crate::cut) fn close(
         report.folded += usize::from(plan.folded);
         capper.roll_up(outline, &plan, found.inverted, progress)?;
     }
-    capper.name_sources(&polygons);
+    capper.name_sources(polygons.iter().chain(&rings).flatten());
     progress.report(1.0)?;
     capper.prove()?;
     progress.report(1.0)?;

@@ -141,7 +141,15 @@ impl Capper<'_> {
         let own = facet(polygon.iter().map(|s| s.node));
         let single = own.is_none_or(|own| !self.facets.contains(&own));
         if self.cutting.options.cells == CellShape::Quad {
-            return fill_flat_quads(&flat, &vec![2.0; n], &taken, single, progress);
+            return fill_flat_quads(&flat, &vec![2.0; n], &taken, single, progress).map_err(
+                |err| match err {
+                    Error::NoPatch { .. } => {
+                        let at = self.sheet.lift(polygon[0].at.x, polygon[0].at.y).into();
+                        Error::CutFailed { reason: "every cap of quads repeats an edge of the mesh", at }
+                    }
+                    other => other,
+                },
+            );
         }
         let mut options = FlatOptions { single, ..FlatOptions::default() };
         if n > LARGE {
@@ -206,11 +214,11 @@ impl Capper<'_> {
     }
 
     /// Gives vertices of bridges, and those next to them, the sources of the nearest vertices of the cut.
-    pub(crate) fn name_sources(&mut self, polygons: &[Vec<Spot>]) {
+    pub(crate) fn name_sources<'s>(&mut self, rims: impl Iterator<Item = &'s Spot>) {
         if self.caps.vertices.iter().all(|node| node.source[0] != u32::MAX) {
             return;
         }
-        let known = polygons.iter().flatten().filter(|s| s.node < self.first);
+        let known = rims.filter(|s| s.node < self.first);
         let place = |s: &Spot| {
             let p = self.parted.position(self.cutting.vertices, s.node);
             GeomWithData::new(p.to_array(), s.node)
@@ -306,7 +314,8 @@ fn least_corner(face: &[u32], position: impl Fn(u32) -> DVec3) -> f64 {
     let n = face.len();
     let corner = |k: usize| {
         let [before, here, after] = [k + n - 1, k, k + 1].map(|k| position(face[k % n]));
-        (before - here).angle_between(after - here)
+        let (back, ahead) = (before - here, after - here);
+        back.cross(ahead).length().atan2(back.dot(ahead))
     };
     (0..n).map(corner).fold(f64::INFINITY, f64::min)
 }

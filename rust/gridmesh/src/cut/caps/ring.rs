@@ -15,7 +15,11 @@ use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Edges of both loops up to which a tube is tried: it takes longer than polygons do.
-const MOST: usize = 2000;
+const MOST: usize = 1000;
+
+/// How many times as long as the shortest edge the longest one may be where the rim is as the mesh divides it: what is uneven has no
+/// good tube.
+const UNEVEN: f64 = 4.0;
 
 /// Least corners, in degrees, of triangles and of quads that are good enough. Where a hole lies far from the middle, polygons have
 /// better ones.
@@ -25,21 +29,29 @@ impl Capper<'_> {
     /// A patch between an outline, counter-clockwise, and the hole in it, the vertices of which are those of `ring`: of the outline
     /// first, of which there are `n`. `None` where polygons are better.
     pub(crate) fn ring(&self, ring: &[Spot], n: usize, progress: Progress<'_>) -> Result<Option<FlatFill>> {
-        if ring.len() > MOST {
-            return Ok(None);
-        }
         let roll = Roll::new(self.sheet, ring);
         let flat = ring.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
+        let is_even =
+            self.cutting.options.edge_length.is_some() || !(is_uneven(&flat[..n]) || is_uneven(&flat[n..]));
+        if ring.len() > MOST || !is_even {
+            return Ok(None);
+        }
         let vertices = flat.iter().map(|p| p.extend(0.0)).collect::<Vec<_>>();
         let names = (0..ring.len() as u32).collect::<Vec<_>>();
         let cells = self.cutting.options.cells;
         let options = BridgeOptions { smooth: Smooth::Flat, cells, ..BridgeOptions::default() };
         let (outline, hole) = names.split_at(n);
         let fill = match bridge(&vertices, &[], outline, hole, &options, progress) {
-            Err(Error::Cancelled) => return Err(Error::Cancelled),
-            // What a tube does not suit has polygons.
-            Err(_) => return Ok(None),
-            Ok(fill) => fill,
+            // Where there is no tube there are polygons.
+            Err(
+                Error::ZeroLengthEdge { .. }
+                | Error::SelfTouching { .. }
+                | Error::NoPatch { .. }
+                | Error::TooLarge { .. }
+                | Error::ExtremeSize { .. }
+                | Error::Solver { .. },
+            ) => return Ok(None),
+            fill => fill?,
         };
         let interior = fill.vertices.iter().map(|p| p.truncate()).collect::<Vec<DVec2>>();
         let triangles = fill.facets();
@@ -74,6 +86,13 @@ impl Capper<'_> {
         patch.quads().any(|q| sides(&q).any(is_taken))
             || patch.single().iter().any(|t| sides(t).any(is_taken))
     }
+}
+
+/// Whether the edges of a loop differ much in length.
+fn is_uneven(loop_: &[DVec2]) -> bool {
+    let lengths = loop_.iter().zip(loop_.iter().cycle().skip(1)).map(|(p, q)| p.distance(*q));
+    let (least, most) = lengths.fold((f64::INFINITY, 0.0f64), |(least, most), l| (least.min(l), most.max(l)));
+    most > UNEVEN * least
 }
 
 /// Whether all corners of the faces turn to the left.

@@ -75,7 +75,7 @@ impl Contest<'_> {
                 self.enter(vec![], &Cells::face(n), Method::NoInterior)?;
             }
             if n == 3 || !self.is_good() {
-                if self.best.is_none() {
+                if !self.is_good() {
                     self.place(&Cells::of(&Plan::ring(n)), Method::Optimal, progress)?;
                 }
                 return Ok(());

@@ -16,7 +16,7 @@ const MOST: f64 = 135.0;
 const POLE: f64 = 0.22;
 
 /// What a quad costs that has an edge of the mesh from corner to corner: it lies on a face, and cut in two it may repeat that edge.
-const LYING: f64 = 1.0;
+const LYING: f64 = 2.0;
 
 /// What a quad too much or too few at each loop vertex costs.
 const EXCESS: f64 = 0.6;

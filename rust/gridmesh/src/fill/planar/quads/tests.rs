@@ -80,6 +80,15 @@ fn circles_of_any_number_of_edges_are_filled() {
 }
 
 #[test]
+fn a_square_with_an_edge_of_the_mesh_across_is_no_single_quad() {
+    for across in [(0, 2), (1, 3)] {
+        let made = fill(&rectangle(1, 1), &|i, j| (i, j) == across, true);
+        assert!(!made.interior.is_empty() && !made.folded);
+    }
+    assert!(fill(&rectangle(1, 1), &|_, _| false, true).interior.is_empty());
+}
+
+#[test]
 fn a_rectangle_is_a_grid() {
     for (w, h) in [(1, 1), (3, 1), (5, 4), (9, 2)] {
         let polygon = rectangle(w, h);
