@@ -244,6 +244,19 @@ def test_cut_closes_both_sides(tmp_path):
     assert volumes[1] < volumes[2]
 
 
+def test_caps_of_cuts_are_quads_where_asked(tmp_path):
+    ball(opened=False)
+    path = save(tmp_path / "ball.blend")
+    words = ["--stroke", json.dumps(ACROSS), "--edge-length", "0.2", "--keep", "left", "--cells", "quads"]
+    ran = run("cut", path, "-o", tmp_path / "cut.blend", *words)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert result["quads"] > 10
+    assert result["triangles"] <= 1
+    (left,) = load(tmp_path / "cut.blend").values()
+    assert not open_edges(left)
+
+
 def test_all_meshes_of_a_file_become_one(tmp_path):
     ball("Body", opened=False)
     ball("Head", z=1.3, opened=False)

@@ -8,18 +8,19 @@ from drawings import activate, uv_of, vertices
 from holes import edit, leave
 
 SLANTED = line((-3, 0, -0.1), (3, 0, 0.35), 30, wave=0.08)
-LENGTHS = [0.0, 0.12]
-"""Exact, and with the rim rebuilt."""
 OFF = {0.0: 1e-4, 0.12: 0.02}
-"""How far values may be off where the rim is rebuilt on chords of the cylinder."""
+"""By edge length how far values may be off: where the rim is rebuilt it lies on chords of the cylinder."""
 
 
-@pytest.fixture(params=LENGTHS, ids=["exact", "even"])
+@pytest.fixture(
+    params=[(0.0, "TRIANGLES"), (0.12, "TRIANGLES"), (0.12, "QUADS")], ids=["exact", "even", "quads"]
+)
 def pieces(request):
-    found = cut(rich_cylinder(), SLANTED, edge_length=request.param)
+    length, cells = request.param
+    found = cut(rich_cylinder(), SLANTED, edge_length=length, cells=cells)
     for piece in found:
         check_sound(piece)
-    return found, OFF[request.param]
+    return found, OFF[length]
 
 
 def share(ob):
