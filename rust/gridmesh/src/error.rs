@@ -1,10 +1,11 @@
 //! What can go wrong, said so that the caller can mend it.
 
+mod kind;
+mod needed;
 mod words;
 
-use std::fmt;
-
-use self::words::not_symmetric;
+pub use self::needed::Needed;
+use self::words::{not_symmetric, too_coarse};
 pub(crate) use self::words::{told, told_all};
 
 /// Result with [`Error`].
@@ -419,77 +420,4 @@ pub enum Error {
         /// Its column, from the left.
         column: usize,
     },
-}
-
-/// What is known of the number of triangles that a drawing needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Needed {
-    /// This number works, and none that is a tenth smaller was found to.
-    Least(usize),
-    /// Numbers up to this one were tried, and none of them works.
-    MoreThan(usize),
-    /// It was not searched for.
-    Unknown,
-}
-
-impl Error {
-    /// A stable word for each kind of error, for programs.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Error::NotFinite { .. } => "not_finite",
-            Error::ExtremeSize { .. } => "extreme_size",
-            Error::TooFewPoints { .. } => "too_few_points",
-            Error::ZeroArea { .. } => "zero_area",
-            Error::SelfIntersecting { .. } => "self_intersecting",
-            Error::Disconnected { .. } => "disconnected",
-            Error::HoleMisplaced { .. } => "hole_misplaced",
-            Error::NotSymmetric { .. } => "not_symmetric",
-            Error::InvalidOption { .. } => "invalid_option",
-            Error::TooCoarse { .. } => "too_coarse",
-            Error::TooLarge { .. } => "too_large",
-            Error::NoPatch { .. } => "no_patch",
-            Error::Solver { .. } => "solver",
-            Error::Cancelled => "cancelled",
-            Error::Inverted { .. } => "inverted",
-            Error::Internal { .. } => "internal",
-            Error::IndexOutOfRange { .. } => "index_out_of_range",
-            Error::RepeatedVertex { .. } => "repeated_vertex",
-            Error::FigureEight { .. } => "figure_eight",
-            Error::Branching { .. } => "branching",
-            Error::OpenChain { .. } => "open_chain",
-            Error::ZeroLengthEdge { .. } => "zero_length_edge",
-            Error::SelfTouching { .. } => "self_touching",
-            Error::FacesOnBothSides { .. } => "faces_on_both_sides",
-            Error::NonManifold { .. } => "non_manifold",
-            Error::SharedEdge { .. } => "shared_edge",
-            Error::FillIntersects { .. } => "fill_intersects",
-            Error::NotADisk { .. } => "not_a_disk",
-            Error::InvalidFace { .. } => "invalid_face",
-            Error::StrokeTooShort { .. } => "stroke_too_short",
-            Error::StrokeMisses => "stroke_misses",
-            Error::BehindEye { .. } => "behind_eye",
-            Error::CutFailed { .. } => "cut_failed",
-            Error::StillJoined { .. } => "still_joined",
-            Error::NotClosed { .. } => "not_closed",
-            Error::JoinFailed { .. } => "join_failed",
-            Error::JoinIntersects { .. } => "join_intersects",
-            Error::PictureSize { .. } => "picture_size",
-            Error::PictureFormat { .. } => "picture_format",
-            Error::PixelNotFinite { .. } => "not_finite",
-        }
-    }
-}
-
-fn too_coarse(triangles: &usize, cells: &str, needed: &Needed, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-    match cells {
-        "quads" => write!(f, "{triangles} quads are too few to follow this drawing; ")?,
-        _ => write!(f, "{triangles} triangles are too few to follow this drawing; ")?,
-    }
-    match needed {
-        Needed::Least(least) => write!(f, "{least} work (or a smaller edge length)"),
-        Needed::MoreThan(tried) => {
-            write!(f, "none that work were found up to {tried}, use more or draw its thin parts wider")
-        }
-        Needed::Unknown => write!(f, "use more (or a smaller edge length)"),
-    }
 }

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::needed::Needed;
+
 pub(super) fn not_symmetric(
     what: &str,
     distance: &f64,
@@ -23,6 +25,25 @@ pub(super) fn not_symmetric(
              allowed: {allowed:.3e} (2 % of the drawing's size, 1.5 edge lengths); give another axis, \
              or mesh it without mirror"
         )
+    }
+}
+
+pub(super) fn too_coarse(
+    triangles: &usize,
+    cells: &str,
+    needed: &Needed,
+    f: &mut fmt::Formatter<'_>,
+) -> fmt::Result {
+    match cells {
+        "quads" => write!(f, "{triangles} quads are too few to follow this drawing; ")?,
+        _ => write!(f, "{triangles} triangles are too few to follow this drawing; ")?,
+    }
+    match needed {
+        Needed::Least(least) => write!(f, "{least} work (or a smaller edge length)"),
+        Needed::MoreThan(tried) => {
+            write!(f, "none that work were found up to {tried}, use more or draw its thin parts wider")
+        }
+        Needed::Unknown => write!(f, "use more (or a smaller edge length)"),
     }
 }
 

@@ -79,7 +79,7 @@ impl Task<'_> {
         // A face that the mesh has already is filled with others.
         let single = !self.taken.face;
         let here = progress.part(0.0, 0.6);
-        let patch = match self.job.options.cells {
+        let made = match self.job.options.cells {
             CellShape::Triangle => {
                 let options = FlatOptions { single, ..FlatOptions::default() };
                 fill_flat(&unrolled.points, &wanted(loop_, self.rim, polygons), &is_taken, &options, here)?
@@ -88,7 +88,7 @@ impl Task<'_> {
                 fill_flat_quads(&unrolled.points, &room(loop_, self.rim, polygons), &is_taken, single, here)?
             }
         };
-        if patch.quality.repeated > 0 {
+        if made.quality.repeated > 0 {
             return Err(Error::NoPatch {
                 reason: "every patch repeats an edge of the mesh".into(),
                 at: self.job.vertices[loop_[0] as usize].truncate().to_array(),
@@ -98,14 +98,14 @@ impl Task<'_> {
         progress.report(0.6)?;
 
         let rings = if smooth == Smooth::Curvature { 2 } else { 1 };
-        let work = Patchwork::new(loop_, patch.interior.len(), &patch.triangles, self.rim, rings)?;
-        let work = work.of_quads(patch.quads);
+        let work = Patchwork::new(loop_, made.patch.interior.len(), &made.patch.triangles, self.rim, rings)?;
+        let work = work.of_quads(made.patch.quads);
         let shape = Shape {
             work,
             loop_: loop_.clone(),
             reversed: self.checked.reversed,
             bridged: vec![],
-            flat: [unrolled.points.as_slice(), &patch.interior].concat(),
+            flat: [unrolled.points.as_slice(), &made.patch.interior].concat(),
             smooth,
             vertices: self.job.vertices.len(),
             positions: vec![],
@@ -113,7 +113,7 @@ impl Task<'_> {
         };
         let solved = shape.solve(self.job.vertices, progress.part(0.6, 1.0))?;
         clock.stage("fair");
-        Ok(Attempt { unrolled, patch, shape, solved })
+        Ok(Attempt { unrolled, patch: made, shape, solved })
     }
 
     /// See [`outside`].

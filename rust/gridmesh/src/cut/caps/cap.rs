@@ -57,20 +57,16 @@ pub(in crate::cut) fn close(
                 let is_flat = cutting.options.smooth == Smooth::Flat || is_seamed;
                 if is_flat { &mut polygons } else { &mut bulging }.push(outline);
             }
-            Region::Sheet { outline, holes } if holes.len() == 1 => {
-                let ring = [&outline[..], &holes[0]].concat();
-                match capper.ring(&ring, outline.len(), progress.part(0.0, 0.0))? {
-                    Some(patch) => {
-                        report.rings += 1;
-                        capper.roll_up(&ring, &patch, found.inverted, progress.part(0.0, 0.0))?;
-                        rings.push(ring);
+            ring => {
+                report.rings += 1;
+                match capper.ring(&ring, progress.part(0.0, 0.0))? {
+                    Some((rim, patch)) => {
+                        capper.roll_up(&rim, &patch, found.inverted, progress.part(0.0, 0.0))?;
+                        rings.push(rim);
                     }
-                    None => {
-                        polygons.extend(open_ring(&mut capper, Region::Sheet { outline, holes }, report)?)
-                    }
+                    None => polygons.extend(opened(&mut capper, ring, report)?),
                 }
             }
-            ring => polygons.extend(open_ring(&mut capper, ring, report)?),
         }
     }
     fill_flat(&mut capper, &polygons, found.inverted, report, progress.part(0.0, 0.5))?;
@@ -86,7 +82,7 @@ pub(in crate::cut) fn close(
         }
         let plan = capper.plan(outline, progress.part(1.0, 1.0))?;
         report.folded += usize::from(plan.folded);
-        capper.roll_up(outline, &plan, found.inverted, progress)?;
+        capper.roll_up(outline, &plan.patch, found.inverted, progress)?;
     }
     capper.name_sources(polygons.iter().chain(&rings).flatten());
     progress.report(1.0)?;
@@ -97,8 +93,7 @@ pub(in crate::cut) fn close(
 }
 
 /// Simple polygons that cover a region with holes, or one around a closed sheet.
-fn open_ring(capper: &mut Capper<'_>, region: Region, report: &mut CutReport) -> Result<Vec<Vec<Spot>>> {
-    report.rings += 1;
+fn opened(capper: &mut Capper<'_>, region: Region, report: &mut CutReport) -> Result<Vec<Vec<Spot>>> {
     let alone: Vec<Vec<Spot>> = match &region {
         Region::Sheet { outline, holes } => std::iter::once(outline).chain(holes).cloned().collect(),
         Region::Tube { .. } => vec![],
@@ -159,11 +154,11 @@ fn fill_flat(
         };
         for (polygon, plan) in batch.iter().zip(plans) {
             let mut plan = plan?;
-            if capper.repeats(polygon, &plan) {
+            if capper.repeats(&[polygon], &plan.patch) {
                 plan = capper.plan(polygon, progress.part(0.0, 0.0))?;
             }
             report.folded += usize::from(plan.folded);
-            capper.roll_up(polygon, &plan, inverted, here)?;
+            capper.roll_up(polygon, &plan.patch, inverted, here)?;
         }
     }
     Ok(())

@@ -17,7 +17,7 @@ use crate::cut::report::Tally;
 use crate::cut::sheet::Sheet;
 use crate::cut::sheet::roll::Roll;
 use crate::error::{Error, Result};
-use crate::fill::planar::flat::{FlatFill, FlatOptions, fill_flat};
+use crate::fill::planar::flat::{FlatFill, FlatOptions, FlatPatch, fill_flat};
 use crate::fill::planar::quads::fill_flat_quads;
 use crate::options::CellShape;
 use crate::progress::Progress;
@@ -62,7 +62,7 @@ pub(in crate::cut) struct Capper<'a> {
     pub cutting: Cutting<'a>,
     pub parted: &'a Parted,
     pub(crate) sheet: &'a Sheet,
-    /// Edges between vertices of the cut that are there already, and triangles.
+    /// Edges between vertices of the cut that are there already, and facets.
     pub edges: FxHashSet<(u32, u32)>,
     pub(crate) facets: FxHashSet<Facet>,
     /// Number of the first new vertex.
@@ -87,7 +87,7 @@ fn facet(corners: impl ExactSizeIterator<Item = u32>) -> Option<Facet> {
 }
 
 /// The edges of a face.
-pub(in crate::cut) fn sides(face: &[u32]) -> impl Iterator<Item = (u32, u32)> {
+fn sides(face: &[u32]) -> impl Iterator<Item = (u32, u32)> {
     (0..face.len()).map(|k| key(face[k], face[(k + 1) % face.len()]))
 }
 
@@ -97,7 +97,7 @@ pub(in crate::cut) fn key(a: u32, b: u32) -> (u32, u32) {
 }
 
 impl Capper<'_> {
-    /// Notes which edges and triangles between vertices of the cut exist.
+    /// Notes which edges and facets between vertices of the cut exist.
     pub(crate) fn reserve(&mut self) {
         let on_cut = self.parted.on_cut();
         let mut note = |corners: &[u32]| {
@@ -106,12 +106,7 @@ impl Capper<'_> {
             if on < 2 {
                 return;
             }
-            for k in 0..n {
-                let (a, b) = (corners[k], corners[(k + 1) % n]);
-                if on_cut[a as usize] && on_cut[b as usize] {
-                    self.edges.insert((a.min(b), a.max(b)));
-                }
-            }
+            self.edges.extend(sides(corners).filter(|&(a, b)| on_cut[a as usize] && on_cut[b as usize]));
             if on == n {
                 self.facets.extend(facet(corners.iter().copied()));
             }
@@ -141,15 +136,14 @@ impl Capper<'_> {
         let own = facet(polygon.iter().map(|s| s.node));
         let single = own.is_none_or(|own| !self.facets.contains(&own));
         if self.cutting.options.cells == CellShape::Quad {
-            return fill_flat_quads(&flat, &vec![2.0; n], &taken, single, progress).map_err(
-                |err| match err {
-                    Error::NoPatch { .. } => {
-                        let at = self.sheet.lift(polygon[0].at.x, polygon[0].at.y).into();
-                        Error::CutFailed { reason: "every cap of quads repeats an edge of the mesh", at }
-                    }
-                    other => other,
-                },
-            );
+            let filled = fill_flat_quads(&flat, &vec![2.0; n], &taken, single, progress);
+            return filled.map_err(|err| match err {
+                Error::NoPatch { .. } => {
+                    let at = self.sheet.lift(polygon[0].at.x, polygon[0].at.y).into();
+                    Error::CutFailed { reason: "every cap of quads repeats an edge of the mesh", at }
+                }
+                other => other,
+            });
         }
         let mut options = FlatOptions { single, ..FlatOptions::default() };
         if n > LARGE {
@@ -161,38 +155,40 @@ impl Capper<'_> {
         fill_flat(&flat, &vec![4; n], &taken, &options, progress)
     }
 
-    /// True if a patch has an edge across its polygon that exists by now.
-    pub(crate) fn repeats(&self, polygon: &[Spot], patch: &FlatFill) -> bool {
-        let n = polygon.len();
-        let is_taken = |(a, b): (u32, u32)| {
+    /// True if a patch has an edge across it that exists by now. `rims`: its loops, in the order of its vertices.
+    pub(crate) fn repeats(&self, rims: &[&[Spot]], patch: &FlatPatch) -> bool {
+        let spots = rims.concat();
+        let follows = |rim: &&[Spot]| (1..=rim.len()).map(|k| k % rim.len()).collect::<Vec<_>>();
+        let starts = rims.iter().scan(0, |end, rim| Some(std::mem::replace(end, *end + rim.len())));
+        let next = starts.zip(rims).flat_map(|(start, rim)| follows(rim).into_iter().map(move |k| start + k));
+        let next = next.collect::<Vec<_>>();
+        patch.sides().any(|[a, b]| {
             let (i, j) = (a as usize, b as usize);
-            let (Some(p), Some(q)) = (polygon.get(i), polygon.get(j)) else { return false };
-            j - i > 1 && j - i < n - 1 && self.edges.contains(&key(p.node, q.node))
-        };
-        patch.quads().any(|q| sides(&q).any(is_taken))
-            || patch.single().iter().any(|t| sides(t).any(is_taken))
+            let (Some(p), Some(q)) = (spots.get(i), spots.get(j)) else { return false };
+            next[i] != j && next[j] != i && self.edges.contains(&key(p.node, q.node))
+        })
     }
 
-    /// Makes vertices and triangles of a patch.
+    /// Makes vertices and faces of a patch. `rim`: its loops, one after the other.
     pub(crate) fn roll_up(
         &mut self,
-        polygon: &[Spot],
-        patch: &FlatFill,
+        rim: &[Spot],
+        patch: &FlatPatch,
         inverted: bool,
         progress: Progress<'_>,
     ) -> Result<()> {
         progress.report(1.0)?;
-        let n = polygon.len();
-        let roll = Roll::new(self.sheet, polygon);
+        let n = rim.len();
+        let roll = Roll::new(self.sheet, rim);
         let base = self.first + self.caps.vertices.len() as u32;
-        let name = |v: u32| polygon.get(v as usize).map_or_else(|| base + (v - n as u32), |s| s.node);
-        let mut flat = polygon.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
+        let name = |v: u32| rim.get(v as usize).map_or_else(|| base + (v - n as u32), |s| s.node);
+        let mut flat = rim.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
         flat.extend(&patch.interior);
         let near = sources::nearest_on_rim(n, &flat, &patch.triangles);
         progress.report(1.0)?;
         for (&p, near) in patch.interior.iter().zip(near) {
             let mut node = self.node(roll.unflatten(p));
-            let from = self.source(polygon[near as usize].node);
+            let from = self.source(rim[near as usize].node);
             (node.source, node.weights) = (from.source, from.weights);
             self.caps.vertices.push(node);
         }

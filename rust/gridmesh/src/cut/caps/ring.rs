@@ -3,14 +3,14 @@
 use glam::DVec2;
 use robust::{Coord, orient2d};
 
-use super::regions::Spot;
-use crate::cut::caps::capper::{Capper, key, sides};
+use super::capper::Capper;
+use super::regions::{Region, Spot};
+use crate::cut::options::CutOptions;
 use crate::cut::sheet::roll::Roll;
 use crate::error::{Error, Result};
 use crate::fill::bridge::{BridgeOptions, bridge};
 use crate::fill::options::Smooth;
-use crate::fill::planar::flat::{FlatFill, Method};
-use crate::fill::planar::quality::Quality;
+use crate::fill::planar::flat::FlatPatch;
 use crate::options::CellShape;
 use crate::progress::Progress;
 
@@ -21,27 +21,34 @@ const MOST: usize = 1000;
 /// good tube.
 const UNEVEN: f64 = 4.0;
 
-/// Least corners, in degrees, of triangles and of quads that are good enough. Where a hole lies far from the middle, polygons have
-/// better ones.
-const LEAST: [f64; 2] = [20.0, 30.0];
+/// Least corners, in degrees, that are good enough: chosen looking at rings of tori. Where a hole lies far from the middle polygons
+/// have better ones, and more irregular vertices; at 0 they are never made, at twice these degrees always.
+const LEAST_OF_TRIANGLES: f64 = 20.0;
+const LEAST_OF_QUADS: f64 = 30.0;
 
 impl Capper<'_> {
-    /// A patch between an outline, counter-clockwise, and the hole in it, the vertices of which are those of `ring`: of the outline
-    /// first, of which there are `n`. `None` where polygons are better.
-    pub(crate) fn ring(&self, ring: &[Spot], n: usize, progress: Progress<'_>) -> Result<Option<FlatFill>> {
-        let roll = Roll::new(self.sheet, ring);
-        let flat = ring.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
-        let is_even =
-            self.cutting.options.edge_length.is_some() || !(is_uneven(&flat[..n]) || is_uneven(&flat[n..]));
-        if ring.len() > MOST || !is_even {
+    /// A patch between the outline of a region and the one hole in it, and its rim: the outline, then the hole. `None` for other
+    /// regions, and where polygons are better.
+    pub(crate) fn ring(
+        &self,
+        region: &Region,
+        progress: Progress<'_>,
+    ) -> Result<Option<(Vec<Spot>, FlatPatch)>> {
+        let Region::Sheet { outline, holes } = region else { return Ok(None) };
+        let [hole] = &holes[..] else { return Ok(None) };
+        let rim = [&outline[..], hole].concat();
+        let roll = Roll::new(self.sheet, &rim);
+        let flat = rim.iter().map(|s| roll.flatten(s.at)).collect::<Vec<_>>();
+        let (outer, inner) = flat.split_at(outline.len());
+        let CutOptions { cells, edge_length, .. } = *self.cutting.options;
+        if rim.len() > MOST || (edge_length.is_none() && (is_uneven(outer) || is_uneven(inner))) {
             return Ok(None);
         }
         let vertices = flat.iter().map(|p| p.extend(0.0)).collect::<Vec<_>>();
-        let names = (0..ring.len() as u32).collect::<Vec<_>>();
-        let cells = self.cutting.options.cells;
+        let names = (0..rim.len() as u32).collect::<Vec<_>>();
+        let (first, second) = names.split_at(outline.len());
         let options = BridgeOptions { smooth: Smooth::Flat, cells, ..BridgeOptions::default() };
-        let (outline, hole) = names.split_at(n);
-        let fill = match bridge(&vertices, &[], outline, hole, &options, progress) {
+        let fill = match bridge(&vertices, &[], first, second, &options, progress) {
             // Where there is no tube there are polygons.
             Err(
                 Error::ZeroLengthEdge { .. }
@@ -53,38 +60,16 @@ impl Capper<'_> {
             ) => return Ok(None),
             fill => fill?,
         };
-        let interior = fill.vertices.iter().map(|p| p.truncate()).collect::<Vec<DVec2>>();
-        let triangles = fill.facets();
-        let quads = fill.quads.len();
-        let made = FlatFill {
-            interior,
-            triangles,
-            quads,
-            method: Method::Optimal,
-            quality: Quality::default(),
-            folded: false,
-            candidates: 1,
+        let interior = fill.vertices.iter().map(|p| p.truncate()).collect();
+        let patch = FlatPatch { interior, triangles: fill.facets(), quads: fill.quads.len() };
+        let least = match cells {
+            CellShape::Triangle => LEAST_OF_TRIANGLES,
+            CellShape::Quad => LEAST_OF_QUADS,
         };
-        let least = LEAST[usize::from(cells == CellShape::Quad)].to_radians();
-        let is_good =
-            fill.report.min_angle >= least && is_embedded(&flat, &made) && !self.repeats_in(ring, n, &made);
-        Ok(is_good.then_some(made))
-    }
-
-    /// Whether a patch has an edge across the ring that exists by now.
-    fn repeats_in(&self, ring: &[Spot], n: usize, patch: &FlatFill) -> bool {
-        let follows = |a: usize, b: usize| {
-            let (first, count) = if a < n { (0, n) } else { (n, ring.len() - n) };
-            (b >= n) == (a >= n)
-                && ((a - first + 1) % count == b - first || (b - first + 1) % count == a - first)
-        };
-        let is_taken = |(a, b): (u32, u32)| {
-            let (a, b) = (a as usize, b as usize);
-            let (Some(p), Some(q)) = (ring.get(a), ring.get(b)) else { return false };
-            !follows(a, b) && self.edges.contains(&key(p.node, q.node))
-        };
-        patch.quads().any(|q| sides(&q).any(is_taken))
-            || patch.single().iter().any(|t| sides(t).any(is_taken))
+        let is_good = fill.report.min_angle >= least.to_radians()
+            && is_embedded(&flat, &patch)
+            && !self.repeats(&[outline, hole], &patch);
+        Ok(is_good.then_some((rim, patch)))
     }
 }
 
@@ -96,7 +81,7 @@ fn is_uneven(loop_: &[DVec2]) -> bool {
 }
 
 /// Whether all corners of the faces turn to the left.
-fn is_embedded(rim: &[DVec2], patch: &FlatFill) -> bool {
+fn is_embedded(rim: &[DVec2], patch: &FlatPatch) -> bool {
     let at = |v: u32| {
         let p = rim.get(v as usize).copied().unwrap_or_else(|| patch.interior[v as usize - rim.len()]);
         Coord { x: p.x, y: p.y }

@@ -83,15 +83,49 @@ impl Default for FlatOptions {
     }
 }
 
-/// A patch in the plane for a loop of n points: vertices `0..n` are the loop's, `n..` are new.
+/// Faces in the plane between loops of n points together: vertices `0..n` are the loops', `n..` are new.
 #[derive(Clone, Debug)]
-pub(crate) struct FlatFill {
+pub(crate) struct FlatPatch {
     /// Positions of the new vertices.
     pub interior: Vec<DVec2>,
     /// Counter-clockwise.
     pub triangles: Vec<[u32; 3]>,
     /// How many pairs of them, from the first on, are quads.
     pub quads: usize,
+}
+
+impl FlatPatch {
+    /// The faces that are quads.
+    pub fn quads(&self) -> impl Iterator<Item = [u32; 4]> {
+        quads_of(&self.triangles[..2 * self.quads])
+    }
+
+    /// The faces that are triangles.
+    pub fn single(&self) -> &[[u32; 3]] {
+        &self.triangles[2 * self.quads..]
+    }
+
+    /// The edges of the faces, once for each face, lower vertex first.
+    pub fn sides(&self) -> impl Iterator<Item = [u32; 2]> {
+        fn of<const N: usize>(face: [u32; N]) -> impl Iterator<Item = [u32; 2]> {
+            (0..N).map(move |k| [face[k], face[(k + 1) % N]]).map(|[a, b]| [a.min(b), a.max(b)])
+        }
+        self.quads().flat_map(of).chain(self.single().iter().copied().flat_map(of))
+    }
+}
+
+/// The quads of which these are halves: `[a, b, c]` and `[a, c, d]` are `[a, b, c, d]`.
+pub(crate) fn quads_of(halves: &[[u32; 3]]) -> impl Iterator<Item = [u32; 4]> {
+    halves.chunks_exact(2).map(|pair| {
+        let ([a, b, c], [.., d]) = (pair[0], pair[1]);
+        [a, b, c, d]
+    })
+}
+
+/// A patch for one loop.
+#[derive(Clone, Debug)]
+pub(crate) struct FlatFill {
+    pub patch: FlatPatch,
     /// How it was made.
     pub method: Method,
     /// What was counted and measured on it.
@@ -100,21 +134,6 @@ pub(crate) struct FlatFill {
     pub folded: bool,
     /// Candidates that were made and measured.
     pub candidates: usize,
-}
-
-impl FlatFill {
-    /// The faces that are quads.
-    pub fn quads(&self) -> impl Iterator<Item = [u32; 4]> {
-        self.triangles[..2 * self.quads].chunks_exact(2).map(|pair| {
-            let ([a, b, c], [.., d]) = (pair[0], pair[1]);
-            [a, b, c, d]
-        })
-    }
-
-    /// The faces that are triangles.
-    pub fn single(&self) -> &[[u32; 3]] {
-        &self.triangles[2 * self.quads..]
-    }
 }
 
 /// Fills a loop in the plane.
@@ -145,7 +164,7 @@ pub(crate) fn fill_flat(
     let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0, even };
     contest.run(options, progress)?;
     let (_, mut fill) = contest.best.ok_or_else(|| restore.nothing())?;
-    restore.apply(&mut fill.interior);
+    restore.apply(&mut fill.patch.interior);
     fill.candidates = contest.candidates;
     Ok(fill)
 }
@@ -278,13 +297,13 @@ impl Contest<'_> {
         let wanted: Vec<i32> = kept.iter().map(|&k| self.wanted[k]).collect();
         let taken = |i: usize, j: usize| (self.taken)(kept[i], kept[j]);
         let options = FlatOptions { thin: false, ..options.clone() };
-        let patch = match fill_flat(&points, &wanted, &taken, &options, progress) {
+        let made = match fill_flat(&points, &wanted, &taken, &options, progress) {
             Err(Error::NoPatch { .. } | Error::Solver { .. }) => return Ok(()),
-            patch => patch?,
+            made => made?,
         };
-        let triangles = put_back(&patch.triangles, &kept, self.points.len());
-        let interior = place::settled_by_loop(self.points, patch.interior, &triangles, progress)?;
-        self.enter(interior, triangles, patch.method, progress)?;
+        let triangles = put_back(&made.patch.triangles, &kept, self.points.len());
+        let interior = place::settled_by_loop(self.points, made.patch.interior, &triangles, progress)?;
+        self.enter(interior, triangles, made.method, progress)?;
         Ok(())
     }
 
@@ -379,7 +398,13 @@ impl Contest<'_> {
         self.candidates += 1;
         if badness < self.best.as_ref().map_or(f64::INFINITY, |b| b.0) {
             let folded = !quality.embedded;
-            let fill = FlatFill { interior, triangles, quads: 0, method, quality, folded, candidates: 0 };
+            let fill = FlatFill {
+                patch: FlatPatch { interior, triangles, quads: 0 },
+                method,
+                quality,
+                folded,
+                candidates: 0,
+            };
             self.best = Some((badness, fill));
         }
         Ok(())

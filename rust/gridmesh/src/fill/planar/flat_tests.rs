@@ -19,9 +19,9 @@ fn fill(polygon: &[DVec2], taken: &(dyn Fn(usize, usize) -> bool + Sync)) -> Fla
 /// A disk whose boundary is the loop, counter-clockwise, without an edge that is taken.
 fn check(polygon: &[DVec2], fill: &FlatFill, taken: &dyn Fn(usize, usize) -> bool) {
     let n = polygon.len();
-    let vertices = n + fill.interior.len();
+    let vertices = n + fill.patch.interior.len();
     let mut edges: BTreeMap<(u32, u32), usize> = BTreeMap::new();
-    for t in &fill.triangles {
+    for t in &fill.patch.triangles {
         for k in 0..3 {
             *edges.entry((t[k], t[(k + 1) % 3])).or_default() += 1;
         }
@@ -31,17 +31,17 @@ fn check(polygon: &[DVec2], fill: &FlatFill, taken: &dyn Fn(usize, usize) -> boo
         edges.keys().copied().filter(|&(a, b)| !edges.contains_key(&(b, a))).collect();
     let rim: BTreeSet<(u32, u32)> = (0..n as u32).map(|k| (k, (k + 1) % n as u32)).collect();
     assert_eq!(open, rim);
-    let used: BTreeSet<u32> = fill.triangles.iter().flatten().copied().collect();
+    let used: BTreeSet<u32> = fill.patch.triangles.iter().flatten().copied().collect();
     assert_eq!(used.len(), vertices);
     let undirected = (edges.len() + n) / 2;
-    assert_eq!(vertices + fill.triangles.len(), undirected + 1, "not a disk");
+    assert_eq!(vertices + fill.patch.triangles.len(), undirected + 1, "not a disk");
     for &(a, b) in edges.keys().filter(|e| !rim.contains(e) && !rim.contains(&(e.1, e.0))) {
         let (i, j) = (a.min(b) as usize, a.max(b) as usize);
         assert!(j >= n || !taken(i, j), "edge {i} {j} is taken");
     }
-    let positions = [polygon, &fill.interior].concat();
+    let positions = [polygon, &fill.patch.interior].concat();
     let centre = polygon.iter().sum::<DVec2>() / n as f64;
-    let embedded = crate::relax::first_inverted(&positions, &fill.triangles, centre).is_none();
+    let embedded = crate::relax::first_inverted(&positions, &fill.patch.triangles, centre).is_none();
     assert_eq!(embedded, !fill.folded);
 }
 
@@ -117,7 +117,7 @@ fn long_edges_beside_short_ones_are_filled() {
     check(&polygon, &patch, &none);
     assert!(!patch.folded);
     assert!(patch.quality.min_angle > 0.06, "{}", patch.quality.min_angle);
-    assert!(patch.triangles.len() < 2000, "{}", patch.triangles.len());
+    assert!(patch.patch.triangles.len() < 2000, "{}", patch.patch.triangles.len());
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn the_same_loop_gives_the_same_bytes() {
         .map(|k| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / 40.0 + 0.1 * f64::from(k).sin()))
         .collect();
     let (a, b) = (fill(&polygon, &none), fill(&polygon, &none));
-    assert_eq!((a.interior, a.triangles), (b.interior, b.triangles));
+    assert_eq!((a.patch.interior, a.patch.triangles), (b.patch.interior, b.patch.triangles));
 }
 
 #[test]
@@ -169,7 +169,11 @@ fn a_loop_as_a_cut_leaves_it_gets_a_patch_as_coarse_as_its_long_edges() {
         let (thin, whole) = (fill(true), fill(false));
         check(&polygon, &thin, &taken);
         assert!(!thin.folded);
-        assert!(2 * thin.triangles.len() < whole.triangles.len(), "{n}: {}", thin.triangles.len());
+        assert!(
+            2 * thin.patch.triangles.len() < whole.patch.triangles.len(),
+            "{n}: {}",
+            thin.patch.triangles.len()
+        );
         assert!(thin.quality.mean_ratio > 0.92, "{n}: {}", thin.quality.mean_ratio);
         assert!(10 * thin.quality.irregular < thin.quality.interior, "{n}: {:?}", thin.quality);
     }
@@ -188,13 +192,13 @@ fn a_loop_that_crosses_itself_is_folded_there_alone() {
                 Err(error) => panic!("{error}"),
             };
             check(&polygon, &fill, &none);
-            let positions = [polygon.as_slice(), &fill.interior].concat();
+            let positions = [polygon.as_slice(), &fill.patch.interior].concat();
             let is_inverted = |t: &&[u32; 3]| {
                 let [a, b, c] = t.map(|v| positions[v as usize]);
                 (b - a).perp_dot(c - a) <= 0.0
             };
-            let inverted = fill.triangles.iter().filter(is_inverted).count();
-            assert!(fill.folded && inverted <= 16, "{n}: {inverted} of {}", fill.triangles.len());
+            let inverted = fill.patch.triangles.iter().filter(is_inverted).count();
+            assert!(fill.folded && inverted <= 16, "{n}: {inverted} of {}", fill.patch.triangles.len());
         }
     }
 }

@@ -15,7 +15,7 @@ use glam::DVec2;
 use self::cells::{Cells, Plan};
 use self::measure::measure;
 use self::paths::Search;
-use super::flat::{FlatFill, Method};
+use super::flat::{FlatFill, FlatPatch, Method};
 use super::place::{self, Similarity};
 use super::scaled::Scaled;
 use super::settle::extend;
@@ -54,7 +54,7 @@ pub(crate) fn fill_flat_quads(
     let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0 };
     contest.run(single, progress)?;
     let (_, mut fill) = contest.best.ok_or_else(|| restore.nothing())?;
-    restore.apply(&mut fill.interior);
+    restore.apply(&mut fill.patch.interior);
     fill.candidates = contest.candidates;
     Ok(fill)
 }
@@ -149,7 +149,8 @@ impl Contest<'_> {
             let triangles = cells.triangles(&positions);
             let quads = cells.quads.len();
             let quality = measured.quality;
-            let fill = FlatFill { interior, triangles, quads, method, quality, folded, candidates: 0 };
+            let patch = FlatPatch { interior, triangles, quads };
+            let fill = FlatFill { patch, method, quality, folded, candidates: 0 };
             self.best = Some((measured.badness, fill));
         }
         Ok(())

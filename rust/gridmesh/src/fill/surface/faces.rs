@@ -10,6 +10,7 @@ use crate::fill::filled::Shape;
 use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::room;
 use crate::fill::options::Smooth;
+use crate::fill::planar::flat::quads_of;
 use crate::fill::planar::stars::{CornerStars, Stars};
 use crate::geometry::corner::Ideal;
 use crate::progress::Progress;
@@ -117,10 +118,7 @@ impl Patchwork {
 
     /// The quads of the patch.
     pub fn quads(&self) -> impl Iterator<Item = [u32; 4]> {
-        self.triangles[..2 * self.quads].chunks_exact(2).map(|pair| {
-            let ([a, b, c], [.., d]) = (pair[0], pair[1]);
-            [a, b, c, d]
-        })
+        quads_of(&self.triangles[..2 * self.quads])
     }
 
     /// The faces of the patch that are triangles.

@@ -158,11 +158,12 @@ impl Task<'_> {
                     fill_flat_quads(&polygon, &shares.collect::<Vec<_>>(), &taken, single, here)
                 }
             };
-            let patch = match made {
+            let made = match made {
                 Err(Error::NoPatch { .. } | Error::Solver { .. }) => return Ok(None),
-                patch => patch?,
+                made => made?,
             };
-            if patch.folded || patch.quality.repeated > 0 {
+            let patch = &made.patch;
+            if made.folded || made.quality.repeated > 0 {
                 return Ok(None);
             }
             let (first, count) = (positions.len(), part.boundary.len());
@@ -173,11 +174,7 @@ impl Task<'_> {
             let (pairs, rest) = patch.triangles.split_at(2 * patch.quads);
             let pairs = pairs.iter().map(|t| t.map(name)).collect::<Vec<_>>();
             let rest = rest.iter().map(|t| t.map(name)).collect::<Vec<_>>();
-            // The diagonal of a quad is no edge.
-            let inner = pairs.chunks_exact(2).map(|pair| [pair[0][0], pair[0][2]]).collect::<FxHashSet<_>>();
-            let sides = pairs.iter().chain(&rest).flat_map(|t| [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]]));
-            let sides = sides.filter(|&[a, b]| !inner.contains(&[a, b]) && !inner.contains(&[b, a]));
-            used.extend(sides.map(|[a, b]| [a.min(b), a.max(b)]));
+            used.extend(patch.sides().map(|side| side.map(name)).map(|[a, b]| [a.min(b), a.max(b)]));
             quads += patch.quads;
             triangles.extend(pairs);
             last.extend(rest);
@@ -186,8 +183,8 @@ impl Task<'_> {
                 flat[v as usize] = p;
             }
             flat.extend(&patch.interior);
-            if largest.as_ref().is_none_or(|known| known.triangles.len() < patch.triangles.len()) {
-                largest = Some(patch);
+            if largest.as_ref().is_none_or(|known| known.patch.triangles.len() < patch.triangles.len()) {
+                largest = Some(made);
             }
         }
         let Some(patch) = largest else { return Ok(None) };

@@ -31,11 +31,11 @@ pub(super) fn candidates(points: &[DVec2], wanted: &[f64], progress: Progress<'_
         }
         let some: Vec<DVec2> = coarse.iter().map(|&k| points[k]).collect();
         let valences: Vec<i32> = coarse.iter().map(|&k| wanted[k].round() as i32 + 1).collect();
-        let patch = match fill_flat(&some, &valences, &|_, _| false, &FlatOptions::default(), progress) {
+        let made = match fill_flat(&some, &valences, &|_, _| false, &FlatOptions::default(), progress) {
             Err(Error::NoPatch { .. } | Error::Solver { .. }) => continue,
-            patch => patch?,
+            made => made?,
         };
-        let cut = Cut::of(points, &coarse, &patch.interior, &patch.triangles);
+        let cut = Cut::of(points, &coarse, &made.patch.interior, &made.patch.triangles);
         if n <= SMALL {
             found.push(cut.behind_a_row(points));
         }

@@ -7,7 +7,7 @@ use crate::lattice::axial::Axial;
 
 /// Faces of a fill: quads from their pairs of triangles, then the odd triangle.
 fn faces(fill: &FlatFill) -> Vec<Vec<u32>> {
-    let (pairs, rest) = fill.triangles.split_at(2 * fill.quads);
+    let (pairs, rest) = fill.patch.triangles.split_at(2 * fill.patch.quads);
     let quad = |pair: &[[u32; 3]]| {
         let ([a, b, c], [first, third, d]) = (pair[0], pair[1]);
         assert_eq!((a, c), (first, third));
@@ -33,11 +33,11 @@ fn check(polygon: &[DVec2], fill: &FlatFill) {
     let rim = (0..n as u32).map(|k| (k, (k + 1) % n as u32)).collect::<BTreeSet<_>>();
     assert_eq!(open, rim);
     let used: BTreeSet<u32> = faces.iter().flatten().copied().collect();
-    assert_eq!(used.len(), n + fill.interior.len());
+    assert_eq!(used.len(), n + fill.patch.interior.len());
     let undirected = (sides.len() - n) / 2 + n;
     assert_eq!(used.len() + faces.len(), undirected + 1, "not a disk");
     if !fill.folded {
-        let positions = [polygon, &fill.interior].concat();
+        let positions = [polygon, &fill.patch.interior].concat();
         let corners = faces
             .iter()
             .filter(|f| f.len() == 4)
@@ -83,9 +83,9 @@ fn circles_of_any_number_of_edges_are_filled() {
 fn a_square_with_an_edge_of_the_mesh_across_is_no_single_quad() {
     for across in [(0, 2), (1, 3)] {
         let made = fill(&rectangle(1, 1), &|i, j| (i, j) == across, true);
-        assert!(!made.interior.is_empty() && !made.folded);
+        assert!(!made.patch.interior.is_empty() && !made.folded);
     }
-    assert!(fill(&rectangle(1, 1), &|_, _| false, true).interior.is_empty());
+    assert!(fill(&rectangle(1, 1), &|_, _| false, true).patch.interior.is_empty());
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn a_rectangle_is_a_grid() {
         }
         let fill = fill_flat_quads(&polygon, &wanted, &|_, _| false, true, Progress::NONE).unwrap();
         check(&polygon, &fill);
-        assert_eq!((fill.quads as i32, fill.quality.irregular), (w * h, 0));
+        assert_eq!((fill.patch.quads as i32, fill.quality.irregular), (w * h, 0));
         assert!((fill.quality.min_angle.to_degrees() - 90.0).abs() < 1.0);
     }
 }
