@@ -11,26 +11,35 @@ pub(crate) const ASK_EVERY: usize = 1 << 11;
 pub(crate) enum Visit {
     /// It is left alone until a neighbour moves.
     Done,
-    /// It has no better place yet, and is visited again.
+    /// It has no better place yet: it is visited again, until it has had none for some rounds.
     Stuck,
     /// It was moved: it and its neighbours are visited again.
     Moved,
 }
 
-/// Visits the vertices from `first` on in the order of their numbers, then those of them that are to be visited again, for
-/// `rounds` at most. `visit` takes the vertex and the round.
+/// How long to go on.
+pub(crate) struct Rounds {
+    /// Rounds in all.
+    pub most: usize,
+    /// Rounds in which a vertex is stuck, since it or a neighbour last moved.
+    pub stuck: u8,
+}
+
+/// Visits the vertices from `first` on in the order of their numbers, then those of them that are to be visited again.
+/// `visit` takes the vertex and the round.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`].
 pub(crate) fn visit_active(
     topology: &Topology,
     first: usize,
-    rounds: usize,
+    rounds: Rounds,
     progress: Progress<'_>,
     mut visit: impl FnMut(usize, usize) -> Visit,
 ) -> Result<()> {
     let mut active: Vec<u32> = (first as u32..topology.start.len() as u32 - 1).collect();
-    for round in 0..rounds {
+    let mut left = vec![rounds.stuck; topology.start.len() - 1];
+    for round in 0..rounds.most {
         let mut next = vec![];
         for (k, &v) in active.iter().enumerate() {
             if k % ASK_EVERY == 0 {
@@ -38,11 +47,19 @@ pub(crate) fn visit_active(
             }
             match visit(v as usize, round) {
                 Visit::Done => {}
-                Visit::Stuck => next.push(v),
+                Visit::Stuck => {
+                    let left = &mut left[v as usize];
+                    *left = left.saturating_sub(1);
+                    if *left > 0 {
+                        next.push(v);
+                    }
+                }
                 Visit::Moved => {
                     let near = &topology.near[topology.range(v as usize)];
-                    next.extend(near.iter().copied().filter(|&u| u as usize >= first));
-                    next.push(v);
+                    for u in near.iter().copied().chain([v]).filter(|&u| u as usize >= first) {
+                        left[u as usize] = rounds.stuck;
+                        next.push(u);
+                    }
                 }
             }
         }

@@ -130,6 +130,10 @@ fn moved(
         for k in 0..8 {
             let (sin, cos) = (f64::from(k) * FRAC_PI_4 + limits.turn).sin_cos();
             let target = here + reach * limits.wanted * (cos * e + sin * f);
+            // Off the surface by a second-order term: a cheap first look.
+            if cost(front, target) >= best || sharpest(front, fan, target) > thin {
+                continue;
+            }
             let Some(there) = front.trial(guide, v, start, target) else { continue };
             let costs = cost(front, there.position);
             if costs < best

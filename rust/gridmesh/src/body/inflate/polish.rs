@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use crate::body::inflate::front::{Front, Guide, Trial, project, surface_normal};
 use crate::error::Result;
-use crate::geometry::active::{ASK_EVERY, Visit, turn, visit_active};
+use crate::geometry::active::{ASK_EVERY, Rounds, Visit, turn, visit_active};
 use crate::geometry::corner::{Corner, Ideal};
 use crate::geometry::quadratic::Quadratic;
 use crate::progress::Progress;
@@ -17,14 +17,11 @@ const SHARP: f64 = 1.732_050_807_568_877_2;
 /// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
 pub(super) const LEVEL: f64 = 0.7;
 
-/// Rounds of [`sharpen`] at most.
-const ROUNDS: usize = 32;
+/// Rounds of [`sharpen`].
+const ROUNDS: Rounds = Rounds { most: 32, stuck: 6 };
 
 /// Lengths of moves, in mean lengths of the edges around, in turn from round to round.
 const REACHES: [f64; 3] = [0.3, 0.12, 0.05];
-
-/// Rounds that a vertex may fail in a row, see [`sharpen`].
-const PATIENCE: u8 = 6;
 
 /// One sweep over the vertices, each moved along the surface to where its triangles are best.
 ///
@@ -98,19 +95,13 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
 /// trial in eight directions. A vertex is left alone once it has not moved for some rounds, nor
 /// its neighbours.
 pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
-    let mut patience = vec![PATIENCE; front.flat.len()];
     visit_active(guide.around, front.first, ROUNDS, progress, |v, round| {
         let present = sharpest(front, guide.around.fan(v), front.position(v));
         if present <= SHARP {
             return Visit::Done;
         }
-        if try_around(front, guide, v, present, REACHES[round % REACHES.len()], turn(round)) {
-            patience[v] = PATIENCE;
-            guide.around.near[guide.around.range(v)].iter().for_each(|&u| patience[u as usize] = PATIENCE);
-            return Visit::Moved;
-        }
-        patience[v] -= 1;
-        if patience[v] > 0 { Visit::Stuck } else { Visit::Done }
+        let reach = REACHES[round % REACHES.len()];
+        if try_around(front, guide, v, present, reach, turn(round)) { Visit::Moved } else { Visit::Stuck }
     })
 }
 
