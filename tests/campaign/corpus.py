@@ -241,8 +241,8 @@ def lands(archive: tarfile.TarFile) -> Iterator[tuple[str, dict]]:
                     continue
                 low = complex(min(p.real for p in rings[0]), min(p.imag for p in rings[0]))
                 size = max(max((p - low).real, (p - low).imag) for p in rings[0])
-                # Some islets are drawn as a line there and back.
-                if abs(pyclipper.Area([(p.real, p.imag) for p in rings[0]])) < LEAST * size**2:
+                # Some islets are drawn as a line there and back, or as a point.
+                if size == 0 or abs(pyclipper.Area([(p.real, p.imag) for p in rings[0]])) < LEAST * size**2:
                     continue
                 for part in united([(rings, True)], low, size):
                     yield land["properties"]["name"], part

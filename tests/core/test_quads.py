@@ -135,6 +135,32 @@ def test_corners_are_near_right_angles():
     assert np.median(off) < 8
 
 
+def corners_in_space(body):
+    """Corners of the quads of a body in degrees, and the cosine of each between its own normal and its quad's."""
+    at = body.vertices[body.quads]
+    ahead, back = np.roll(at, -1, axis=1) - at, np.roll(at, 1, axis=1) - at
+    own = np.cross(ahead, back)
+    degrees = np.degrees(np.arctan2(np.linalg.norm(own, axis=2), (ahead * back).sum(2)))
+    whole = np.cross(at[:, 2] - at[:, 0], at[:, 3] - at[:, 1])
+    scale = np.linalg.norm(own, axis=2) * np.linalg.norm(whole, axis=1)[:, None]
+    return degrees, (own * whole[:, None]).sum(2) / scale
+
+
+def test_corners_of_bodies_are_wide_and_none_is_reflex():
+    # They were 28 to 159 degrees (median over hand-drawn outlines), and two quads were dented.
+    least, greatest = [], []
+    for seed in range(10):
+        body = gridmesh.inflate(gridmesh.mesh_sketch(random_blob(seed), quads=1000))
+        degrees, facing = corners_in_space(body)
+        assert facing.min() > 0, seed
+        least.append(degrees.min())
+        greatest.append(degrees.max())
+    assert np.median(least) > 40
+    assert min(least) > 28
+    assert np.median(greatest) < 140
+    assert max(greatest) < 152
+
+
 def test_a_straight_lattice_makes_quads_too():
     points = random_blob(2)
     patch = gridmesh.mesh_sketch(points, quads=700, bend=0)

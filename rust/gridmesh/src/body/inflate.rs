@@ -1,6 +1,7 @@
 //! From the flat patch to a round body.
 
 mod crease;
+mod fan;
 mod field;
 mod front;
 mod height;
@@ -122,7 +123,7 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
             CellShape::Quad => Some(Topology::new(patch.vertices.len(), &corners)),
         };
         let guide = Guide::new(
-            (&field, &corners, around.as_ref().unwrap_or(&topology)),
+            (&field, &corners, around.as_ref().unwrap_or(&topology), patch.cells()),
             |v| bends[v].limb,
             &patch.loops,
             Inlets::new(patch, middle),

@@ -3,9 +3,12 @@
 use glam::{DVec2, DVec3};
 
 use crate::body::inflate::crease::{Crease, creases};
+use crate::body::inflate::fan::Fan;
 use crate::body::inflate::field::{Field, Place};
 use crate::body::inflate::inlets::Inlets;
+use crate::geometry::corner::Ideal;
 use crate::geometry::topology::Topology;
+use crate::options::CellShape;
 use crate::patch::Loop;
 
 /// The front of a body: a graph over the flat patch.
@@ -47,7 +50,7 @@ impl Front {
         }
         let stays = guide.crease[v].as_ref().is_none_or(|crease| crease.holds(point) || !crease.holds(start));
         stays
-            && guide.around.fan(v).iter().all(|&[a, b]| {
+            && guide.fan(v).pairs.iter().all(|&[a, b]| {
                 (self.flat[a as usize] - point).perp_dot(self.flat[b as usize] - point) >= guide.least_area
             })
     }
@@ -55,6 +58,17 @@ impl Front {
     /// Where vertex `v` lies in space.
     pub fn position(&self, v: usize) -> DVec3 {
         self.flat[v].extend(self.height[v])
+    }
+
+    /// Where vertices lie in space.
+    pub fn positions(&self) -> impl Fn(u32) -> DVec3 {
+        |v| self.position(v as usize)
+    }
+
+    /// Unit normal of the surface at interior vertex `v`.
+    pub fn normal(&self, guide: &Guide<'_>, v: usize) -> DVec3 {
+        let (_, gradient) = guide.field.at(self.flat[v], self.place[v - self.first]);
+        surface_normal(gradient, self.height[v])
     }
 
     /// The place of the surface nearest to `target`, if `v`, which was at `start`, may go there.
@@ -100,6 +114,8 @@ pub(crate) struct Guide<'a> {
     pub corners: &'a [[u32; 3]],
     /// Those around each vertex.
     pub around: &'a Topology,
+    /// What each of `around.fans` should look like; empty if all are to be equilateral.
+    ideals: Vec<Ideal>,
     /// Height of the surface above the middle of a circle of radius one.
     pub depth: f64,
     /// Where each vertex is to slide: a height.
@@ -117,7 +133,7 @@ pub(crate) struct Guide<'a> {
 impl<'a> Guide<'a> {
     /// `limb` is 0 where the surface is round and 1 in a limb.
     pub fn new(
-        (field, corners, around): (&'a Field<'a>, &'a [[u32; 3]], &'a Topology),
+        (field, corners, around, cells): (&'a Field<'a>, &'a [[u32; 3]], &'a Topology, CellShape),
         limb: impl Fn(usize) -> f64,
         loops: &[Loop],
         inlets: Inlets,
@@ -130,6 +146,7 @@ impl<'a> Guide<'a> {
             field,
             corners,
             around,
+            ideals: if cells == CellShape::Quad { ideals_of_quads(corners, around) } else { vec![] },
             depth,
             goal: (0..field.value.len()).map(goal).collect(),
             crease: creases(field, loops, first),
@@ -138,6 +155,27 @@ impl<'a> Guide<'a> {
             least_area,
         }
     }
+
+    /// The triangles around a vertex.
+    pub fn fan(&self, v: usize) -> Fan<'_> {
+        let range = self.around.fan_start[v] as usize..self.around.fan_start[v + 1] as usize;
+        Fan { pairs: &self.around.fans[range.clone()], ideals: self.ideals.get(range) }
+    }
+}
+
+/// What each triangle of the fans should look like, of the triangles at the corners of quads: the vertex in the middle of
+/// each is the corner.
+fn ideals_of_quads(corners: &[[u32; 3]], around: &Topology) -> Vec<Ideal> {
+    let mut ideals = vec![Ideal::Own; around.fans.len()];
+    let mut slots = around.fan_start.clone();
+    for corner in corners {
+        for (v, ideal) in corner.iter().zip([Ideal::Next, Ideal::Own, Ideal::Last]) {
+            let slot = &mut slots[*v as usize];
+            ideals[*slot as usize] = ideal;
+            *slot += 1;
+        }
+    }
+    ideals
 }
 
 /// The point of the plane below the foot of `point` on the surface `z^2 = field`.

@@ -4,11 +4,12 @@ use std::f64::consts::FRAC_PI_4;
 
 use glam::{DVec2, DVec3};
 
-use super::polish::{LEVEL, facing, sharpest};
-use crate::body::inflate::front::{Front, Guide, surface_normal};
+use super::polish::LEVEL;
+use crate::body::inflate::front::{Front, Guide};
 use crate::error::Result;
 use crate::geometry::active::{Visit, turn, visit_active};
-use crate::geometry::lengthen::{ROUNDS, THIN, lack};
+use crate::geometry::lengthen::{ROUNDS, THIN, THIN_OF_QUADS, lack};
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// For each stage the length wanted, in mean lengths of the body's edges (a third shows in a texture), and the cosine
@@ -21,15 +22,22 @@ const REACHES: [f64; 4] = [1.0, 0.5, 0.2, 0.07];
 /// Moves interior vertices along the surface until the edges at them are as long as [`STAGES`] says, as far as the
 /// corners of triangles allow.
 ///
-/// Stages are ever more lenient: in each a vertex is left where it is if a corner around it would become both smaller
-/// than the smallest there and smaller than [`THIN`] says. In none the least angle of the whole becomes smaller, but for
-/// one above the first of [`THIN`]. Every triangle stays positive in projection; where that
+/// Stages are ever more lenient: in each a vertex is left where it is if a corner around it would become both sharper
+/// than the sharpest there and sharper than [`THIN`] or [`THIN_OF_QUADS`] says. In none the sharpest corner of the whole
+/// becomes sharper, but for one that is better than their first. Every triangle stays positive in projection; where that
 /// holds a vertex fast, its neighbours make room. Near-linear.
-pub(crate) fn lengthen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
+pub(crate) fn lengthen(
+    front: &mut Front,
+    guide: &Guide<'_>,
+    cells: CellShape,
+    progress: Progress<'_>,
+) -> Result<()> {
+    let limits = if cells == CellShape::Triangle { THIN } else { THIN_OF_QUADS };
     let mean = mean_length(front, guide);
-    let sharp = |v: usize| sharpest(front, guide.around.fan(v), front.position(v));
-    let thinnest = (front.first..front.flat.len()).map(sharp).fold(THIN[0], f64::max);
-    for ((share, level), thin) in STAGES.into_iter().zip(THIN) {
+    let sharp =
+        |v: usize| guide.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v));
+    let thinnest = (front.first..front.flat.len()).map(sharp).fold(limits[0], f64::max);
+    for ((share, level), thin) in STAGES.into_iter().zip(limits) {
         let (wanted, thin) = (share * mean, thin.min(thinnest));
         visit_active(guide.around, front.first, ROUNDS, progress, |v, round| {
             let limits = Limits { wanted, level, thin, turn: turn(round) };
@@ -104,7 +112,7 @@ fn has_made_room(front: &mut Front, guide: &Guide<'_>, v: usize, limits: &Limits
 /// Twice the least area in projection of the triangles at `v`, were its neighbour `u` at `point`.
 fn room(front: &Front, guide: &Guide<'_>, v: usize, u: u32, point: DVec2) -> f64 {
     let place = |w: u32| if w == u { point } else { front.flat[w as usize] } - front.flat[v];
-    let areas = guide.around.fan(v).iter().map(|&[a, b]| place(a).perp_dot(place(b)));
+    let areas = guide.fan(v).pairs.iter().map(|&[a, b]| place(a).perp_dot(place(b)));
     areas.fold(f64::INFINITY, f64::min)
 }
 
@@ -117,13 +125,13 @@ fn moved(
     present: f64,
     cost: impl Fn(&Front, DVec3) -> f64,
 ) -> bool {
-    let fan = guide.around.fan(v);
+    let fan = guide.fan(v);
     let (here, start) = (front.position(v), front.flat[v]);
-    let (_, gradient) = guide.field.at(start, front.place[v - front.first]);
-    let normal = surface_normal(gradient, front.height[v]);
+    let normal = front.normal(guide, v);
     let (e, f) = normal.any_orthonormal_pair();
-    let level = facing(front, fan, here, normal).min(limits.level);
-    let thin = sharpest(front, fan, here).max(limits.thin);
+    let level = fan.facing(front.positions(), here, normal).min(limits.level);
+    let sharpest = fan.sharpest(front.positions(), here, normal);
+    let thin = if sharpest.is_finite() { sharpest.max(limits.thin) } else { limits.thin };
     let mut best = present;
     let mut is_moved = false;
     for reach in REACHES {
@@ -131,14 +139,14 @@ fn moved(
             let (sin, cos) = (f64::from(k) * FRAC_PI_4 + limits.turn).sin_cos();
             let target = here + reach * limits.wanted * (cos * e + sin * f);
             // Off the surface by a second-order term: a cheap first look.
-            if cost(front, target) >= best || sharpest(front, fan, target) > thin {
+            if cost(front, target) >= best || fan.sharpest(front.positions(), target, normal) > thin {
                 continue;
             }
             let Some(there) = front.trial(guide, v, start, target) else { continue };
             let costs = cost(front, there.position);
             if costs < best
-                && sharpest(front, fan, there.position) <= thin
-                && facing(front, fan, there.position, there.normal) >= level
+                && fan.sharpest(front.positions(), there.position, there.normal) <= thin
+                && fan.facing(front.positions(), there.position, there.normal) >= level
             {
                 best = costs;
                 is_moved = true;

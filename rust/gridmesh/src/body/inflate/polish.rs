@@ -2,17 +2,24 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
-use crate::body::inflate::front::{Front, Guide, Trial, project, surface_normal};
+use crate::body::inflate::front::{Front, Guide, Trial, project};
 use crate::error::Result;
 use crate::geometry::active::{ASK_EVERY, Rounds, Visit, turn, visit_active};
 use crate::geometry::corner::{Corner, Ideal};
 use crate::geometry::quadratic::Quadratic;
+use crate::options::CellShape;
 use crate::progress::Progress;
 
-/// Cotangent of the angle, 30 degrees, below which [`sharpen`] acts.
+/// Cotangent of the angle, 30 degrees, below which [`sharpen`] acts on triangles.
 const SHARP: f64 = 1.732_050_807_568_877_2;
+
+/// The same for corners of quads, 50 and 130 degrees.
+const SHARP_OF_QUADS: f64 = 0.839_099_631_177_28;
+
+/// A vertex may make its worst triangle worse if it stays better than this, see [`Fan::worst`].
+const GOOD: f64 = 0.2;
 
 /// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
 pub(super) const LEVEL: f64 = 0.7;
@@ -36,20 +43,21 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
             progress.report(0.0)?;
         }
         let slot = v - front.first;
-        let (_, gradient) = field.at(front.flat[v], front.place[slot]);
-        let normal = surface_normal(gradient, front.height[v]);
+        let normal = front.normal(guide, v);
         let (e, f) = normal.any_orthonormal_pair();
         let here = front.position(v);
-        let fan = guide.around.fan(v);
+        let fan = guide.fan(v);
         let mut model = Quadratic::default();
         let mut reach = 0.0;
-        for &[i, j] in fan {
+        for (i, j, ideal) in fan.iter() {
             let (a, b) = (front.position(i as usize) - here, front.position(j as usize) - here);
             reach += a.length();
-            let mut corner = Corner::new(Ideal::Equilateral, a, b, normal);
+            let mut corner = Corner::new(ideal, a, b, normal);
             let mut flat = Quadratic::default();
             if (i as usize) < front.first && (j as usize) < front.first {
-                let flatter = 0.5 * (guide.flatness[i as usize] + guide.flatness[j as usize]);
+                // Half as many sides are compared at the corner of a quad.
+                let share = if ideal == Ideal::Equilateral { 0.5 } else { 0.25 };
+                let flatter = share * (guide.flatness[i as usize] + guide.flatness[j as usize]);
                 let m = corner.widening.normalize_or_zero();
                 let height = a.dot(m);
                 corner.sides += flatter * height * height;
@@ -63,21 +71,21 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
             model += flat.scaled(weight);
         }
         let Some(u) = model.minimum() else { continue };
-        let u = u.clamp_length_max(0.5 * reach / fan.len() as f64);
+        let u = u.clamp_length_max(0.5 * reach / fan.pairs.len() as f64);
         let Some((target, _)) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else {
             continue;
         };
-        let before = worst(front, fan, here);
-        let fidelity = facing(front, fan, here, normal).min(LEVEL);
+        let before = fan.worst(front.positions(), here);
+        let fidelity = fan.facing(front.positions(), here, normal).min(LEVEL);
         let mut share = 1.0;
         for _ in 0..4 {
             let point = front.flat[v].lerp(target, share);
             if front.may_move(guide, v, front.flat[v], point) {
                 let Some(place) = field.locate(point, front.place[slot].triangle) else { break };
                 let there = Trial::new(field, point, place);
-                let after = worst(front, fan, there.position);
-                if (after >= before || after > 0.2)
-                    && facing(front, fan, there.position, there.normal) >= fidelity
+                let after = fan.worst(front.positions(), there.position);
+                if (after >= before || after > GOOD)
+                    && fan.facing(front.positions(), there.position, there.normal) >= fidelity
                 {
                     front.put(v, &there);
                     break;
@@ -94,10 +102,16 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
 /// Moves the vertices of the sharpest triangles to where the least angle around them is largest, by
 /// trial in eight directions. A vertex is left alone once it has not moved for some rounds, nor
 /// its neighbours.
-pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
+pub(crate) fn sharpen(
+    front: &mut Front,
+    guide: &Guide<'_>,
+    cells: CellShape,
+    progress: Progress<'_>,
+) -> Result<()> {
+    let sharp = if cells == CellShape::Triangle { SHARP } else { SHARP_OF_QUADS };
     visit_active(guide.around, front.first, ROUNDS, progress, |v, round| {
-        let present = sharpest(front, guide.around.fan(v), front.position(v));
-        if present <= SHARP {
+        let present = guide.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v));
+        if present <= sharp {
             return Visit::Done;
         }
         let reach = REACHES[round % REACHES.len()];
@@ -108,60 +122,29 @@ pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'
 /// Moves `v`, the largest cotangent around which is `present`, to the best of eight places around it;
 /// false if none is better.
 fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reach: f64, turn: f64) -> bool {
-    let fan = guide.around.fan(v);
+    let fan = guide.fan(v);
     let (here, start) = (front.position(v), front.flat[v]);
-    let (_, gradient) = guide.field.at(start, front.place[v - front.first]);
-    let normal = surface_normal(gradient, front.height[v]);
+    let normal = front.normal(guide, v);
     let (e, f) = normal.any_orthonormal_pair();
-    let mean =
-        fan.iter().map(|&[a, _]| here.distance(front.position(a as usize))).sum::<f64>() / fan.len() as f64;
-    let fidelity = facing(front, fan, here, normal).min(LEVEL);
+    let lengths = fan.pairs.iter().map(|&[a, _]| here.distance(front.position(a as usize)));
+    let mean = lengths.sum::<f64>() / fan.pairs.len() as f64;
+    let fidelity = fan.facing(front.positions(), here, normal).min(LEVEL);
     let mut best = present;
     let mut moved = false;
     for k in 0..8 {
         let (sin, cos) = (f64::from(k) * FRAC_PI_4 + turn).sin_cos();
         let target = here + reach * mean * (cos * e + sin * f);
         // Off the surface by a second-order term: a cheap first look.
-        if sharpest(front, fan, target) >= best {
+        if fan.sharpest(front.positions(), target, normal) >= best {
             continue;
         }
         let Some(there) = front.trial(guide, v, start, target) else { continue };
-        let now = sharpest(front, fan, there.position);
-        if now < best && facing(front, fan, there.position, there.normal) >= fidelity {
+        let now = fan.sharpest(front.positions(), there.position, there.normal);
+        if now < best && fan.facing(front.positions(), there.position, there.normal) >= fidelity {
             best = now;
             moved = true;
             front.put(v, &there);
         }
     }
     moved
-}
-
-/// Least cosine between the surface's normal at a vertex at `point` and the triangles around it: how
-/// well they stand for the surface. A vertex that leaves a narrow ridge cuts it off.
-pub(super) fn facing(front: &Front, fan: &[[u32; 2]], point: DVec3, normal: DVec3) -> f64 {
-    let cosine = |&[a, b]: &[u32; 2]| {
-        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
-        a.cross(b).normalize_or_zero().dot(normal)
-    };
-    fan.iter().map(cosine).fold(f64::INFINITY, f64::min)
-}
-
-/// Largest cotangent of the triangles around a vertex at `point`.
-pub(super) fn sharpest(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
-    let largest = |&[a, b]: &[u32; 2]| {
-        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
-        let c = b - a;
-        a.dot(b).max(b.dot(c)).max(-a.dot(c)) / a.cross(b).length()
-    };
-    fan.iter().map(largest).fold(f64::NEG_INFINITY, f64::max)
-}
-
-/// Least ratio of twice the area to the sum of the squared sides of the triangles around a vertex at
-/// `point`; 0.29 if they are equilateral.
-fn worst(front: &Front, fan: &[[u32; 2]], point: DVec3) -> f64 {
-    let ratio = |&[a, b]: &[u32; 2]| {
-        let (a, b) = (front.position(a as usize) - point, front.position(b as usize) - point);
-        a.cross(b).length() / (a.length_squared() + b.length_squared() + (b - a).length_squared())
-    };
-    fan.iter().map(ratio).fold(f64::INFINITY, f64::min)
 }

@@ -31,12 +31,9 @@ pub(crate) fn spread(
         sweep(front, guide, progress)?;
     }
     progress.report(0.8)?;
-    // The least angle of a triangle says little of a quad.
-    if cells == CellShape::Triangle {
-        sharpen(front, guide, progress)?;
-    }
+    sharpen(front, guide, cells, progress)?;
     progress.report(0.9)?;
-    lengthen(front, guide, progress)?;
+    lengthen(front, guide, cells, progress)?;
     progress.report(1.0)
 }
 
