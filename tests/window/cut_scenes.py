@@ -145,4 +145,73 @@ def cut_mirrored():
         yield from tool("builtin.select_box")
 
 
-SCENES = (cut_arm, cut_three, cut_mirrored)
+def places(ob):
+    """Vertices of a mesh object in the world, (n, 3)."""
+    return np.array([ob.matrix_world @ vertex.co for vertex in ob.data.vertices])
+
+
+def cut_quads():
+    """A ball of quads cut with *Faces: Quads* in the header: caps of quads; all selected, moved, scaled; undone, saved, opened."""
+    yield from fresh()
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=1.5)
+    bpy.ops.ed.undo_push(message="Ball")
+    yield from tool("gridmesh.cut")
+    options = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT").operator_properties(
+        "object.gridmesh_cut"
+    )
+    options.cells = "QUADS"
+    x, y = stage.middle()
+    try:
+        t = np.linspace(-1, 1, 30)
+        shaky = [(x + 260 * a, y + 60 * np.sin(4 * a) + 3 * np.sin(40 * a)) for a in t]
+        yield from stroke(shaky)
+        yield from choose_side((x, y - 110), "cut_quads_1")
+        (kept,) = mesh_objects()
+        assert open_edges(kept) == 0, "the ball is not capped"
+        in_cap = [face for face in kept.data.polygons if face.normal.z > 0.5 and abs(face.center.z) < 0.7]
+        odd = [face for face in in_cap if len(face.vertices) != 4]
+        assert len(in_cap) > 50
+        assert len(odd) <= 1, f"{len(odd)} of {len(in_cap)} faces of the cap are no quads"
+        before = places(kept)
+        yield from tool("builtin.select_box")
+        for keys in (("A",), ("G", "X", "1", "RET"), ("S", "2", "RET")):
+            for key in keys:
+                yield from stage.write(key) if key.isdecimal() else stage.key(key)
+            yield 0.8
+        put = places(kept)
+        assert np.abs(np.ptp(put, axis=0) - 2 * np.ptp(before, axis=0)).max() < 1e-4, "scaled"
+        steps = []
+        for _ in range(4):
+            yield from stage.key("Z", ctrl=True)
+            yield 0.8
+            (ob,) = mesh_objects()
+            steps.append(len(ob.data.polygons))
+            if steps[-1] == 48 * 24:
+                break
+        assert steps[-1] == 48 * 24, "the cut itself is not undone"
+        assert len(steps) >= 3, "moving, scaling and cutting are three steps"
+        for _ in steps:
+            yield from stage.key("Z", ctrl=True, shift=True)
+            yield 0.8
+        (kept,) = mesh_objects()
+        assert np.abs(places(kept) - put).max() < 1e-5, "redone"
+        turn_view(0.7, 0.0, 0.4)
+        with stage.override():
+            bpy.ops.view3d.view_all()
+        stage.view.spaces.active.overlay.show_wireframes = True
+        yield 0.5
+        yield from stage.picture("cut_quads_2")
+        path = bpy.app.tempdir + "cut.blend"
+        with stage.override():
+            bpy.ops.wm.save_as_mainfile(filepath=path)
+        yield 0.5
+        bpy.ops.wm.open_mainfile(filepath=path)
+        yield 1.5
+        (kept,) = mesh_objects()
+        assert np.abs(places(kept) - put).max() < 1e-5, "opened"
+        assert open_edges(kept) == 0
+    finally:
+        yield from tool("builtin.select_box")
+
+
+SCENES = (cut_arm, cut_three, cut_mirrored, cut_quads)

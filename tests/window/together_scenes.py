@@ -282,7 +282,6 @@ def together_saved():
     """All selected, moved, scaled; undone twice, redone twice; saved and opened: body and outline where they were put."""
     body = yield from drawn()
     before = shape(body)
-    np.array(body.matrix_world)
     yield from everything()
     yield from typed("G", "X", "2", "RET")
     yield from typed("S", "2", "RET")
