@@ -32,6 +32,19 @@ def test_inside_a_closed_line_is_left(turn):
     assert (np.linalg.norm(far, axis=1) < np.linalg.norm(near, axis=1)).all()
 
 
+@pytest.mark.parametrize("left", [True, False])
+def test_the_band_of_a_shaky_line_is_not_frayed(left):
+    x = np.arange(0.0, 400.0, 2.0)
+    y = 60 * np.sin(x / 60) + 3 * np.sin(x / 3)
+    near, far = drawnline.band(np.column_stack([x, y]), 80.0, left=left)
+    assert np.linalg.norm(far - near, axis=1).min() > 40
+    steps = np.diff(far, axis=0)
+    ahead = (steps * np.diff(near, axis=0)).sum(axis=1)
+    assert ahead.min() > -25, "it runs back"
+    lengths = np.linalg.norm(steps, axis=1)
+    assert lengths.max() < 12 * np.median(np.linalg.norm(np.diff(near, axis=0), axis=1))
+
+
 def test_smoothed_line_keeps_its_ends_and_closes():
     rng = np.random.default_rng(3)
     points = np.column_stack([np.arange(200.0), rng.integers(0, 2, 200)])
