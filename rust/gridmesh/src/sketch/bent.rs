@@ -22,6 +22,9 @@ const BENT_SHARE: f64 = 0.1;
 /// So many bends are traced.
 const TRACED: usize = 2;
 
+/// Share of the bend that quads are tried with where no patch on the whole bend is good.
+const WEAKER: f64 = 0.75;
+
 impl Job<'_> {
     /// True if the lattice may bend.
     fn bends(&self) -> bool {
@@ -44,10 +47,26 @@ impl Job<'_> {
             return Ok(None);
         }
         let mut best: Option<Found> = None;
+        let is_good = self.best_bent_by(1.0, asked, &mut best, progress)?;
+        if !is_good && self.options.cells == CellShape::Quad {
+            self.best_bent_by(WEAKER, asked, &mut best, progress)?;
+        }
+        Ok(best)
+    }
+
+    /// Places patches on lattices bent by a share of what is asked for until one is good, and keeps the best; true if one
+    /// was good.
+    fn best_bent_by(
+        &mut self,
+        strength: f64,
+        asked: Asked,
+        best: &mut Option<Found>,
+        progress: Progress<'_>,
+    ) -> Result<bool> {
         // The second bend is traced if the first was not expected to be better, or is not good when it is placed.
         for pass in 0..TRACED {
             let started = Instant::now();
-            let outlines = match self.bent_outlines(asked, pass > 0, progress.part(0.0, 0.3)) {
+            let outlines = match self.bent_outlines(strength, asked, pass > 0, progress.part(0.0, 0.3)) {
                 // What the solver cannot do is left to the straight lattice; the report says so.
                 Err(Error::Solver { .. }) => Vec::new(),
                 outlines => outlines?,
@@ -56,11 +75,14 @@ impl Job<'_> {
             let mut outlines: Vec<(Bent, Lattice, Outline)> = outlines.into_iter().skip(pass).collect();
             outlines.sort_by(|a, b| (a.0.price + a.2.cost).total_cmp(&(b.0.price + b.2.cost)));
             self.lap("bend", started);
-            if self.best_placed(outlines, &mut best, progress)? || is_last {
+            if self.best_placed(outlines, best, progress)? {
+                return Ok(true);
+            }
+            if is_last {
                 break;
             }
         }
-        Ok(best)
+        Ok(false)
     }
 
     /// Places patches until one is good, and keeps the best; true if one was good.
@@ -97,6 +119,7 @@ impl Job<'_> {
     /// no more than the next bend promises.
     fn bent_outlines(
         &self,
+        strength: f64,
         asked: Asked,
         all: bool,
         progress: Progress<'_>,
@@ -114,13 +137,14 @@ impl Job<'_> {
             return Ok(Vec::new());
         };
         let mut found = Vec::new();
-        let is_enough = |bent: Bent, next: f64| {
+        let is_enough = |mut bent: Bent, next: f64| {
+            bent.share *= strength;
             let Some(traced) = self.bent_outline(asked, bent, progress)? else { return Ok(false) };
             let cost = traced.0.price + traced.2.cost;
             found.push(traced);
             Ok(!all && self.options.cells == CellShape::Triangle && cost <= next)
         };
-        choose::candidates(&Arc::new(ground), self.options.bend, TRACED, progress, is_enough)?;
+        choose::candidates(&Arc::new(ground), strength * self.options.bend, TRACED, progress, is_enough)?;
         Ok(found)
     }
 
