@@ -160,6 +160,11 @@ impl Bent {
         DVec2::from_angle(self.turn)
     }
 
+    /// True if sizes were asked for.
+    pub(crate) fn is_sized(&self) -> bool {
+        self.ground.is_asked()
+    }
+
     /// Largest over smallest local edge length.
     pub(crate) fn scale_range(&self) -> f64 {
         let (low, high) =

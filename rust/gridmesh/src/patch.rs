@@ -6,6 +6,7 @@ pub(crate) mod expel;
 pub(crate) mod mirror;
 pub(crate) mod place;
 pub(crate) mod pockets;
+pub(crate) mod sizes;
 mod tips;
 
 use std::borrow::Cow;

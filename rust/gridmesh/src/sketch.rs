@@ -1,6 +1,7 @@
 //! From a drawn outline to a flat patch: the whole of the paper's section IV.
 
 mod bent;
+mod found;
 mod job;
 mod kept;
 mod lattices;

@@ -14,7 +14,8 @@ use crate::options::{BoundaryMethod, CellShape, Mirror, SketchOptions};
 use crate::path::outline::Outline;
 use crate::path::placement::Lattice;
 use crate::progress::{Meter, Progress};
-use crate::sketch::job::{Asked, Effort, Found, Job, SLIGHT, faults};
+use crate::sketch::found::{Found, faults};
+use crate::sketch::job::{Asked, Effort, Job};
 
 /// Distances of a path on a bent lattice of triangles count so much of what they do on a straight one.
 const BENT_SHARE: f64 = 0.1;
@@ -104,7 +105,7 @@ impl Job<'_> {
             let faults = faults(&placed);
             let bent = Some((Arc::new(bent), lattice));
             let found = Found { faults, bent, outline, placed, mirror_error };
-            let is_good = found.faults <= SLIGHT && found.starved() == 0.0 && found.placed.worn_corners == 0;
+            let is_good = found.is_good();
             if best.as_ref().is_none_or(|best| found.score() < best.score()) {
                 *best = Some(found);
             }

@@ -1,6 +1,5 @@
 //! What is wanted of a lattice, and how hard it is tried.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
@@ -15,12 +14,13 @@ use crate::error::{Error, Result};
 use crate::lattice::axial::Axial;
 use crate::lattice::grid::{Square, Triangular};
 use crate::options::{CellShape, SketchOptions, SketchReport};
-use crate::patch::angles::{min_angle, min_angle_off_corners};
+use crate::patch::angles::min_angle;
 use crate::patch::place::{Placed, place};
 use crate::patch::{Patch, mirror};
 use crate::path::outline::{Obstacle, Outline};
 use crate::path::placement::{Laid, Lattice};
 use crate::progress::{Meter, Progress};
+use crate::sketch::found::{Found, faults};
 use crate::sketch::kept::Kept;
 
 #[derive(Clone, Copy)]
@@ -36,41 +36,6 @@ pub(crate) enum Effort {
     Full,
     /// One, whose search takes so many states at most.
     Quick(u64),
-}
-
-/// A patch on one lattice, and how far it is from being good enough.
-pub(crate) struct Found {
-    pub(crate) faults: f64,
-    /// The map and the straight lattice of the bent plane; none on a straight lattice.
-    pub(crate) bent: Option<(Arc<Bent>, Lattice)>,
-    pub(crate) outline: Outline,
-    pub(crate) placed: Placed,
-    pub(crate) mirror_error: Option<f64>,
-}
-
-impl Found {
-    /// How far the least angle is from a good one: 0 to 1.
-    pub(crate) fn starved(&self) -> f64 {
-        let patch = &self.placed.patch;
-        // At a corner of the drawing two quads share its angle on any lattice.
-        let least = match patch.cells() {
-            CellShape::Triangle => min_angle(patch),
-            CellShape::Quad => min_angle_off_corners(patch),
-        };
-        (1.0 - least / GOOD_ANGLE).max(0.0)
-    }
-
-    /// Cost, faults, starved triangles and lost corners in turns.
-    pub(crate) fn score(&self) -> f64 {
-        let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
-        let corners = TURNS_OF_CORNER * self.placed.worn_corners as f64;
-        self.outline.cost + price + TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved() + corners
-    }
-
-    /// True if a part of the drawing is lost in the mesh.
-    pub(crate) fn lost(&self) -> bool {
-        self.placed.lost() > 0
-    }
 }
 
 pub(crate) struct Job<'a> {
@@ -261,11 +226,7 @@ impl Job<'_> {
     pub(crate) fn is_settled(&self, found: &Found) -> bool {
         const FEW: usize = 12;
         let price = found.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
-        found.faults <= SLIGHT
-            && found.starved() == 0.0
-            && found.placed.worn_corners == 0
-            && price < 1.0
-            && found.outline.turns(self.options.cells) <= FEW * self.contours.len()
+        found.is_good() && price < 1.0 && found.outline.turns(self.options.cells) <= FEW * self.contours.len()
     }
 
     /// The patch of an outline, symmetric if that was asked for; and by how much it is not.
@@ -344,23 +305,8 @@ impl Job<'_> {
     }
 }
 
-/// Faults of a patch on a bent lattice up to which no straight one is tried, and how many turns a fault
-/// of one outweighs between the two.
-pub(crate) const SLIGHT: f64 = 0.1;
-
-pub(crate) const TURNS_OF_FAULT: f64 = 12.0;
-
 /// Straight lattices are not tried where the cost of the first is so many times that of a bent one.
 const MUCH: f64 = 1.2;
-
-/// Where a patch on a bent lattice has triangles below this angle, 20 degrees, others are placed too; and
-/// how many turns it outweighs that an angle is zero.
-pub(crate) const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
-
-/// A corner of the drawing that the mesh cuts off is worth so many turns: more than the lattices differ by.
-const TURNS_OF_CORNER: f64 = 12.0;
-
-pub(crate) const TURNS_OF_ANGLE: f64 = 16.0;
 
 /// After so many states no more shifts of the lattice are tried.
 const STATES_BEFORE_SHIFTS: u64 = 8_000_000;
@@ -375,19 +321,6 @@ pub struct Sketch {
     /// Its lattice, to be kept for drawings that differ a little.
     pub kept: Kept,
 }
-
-/// How far a placement is from being good enough: zero if it is.
-pub(crate) fn faults(placed: &Placed) -> f64 {
-    let (angle, distance) = ENOUGH;
-    let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
-    // A patch that has lost a part of the drawing serves only to say where.
-    let lost = 100.0 * placed.lost() as f64;
-    lost + 4.0 * starved + (placed.strayed - distance).max(0.0)
-}
-
-/// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies
-/// this close to the drawing, in edges, is good enough not to try another lattice angle.
-pub(crate) const ENOUGH: (f64, f64) = (14.0 * std::f64::consts::PI / 180.0, 1.0);
 
 /// Why a lattice angle gives no boundary of the size asked for.
 pub(crate) struct Miss {

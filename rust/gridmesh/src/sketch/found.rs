@@ -1,0 +1,98 @@
+//! A patch on one lattice, and what speaks against it.
+
+use std::sync::Arc;
+
+use crate::bend::Bent;
+use crate::options::CellShape;
+use crate::patch::angles::{min_angle, min_angle_off_corners};
+use crate::patch::place::Placed;
+use crate::patch::sizes::longest_over_median;
+use crate::path::outline::Outline;
+use crate::path::placement::Lattice;
+
+/// Faults of a patch on a bent lattice up to which no straight one is tried.
+const SLIGHT: f64 = 0.1;
+
+/// So many turns a fault of one outweighs between a bent lattice and a straight one.
+const TURNS_OF_FAULT: f64 = 12.0;
+
+/// Where a patch on a bent lattice has corners below this angle, 20 degrees, others are placed too.
+const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
+
+/// So many turns it outweighs that an angle is zero.
+const TURNS_OF_ANGLE: f64 = 16.0;
+
+/// A corner of the drawing that the mesh cuts off is worth so many turns: more than the lattices differ by.
+const TURNS_OF_CORNER: f64 = 12.0;
+
+/// The longest edges may be so many times the median. Chosen looking at outlines of icons whose longest edges were 2.5 to
+/// 3.5 medians: parts of some had lost their shape.
+const LONG: f64 = 2.4;
+
+/// So many turns each median beyond it costs.
+const TURNS_OF_LENGTH: f64 = 20.0;
+
+/// A patch on one lattice, and how far it is from being good enough.
+pub(crate) struct Found {
+    pub(crate) faults: f64,
+    /// The map and the straight lattice of the bent plane; none on a straight lattice.
+    pub(crate) bent: Option<(Arc<Bent>, Lattice)>,
+    pub(crate) outline: Outline,
+    pub(crate) placed: Placed,
+    pub(crate) mirror_error: Option<f64>,
+}
+
+impl Found {
+    /// How far the least angle is from a good one: 0 to 1.
+    fn starved(&self) -> f64 {
+        let patch = &self.placed.patch;
+        // At a corner of the drawing two quads share its angle on any lattice.
+        let least = match patch.cells() {
+            CellShape::Triangle => min_angle(patch),
+            CellShape::Quad => min_angle_off_corners(patch),
+        };
+        (1.0 - least / GOOD_ANGLE).max(0.0)
+    }
+
+    /// By how much the longest edges of a bent lattice are too long, see [`LONG`]; a straight one has none.
+    fn coarse(&self) -> f64 {
+        match &self.bent {
+            Some((bent, _)) if !bent.is_sized() => (longest_over_median(&self.placed.patch) - LONG).max(0.0),
+            _ => 0.0,
+        }
+    }
+
+    /// Cost, faults, starved triangles, long edges and lost corners in turns.
+    pub(crate) fn score(&self) -> f64 {
+        let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
+        let corners = TURNS_OF_CORNER * self.placed.worn_corners as f64;
+        let shape = TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved();
+        self.outline.cost + price + shape + TURNS_OF_LENGTH * self.coarse() + corners
+    }
+
+    /// True if no other bend needs to be tried.
+    pub(crate) fn is_good(&self) -> bool {
+        self.faults <= SLIGHT
+            && self.starved() == 0.0
+            && self.coarse() == 0.0
+            && self.placed.worn_corners == 0
+    }
+
+    /// True if a part of the drawing is lost in the mesh.
+    pub(crate) fn lost(&self) -> bool {
+        self.placed.lost() > 0
+    }
+}
+
+/// How far a placement is from being good enough: zero if it is.
+pub(crate) fn faults(placed: &Placed) -> f64 {
+    let (angle, distance) = ENOUGH;
+    let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
+    // A patch that has lost a part of the drawing serves only to say where.
+    let lost = 100.0 * placed.lost() as f64;
+    lost + 4.0 * starved + (placed.strayed - distance).max(0.0)
+}
+
+/// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies
+/// this close to the drawing, in edges, is good enough not to try another lattice angle.
+pub(crate) const ENOUGH: (f64, f64) = (14.0 * std::f64::consts::PI / 180.0, 1.0);
