@@ -94,12 +94,20 @@ def band(line: np.ndarray, width: float, *, left: bool) -> tuple[np.ndarray, np.
     """Pairs of points (n, 2) on the line and `width` away from it, on one side: the edges of a shaded band.
 
     The line's direction is taken over a length of `width`, so that a shaky hand does not fray the band; in a bend that is
-    narrower than the band the far edge waits rather than runs back.
+    narrower than the band the far edge waits rather than runs back. Within a closed line it is at most the
+    area over the length wide, half the radius of a circle.
     """
     closed = np.array_equal(line[0], line[-1])
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    period = float(arc[-1]) if closed else None
-    reach = min(0.5 * width, 0.25 * float(arc[-1]))
+    length = float(arc[-1])
+    period = length if closed else None
+    if closed:
+        x, y = line[:-1].T
+        doubled = float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+        if left:
+            width = min(width, 0.5 * abs(doubled) / max(length, 1e-300))
+        left = left == (doubled > 0)
+    reach = min(0.5 * width, 0.25 * length)
     ends = [
         np.column_stack([np.interp(arc + way, arc, line[:, axis], period=period) for axis in (0, 1)])
         for way in (-reach, reach)
@@ -107,10 +115,6 @@ def band(line: np.ndarray, width: float, *, left: bool) -> tuple[np.ndarray, np.
     along = ends[1] - ends[0]
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
     across = np.column_stack([-along[:, 1], along[:, 0]])
-    if closed:
-        x, y = line[:-1].T
-        counter_clockwise = float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) > 0
-        left = left == counter_clockwise
     far = line + across * (width if left else -width)
     for k in range(1, len(far)):
         if (far[k] - far[k - 1]) @ along[k] < 0:

@@ -32,6 +32,18 @@ def test_inside_a_closed_line_is_left(turn):
     assert (np.linalg.norm(far, axis=1) < np.linalg.norm(near, axis=1)).all()
 
 
+@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize("radius", [8.0, 30.0, 200.0])
+def test_the_band_within_a_small_closed_line_stays_within(radius, turn):
+    ring = circle(40, radius)[::turn, :2]
+    ring = np.vstack([ring, ring[:1]])
+    _, far = drawnline.band(ring, 56.0, left=True)
+    assert np.allclose(far[0], far[-1])
+    assert (np.abs(np.linalg.norm(far, axis=1) - max(radius - 56, 0.5 * radius)) < 0.03 * radius).all()
+    _, far = drawnline.band(ring, 56.0, left=False)
+    assert (np.abs(np.linalg.norm(far, axis=1) - radius - 56) < 1).all()
+
+
 @pytest.mark.parametrize("left", [True, False])
 def test_the_band_of_a_shaky_line_is_not_frayed(left):
     x = np.arange(0.0, 400.0, 2.0)

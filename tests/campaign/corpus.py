@@ -151,7 +151,7 @@ def united(shapes: list[tuple[list[list[complex]], bool]], low: complex, size: f
     for rings, even_odd in shapes:
         clipper = pyclipper.Pyclipper()
         rounded = [[(round((p - low).real * scale), round((p - low).imag * scale)) for p in r] for r in rings]
-        rounded = [ring for ring in rounded if len(set(ring)) > 2]
+        rounded = [ring for ring in rounded if pyclipper.Area(ring) != 0]
         if not rounded:
             continue
         clipper.AddPaths(rounded, pyclipper.PT_SUBJECT, True)
@@ -228,7 +228,7 @@ def lands(archive: tarfile.TarFile) -> Iterator[tuple[str, dict]]:
         (sx, sy), (tx, ty) = topology["transform"]["scale"], topology["transform"]["translate"]
         arcs = []
         for arc in topology["arcs"]:
-            xs, ys = (itertools.accumulate(step[k] for step in arc) for k in (0, 1))
+            xs, ys = (itertools.accumulate(steps) for steps in zip(*arc, strict=True))
             arcs.append([complex(x * sx + tx, y * sy + ty) for x, y in zip(xs, ys, strict=True)])
         for land in topology["objects"]["countries"]["geometries"]:
             several = land.get("arcs", []) if land["type"] == "MultiPolygon" else [land.get("arcs", [])]
@@ -241,8 +241,7 @@ def lands(archive: tarfile.TarFile) -> Iterator[tuple[str, dict]]:
                     continue
                 low = complex(min(p.real for p in rings[0]), min(p.imag for p in rings[0]))
                 size = max(max((p - low).real, (p - low).imag) for p in rings[0])
-                # Some islets are drawn as a line there and back, or as a point.
-                if size == 0 or abs(pyclipper.Area([(p.real, p.imag) for p in rings[0]])) < LEAST * size**2:
+                if size == 0:
                     continue
                 for part in united([(rings, True)], low, size):
                     yield land["properties"]["name"], part
@@ -272,6 +271,8 @@ def main() -> None:
                         line = json.dumps(row | part) + "\n"
                         digest.update(line.encode())
                         corpus.write(line)
+                if not count:
+                    raise SystemExit(f"{package} has no outlines")
                 total += count
                 print(f"{count:6d} {package}", flush=True)
     print(f"{total:6d} outlines, sha256 {digest.hexdigest()}")

@@ -150,16 +150,19 @@ def places(ob):
     return np.array([ob.matrix_world @ vertex.co for vertex in ob.data.vertices])
 
 
+def cut_options():
+    """The options of the tool, which it keeps."""
+    tools = bpy.context.workspace.tools
+    return tools.from_space_view3d_mode("OBJECT").operator_properties("object.gridmesh_cut")
+
+
 def cut_quads():
     """A ball of quads cut with *Faces: Quads* in the header: caps of quads; all selected, moved, scaled; undone, saved, opened."""
     yield from fresh()
     bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=1.5)
     bpy.ops.ed.undo_push(message="Ball")
     yield from tool("gridmesh.cut")
-    options = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT").operator_properties(
-        "object.gridmesh_cut"
-    )
-    options.cells = "QUADS"
+    cut_options().cells = "QUADS"
     x, y = stage.middle()
     try:
         t = np.linspace(-1, 1, 30)
@@ -211,6 +214,8 @@ def cut_quads():
         assert np.abs(places(kept) - put).max() < 1e-5, "opened"
         assert open_edges(kept) == 0
     finally:
+        yield from tool("gridmesh.cut")
+        cut_options().cells = "TRIANGLES"
         yield from tool("builtin.select_box")
 
 

@@ -2,6 +2,7 @@
 
 pub(crate) mod exact;
 pub(crate) mod flat;
+pub(crate) mod flat_patch;
 pub(crate) mod flips;
 pub(crate) mod graded;
 pub(crate) mod grown;

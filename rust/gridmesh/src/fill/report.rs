@@ -1,7 +1,7 @@
 //! What is told about a fill.
 
 use crate::fill::layout::unroll::Unrolling;
-use crate::fill::planar::flat::Method;
+use crate::fill::planar::flat_patch::Method;
 
 /// Numbers about a [`super::Fill`].
 #[derive(Clone, Debug, Default, PartialEq)]

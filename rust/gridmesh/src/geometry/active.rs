@@ -9,11 +9,11 @@ pub(crate) const ASK_EVERY: usize = 1 << 11;
 
 /// What became of a vertex.
 pub(crate) enum Visit {
-    /// It is left alone until a neighbour moves.
+    /// It is left alone until a neighbour says that it was moved.
     Done,
     /// It has no better place yet: it is visited again, until it has had none for some rounds.
     Stuck,
-    /// It was moved: it and its neighbours are visited again.
+    /// It was moved, or a neighbour for its sake: it and its neighbours are visited again.
     Moved,
 }
 

@@ -47,10 +47,19 @@ impl Job<'_> {
         if effort != Effort::Full || !self.bends() {
             return Ok(None);
         }
+        let started = Instant::now();
+        let ground = match self.ground(asked, progress) {
+            // What the solver cannot do is left to the straight lattice; the report says so.
+            Err(Error::Solver { .. }) => None,
+            ground => ground?,
+        };
+        self.lap("bend", started);
         let mut best: Option<Found> = None;
-        let is_good = self.best_bent_by(1.0, asked, &mut best, progress)?;
-        if !is_good && self.options.cells == CellShape::Quad {
-            self.best_bent_by(WEAKER, asked, &mut best, progress)?;
+        if let Some(ground) = ground {
+            let is_good = self.best_bent_by(1.0, &ground, asked, &mut best, progress)?;
+            if !is_good && self.options.cells == CellShape::Quad {
+                self.best_bent_by(WEAKER, &ground, asked, &mut best, progress)?;
+            }
         }
         Ok(best)
     }
@@ -60,6 +69,7 @@ impl Job<'_> {
     fn best_bent_by(
         &mut self,
         strength: f64,
+        ground: &Arc<Ground>,
         asked: Asked,
         best: &mut Option<Found>,
         progress: Progress<'_>,
@@ -67,11 +77,12 @@ impl Job<'_> {
         // The second bend is traced if the first was not expected to be better, or is not good when it is placed.
         for pass in 0..TRACED {
             let started = Instant::now();
-            let outlines = match self.bent_outlines(strength, asked, pass > 0, progress.part(0.0, 0.3)) {
-                // What the solver cannot do is left to the straight lattice; the report says so.
-                Err(Error::Solver { .. }) => Vec::new(),
-                outlines => outlines?,
-            };
+            let outlines =
+                match self.bent_outlines(strength, ground, asked, pass > 0, progress.part(0.0, 0.3)) {
+                    // As above.
+                    Err(Error::Solver { .. }) => Vec::new(),
+                    outlines => outlines?,
+                };
             let is_last = outlines.len() != 1 || self.options.cells == CellShape::Quad;
             let mut outlines: Vec<(Bent, Lattice, Outline)> = outlines.into_iter().skip(pass).collect();
             outlines.sort_by(|a, b| (a.0.price + a.2.cost).total_cmp(&(b.0.price + b.2.cost)));
@@ -116,15 +127,8 @@ impl Job<'_> {
         Ok(false)
     }
 
-    /// The boundaries on the most promising bent lattices: of triangles, unless all are wanted, none after one that costs
-    /// no more than the next bend promises.
-    fn bent_outlines(
-        &self,
-        strength: f64,
-        asked: Asked,
-        all: bool,
-        progress: Progress<'_>,
-    ) -> Result<Vec<(Bent, Lattice, Outline)>> {
+    /// What all bends of the drawing share; none where it cannot bend.
+    fn ground(&self, asked: Asked, progress: Progress<'_>) -> Result<Option<Arc<Ground>>> {
         let edge_length = match asked {
             Asked::EdgeLength(h) => h,
             Asked::Cells(n) => self.first_guess(n),
@@ -134,9 +138,19 @@ impl Job<'_> {
         let density = self.options.density.as_ref();
         let is_symmetric = self.symmetry.is_some();
         let ground = Ground::new(&self.contours, frame, density, is_symmetric, self.options.cells, progress)?;
-        let Some(ground) = ground else {
-            return Ok(Vec::new());
-        };
+        Ok(ground.map(Arc::new))
+    }
+
+    /// The boundaries on the most promising lattices bent by a share of what is asked for: of triangles, unless all are
+    /// wanted, none after one that costs no more than the next bend promises.
+    fn bent_outlines(
+        &self,
+        strength: f64,
+        ground: &Arc<Ground>,
+        asked: Asked,
+        all: bool,
+        progress: Progress<'_>,
+    ) -> Result<Vec<(Bent, Lattice, Outline)>> {
         let mut found = Vec::new();
         let is_enough = |mut bent: Bent, next: f64| {
             bent.share *= strength;
@@ -145,7 +159,7 @@ impl Job<'_> {
             found.push(traced);
             Ok(!all && self.options.cells == CellShape::Triangle && cost <= next)
         };
-        choose::candidates(&Arc::new(ground), strength * self.options.bend, TRACED, progress, is_enough)?;
+        choose::candidates(ground, strength * self.options.bend, TRACED, progress, is_enough)?;
         Ok(found)
     }
 

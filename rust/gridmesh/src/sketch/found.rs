@@ -13,7 +13,7 @@ use crate::path::placement::Lattice;
 /// Faults of a patch on a bent lattice up to which no straight one is tried.
 const SLIGHT: f64 = 0.1;
 
-/// So many turns a fault of one outweighs between a bent lattice and a straight one.
+/// What a fault of one costs, in turns, where a bent lattice is compared with a straight one.
 const TURNS_OF_FAULT: f64 = 12.0;
 
 /// Where a patch on a bent lattice has corners below this angle, 20 degrees, others are placed too.
@@ -55,7 +55,7 @@ impl Found {
     }
 
     /// By how much the longest edges of a bent lattice are too long, see [`LONG`]; a straight one has none.
-    fn coarse(&self) -> f64 {
+    fn overlong(&self) -> f64 {
         match &self.bent {
             Some((bent, _)) if !bent.is_sized() => (longest_over_median(&self.placed.patch) - LONG).max(0.0),
             _ => 0.0,
@@ -67,14 +67,14 @@ impl Found {
         let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
         let corners = TURNS_OF_CORNER * self.placed.worn_corners as f64;
         let shape = TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved();
-        self.outline.cost + price + shape + TURNS_OF_LENGTH * self.coarse() + corners
+        self.outline.cost + price + shape + TURNS_OF_LENGTH * self.overlong() + corners
     }
 
-    /// True if no other bend needs to be tried.
+    /// True if neither another bend nor, where it turns little, a straight lattice needs to be tried.
     pub(crate) fn is_good(&self) -> bool {
         self.faults <= SLIGHT
             && self.starved() == 0.0
-            && self.coarse() == 0.0
+            && self.overlong() == 0.0
             && self.placed.worn_corners == 0
     }
 
@@ -95,4 +95,4 @@ pub(crate) fn faults(placed: &Placed) -> f64 {
 
 /// A placement whose triangles have this angle, 14 degrees, away from drawn corners, and which lies
 /// this close to the drawing, in edges, is good enough not to try another lattice angle.
-pub(crate) const ENOUGH: (f64, f64) = (14.0 * std::f64::consts::PI / 180.0, 1.0);
+const ENOUGH: (f64, f64) = (14.0 * std::f64::consts::PI / 180.0, 1.0);

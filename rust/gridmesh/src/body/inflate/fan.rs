@@ -4,7 +4,10 @@ use glam::DVec3;
 
 use crate::geometry::corner::Ideal;
 
-/// The triangles around a vertex, of quads those at their corners. `at` tells where vertices lie.
+/// What [`Fan::sharpest`] is at least where a corner of a quad is reflex: more than any cotangent that is let be.
+pub(super) const REFLEX: f64 = 1e6;
+
+/// The triangles around a vertex, of quads those at their corners. To its measures `at` tells where vertices lie.
 #[derive(Clone, Copy)]
 pub(super) struct Fan<'a> {
     /// The two vertices of each that follow the one in the middle.
@@ -32,7 +35,8 @@ impl<'a> Fan<'a> {
     }
 
     /// Largest cotangent of the angles of the triangles around a vertex at `point`; of quads the cotangent of the
-    /// corner that is furthest from a right angle, infinite if one is reflex, seen along the surface's normal there.
+    /// corner that is furthest from a right angle; from [`REFLEX`] on, the more the further, if one is reflex, seen along the surface's
+    /// normal there.
     pub fn sharpest(&self, at: impl Fn(u32) -> DVec3, point: DVec3, normal: DVec3) -> f64 {
         let largest = |(i, j, ideal): (u32, u32, Ideal)| {
             let (a, b) = (at(i) - point, at(j) - point);
@@ -44,8 +48,10 @@ impl<'a> Fan<'a> {
                 Ideal::Last => b.dot(c).abs(),
             };
             let area = a.cross(b);
-            if ideal != Ideal::Equilateral && area.dot(normal) <= 0.0 {
-                return f64::INFINITY;
+            let facing = area.dot(normal);
+            if ideal != Ideal::Equilateral && facing <= 0.0 {
+                // A right angle at the wrong side counts most.
+                return REFLEX * (2.0 - facing / cosine.hypot(facing).max(f64::MIN_POSITIVE));
             }
             cosine / area.length()
         };

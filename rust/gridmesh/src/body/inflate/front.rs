@@ -103,7 +103,7 @@ impl Trial {
 }
 
 /// Unit normal of the surface `z^2 = f` where it has this height, from the gradient of `f`.
-pub(crate) fn surface_normal(gradient: DVec2, height: f64) -> DVec3 {
+fn surface_normal(gradient: DVec2, height: f64) -> DVec3 {
     (-gradient).extend(2.0 * height).normalize_or(DVec3::Z)
 }
 

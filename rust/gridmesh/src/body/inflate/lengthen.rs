@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use glam::{DVec2, DVec3};
 
+use super::fan::REFLEX;
 use super::polish::LEVEL;
 use crate::body::inflate::front::{Front, Guide};
 use crate::error::Result;
@@ -65,7 +66,8 @@ struct Limits {
     turn: f64,
 }
 
-/// Mean length of the edges of the body: those of the silhouette count once, others for the back as well.
+/// Mean length of the edges of the body: those of the silhouette count once, others for the back as well. Of quads the
+/// diagonals count as edges here and below.
 fn mean_length(front: &Front, guide: &Guide<'_>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for v in 0..front.flat.len() {
@@ -131,7 +133,7 @@ fn moved(
     let (e, f) = normal.any_orthonormal_pair();
     let level = fan.facing(front.positions(), here, normal).min(limits.level);
     let sharpest = fan.sharpest(front.positions(), here, normal);
-    let thin = if sharpest.is_finite() { sharpest.max(limits.thin) } else { limits.thin };
+    let thin = if sharpest < REFLEX { sharpest.max(limits.thin) } else { limits.thin };
     let mut best = present;
     let mut is_moved = false;
     for reach in REACHES {

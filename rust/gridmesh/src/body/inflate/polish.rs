@@ -32,8 +32,8 @@ const REACHES: [f64; 3] = [0.3, 0.12, 0.05];
 
 /// One sweep over the vertices, each moved along the surface to where its triangles are best.
 ///
-/// A triangle's badness is the sum of its squared sides over its area, both seen in the tangent
-/// plane of the vertex: convex in the vertex's position there. One Newton step, weighted by the
+/// A triangle's badness is the sum of its squared sides over its area, for the corner of a quad that of the
+/// quad's two sides, all seen in the tangent plane of the vertex: convex in the vertex's position there. One Newton step, weighted by the
 /// badness itself so that the worst triangles count most, is taken and shortened until no triangle
 /// falls below `least_area` in projection.
 pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
@@ -55,7 +55,7 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
             let mut corner = Corner::new(ideal, a, b, normal);
             let mut flat = Quadratic::default();
             if (i as usize) < front.first && (j as usize) < front.first {
-                // Half as many sides are compared at the corner of a quad.
+                // Fewer sides are compared at the corner of a quad. By trial: corners in space are widest so.
                 let share = if ideal == Ideal::Equilateral { 0.5 } else { 0.25 };
                 let flatter = share * (guide.flatness[i as usize] + guide.flatness[j as usize]);
                 let m = corner.widening.normalize_or_zero();
@@ -99,8 +99,8 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
     Ok(())
 }
 
-/// Moves the vertices of the sharpest triangles to where the least angle around them is largest, by
-/// trial in eight directions. A vertex is left alone once it has not moved for some rounds, nor
+/// Moves the vertices of the sharpest triangles to where the least angle around them is largest, of quads
+/// to where the corner furthest from a right angle is nearest to one, by trial in eight directions. A vertex is left alone once it has not moved for some rounds, nor
 /// its neighbours.
 pub(crate) fn sharpen(
     front: &mut Front,

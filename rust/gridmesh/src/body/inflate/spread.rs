@@ -13,8 +13,8 @@ use crate::progress::Progress;
 /// Spreads the vertices of a front over its surface, the silhouette fixed.
 ///
 /// In turn all slide a part of the way to their goals and improve the triangles around them; at the
-/// end those of the sharpest triangles are moved once more. Every triangle stays positive in
-/// projection, so that the front stays a graph over the drawing. Near-linear.
+/// end those of the sharpest triangles, or corners of quads, are moved once more. Every triangle, or corner, stays
+/// positive in projection, so that the front stays a graph over the drawing. Near-linear.
 pub(crate) fn spread(
     front: &mut Front,
     guide: &Guide<'_>,

@@ -10,7 +10,7 @@ use crate::cut::sheet::roll::Roll;
 use crate::error::{Error, Result};
 use crate::fill::bridge::{BridgeOptions, bridge};
 use crate::fill::options::Smooth;
-use crate::fill::planar::flat::FlatPatch;
+use crate::fill::planar::flat_patch::FlatPatch;
 use crate::options::CellShape;
 use crate::progress::Progress;
 

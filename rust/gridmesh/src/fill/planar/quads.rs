@@ -15,7 +15,7 @@ use glam::DVec2;
 use self::cells::{Cells, Plan};
 use self::measure::measure;
 use self::paths::Search;
-use super::flat::{FlatFill, FlatPatch, Method};
+use super::flat_patch::{FlatFill, FlatPatch, Method};
 use super::place::{self, Similarity};
 use super::scaled::Scaled;
 use super::settle::extend;

@@ -10,7 +10,7 @@ use crate::fill::filled::Shape;
 use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::room;
 use crate::fill::options::Smooth;
-use crate::fill::planar::flat::quads_of;
+use crate::fill::planar::flat_patch::quads_of;
 use crate::fill::planar::stars::{CornerStars, Stars};
 use crate::geometry::corner::Ideal;
 use crate::progress::Progress;
