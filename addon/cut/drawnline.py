@@ -19,7 +19,12 @@ _ROUNDS = 3
 
 def length(points: np.ndarray) -> float:
     """Length of a polyline (n, 2)."""
-    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    return float(_way(points)[-1])
+
+
+def _way(points: np.ndarray) -> np.ndarray:
+    """Length of a polyline (n, 2) up to each of its points."""
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
 
 
 def is_closed(points: np.ndarray) -> bool:
@@ -40,7 +45,7 @@ def smoothed(points: np.ndarray) -> np.ndarray:
     points = points[np.concatenate([[True], apart > 0])]
     if len(points) < 2:
         return points
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    way = _way(points)
     n = max(2, round(way[-1] / STEP) + 1)
     at = np.linspace(0.0, way[-1], n)
     even = np.column_stack([np.interp(at, way, column) for column in points.T])
@@ -98,21 +103,21 @@ def band(line: np.ndarray, width: float, *, left: bool) -> tuple[np.ndarray, np.
     area over the length wide, half the radius of a circle.
     """
     closed = np.array_equal(line[0], line[-1])
-    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    length = float(arc[-1])
-    period = length if closed else None
+    way = _way(line)
+    whole = float(way[-1])
     if closed:
         x, y = line[:-1].T
         doubled = float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
         if left:
-            width = min(width, 0.5 * abs(doubled) / max(length, 1e-300))
+            width = min(width, 0.5 * abs(doubled) / max(whole, 1e-300))
         left = left == (doubled > 0)
-    reach = min(0.5 * width, 0.25 * length)
-    ends = [
-        np.column_stack([np.interp(arc + way, arc, line[:, axis], period=period) for axis in (0, 1)])
-        for way in (-reach, reach)
-    ]
-    along = ends[1] - ends[0]
+    reach = min(0.5 * width, 0.25 * whole)
+    period = whole if closed else None
+    ahead, back = (
+        np.column_stack([np.interp(way + step, way, column, period=period) for column in line.T])
+        for step in (reach, -reach)
+    )
+    along = ahead - back
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
     across = np.column_stack([-along[:, 1], along[:, 0]])
     far = line + across * (width if left else -width)

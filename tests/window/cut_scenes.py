@@ -12,12 +12,17 @@ from setting import (
     mesh_objects,
     modules,
     outlines,
+    points_of,
+    redo,
+    reopened,
     ring,
     select,
     stage,
     stroke,
     tool,
     turn_view,
+    typed,
+    undo,
 )
 
 
@@ -145,11 +150,6 @@ def cut_mirrored():
         yield from tool("builtin.select_box")
 
 
-def places(ob):
-    """Vertices of a mesh object in the world, (n, 3)."""
-    return np.array([ob.matrix_world @ vertex.co for vertex in ob.data.vertices])
-
-
 def cut_options():
     """The options of the tool, which it keeps."""
     tools = bpy.context.workspace.tools
@@ -175,18 +175,16 @@ def cut_quads():
         odd = [face for face in in_cap if len(face.vertices) != 4]
         assert len(in_cap) > 50
         assert len(odd) <= 1, f"{len(odd)} of {len(in_cap)} faces of the cap are no quads"
-        before = places(kept)
+        before = points_of(kept)
         yield from tool("builtin.select_box")
-        for keys in (("A",), ("G", "X", "1", "RET"), ("S", "2", "RET")):
-            for key in keys:
-                yield from stage.write(key) if key.isdecimal() else stage.key(key)
-            yield 0.8
-        put = places(kept)
+        yield from typed("A")
+        yield from typed("G", "X", "1", "RET")
+        yield from typed("S", "2", "RET")
+        put = points_of(kept)
         assert np.abs(np.ptp(put, axis=0) - 2 * np.ptp(before, axis=0)).max() < 1e-4, "scaled"
         steps = []
         for _ in range(4):
-            yield from stage.key("Z", ctrl=True)
-            yield 0.8
+            yield from undo()
             (ob,) = mesh_objects()
             steps.append(len(ob.data.polygons))
             if steps[-1] == 48 * 24:
@@ -194,24 +192,18 @@ def cut_quads():
         assert steps[-1] == 48 * 24, "the cut itself is not undone"
         assert len(steps) >= 3, "moving, scaling and cutting are three steps"
         for _ in steps:
-            yield from stage.key("Z", ctrl=True, shift=True)
-            yield 0.8
+            yield from redo()
         (kept,) = mesh_objects()
-        assert np.abs(places(kept) - put).max() < 1e-5, "redone"
+        assert np.abs(points_of(kept) - put).max() < 1e-5, "redone"
         turn_view(0.7, 0.0, 0.4)
         with stage.override():
             bpy.ops.view3d.view_all()
         stage.view.spaces.active.overlay.show_wireframes = True
         yield 0.5
         yield from stage.picture("cut_quads_2")
-        path = bpy.app.tempdir + "cut.blend"
-        with stage.override():
-            bpy.ops.wm.save_as_mainfile(filepath=path)
-        yield 0.5
-        bpy.ops.wm.open_mainfile(filepath=path)
-        yield 1.5
+        yield from reopened()
         (kept,) = mesh_objects()
-        assert np.abs(places(kept) - put).max() < 1e-5, "opened"
+        assert np.abs(points_of(kept) - put).max() < 1e-5, "opened"
         assert open_edges(kept) == 0
     finally:
         yield from tool("gridmesh.cut")

@@ -120,6 +120,41 @@ def modules(name):
     return importlib.import_module(operator.removesuffix("draw.operator") + name)
 
 
+def typed(*keys):
+    """Press keys one after another; numbers are written."""
+    for key in keys:
+        yield from stage.write(key) if key.strip("-0123456789.") == "" else stage.key(key)
+    yield 0.8
+
+
+def undo():
+    yield from stage.key("Z", ctrl=True)
+    yield 1.0
+
+
+def redo():
+    yield from stage.key("Z", ctrl=True, shift=True)
+    yield 1.0
+
+
+def reopened():
+    """Save the file and open it again."""
+    path = bpy.app.tempdir + "saved.blend"
+    with stage.override():
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+    yield 0.5
+    bpy.ops.wm.open_mainfile(filepath=path)
+    yield 1.5
+
+
+def points_of(ob):
+    """Vertices of a mesh object in the world, (n, 3)."""
+    bpy.context.view_layer.update()
+    points = np.empty(len(ob.data.vertices) * 3, np.float32)
+    ob.data.vertices.foreach_get("co", points)
+    return modules("data.frames").moved(points.reshape(-1, 3).astype(float), np.array(ob.matrix_world))
+
+
 def bodies():
     """Live bodies."""
     return modules("live.engine").bodies()

@@ -3,7 +3,23 @@
 import bpy
 import numpy as np
 from mathutils import Matrix
-from setting import begin, bodies, modules, outlines, ring, select, stage, stroke, tool, turn_view
+from setting import (
+    begin,
+    bodies,
+    modules,
+    outlines,
+    points_of,
+    redo,
+    reopened,
+    ring,
+    select,
+    stage,
+    stroke,
+    tool,
+    turn_view,
+    typed,
+    undo,
+)
 
 
 def drawn():
@@ -22,9 +38,7 @@ def shape(body):
     """Vertices of a body and points of its outline in the world."""
     bpy.context.view_layer.update()
     moved = modules("data.frames").moved
-    points = np.empty(len(body.data.vertices) * 3, np.float32)
-    body.data.vertices.foreach_get("co", points)
-    found = [moved(points.reshape(-1, 3).astype(float), np.array(body.matrix_world))]
+    found = [points_of(body)]
     source = body.gridmesh_live.source
     data = source.data.layers[0].current_frame().drawing.attributes["position"].data
     lines = np.empty(len(data) * 3, np.float32)
@@ -39,18 +53,6 @@ def check(body, before, motion, what):
     error = np.abs(now - expected).max()
     assert error < 1e-5, f"{what}: {error:.3g} from where it should be"
     assert body.gridmesh_live.problem == "", f"{what}: {body.gridmesh_live.problem}"
-
-
-def typed(*keys):
-    """Press keys one after another; numbers are written."""
-    for key in keys:
-        yield from stage.write(key) if key.strip("-0123456789.") == "" else stage.key(key)
-    yield 0.8
-
-
-def undo():
-    yield from stage.key("Z", ctrl=True)
-    yield 1.0
 
 
 def everything():
@@ -292,17 +294,11 @@ def together_saved():
     (body,) = bodies()
     assert np.abs(shape(body) - before).max() < 1e-5, "undone twice"
     for _ in range(2):
-        yield from stage.key("Z", ctrl=True, shift=True)
-        yield 1.0
+        yield from redo()
     (body,) = bodies()
     assert np.abs(shape(body) - put).max() < 1e-5, "redone twice"
-    path = bpy.app.tempdir + "saved.blend"
-    with stage.override():
-        bpy.ops.wm.save_as_mainfile(filepath=path)
-    yield 0.5
     n = len(bpy.data.objects)
-    bpy.ops.wm.open_mainfile(filepath=path)
-    yield 1.5
+    yield from reopened()
     (body,) = bodies()
     assert len(bpy.data.objects) == n
     assert np.abs(shape(body) - put).max() < 1e-5, "opened"

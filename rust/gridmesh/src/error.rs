@@ -1,10 +1,9 @@
 //! What can go wrong, said so that the caller can mend it.
 
 mod kind;
-mod needed;
 mod words;
 
-pub use self::needed::Needed;
+pub use self::words::Needed;
 use self::words::{not_symmetric, too_coarse};
 pub(crate) use self::words::{told, told_all};
 

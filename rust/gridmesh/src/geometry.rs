@@ -14,4 +14,5 @@ pub(crate) mod march;
 pub mod metrics;
 pub(crate) mod quadratic;
 pub(crate) mod segments;
+pub(crate) mod stars;
 pub(crate) mod topology;

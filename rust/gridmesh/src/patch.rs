@@ -112,6 +112,12 @@ impl Patch {
         self.quads.iter().flat_map(|&[a, b, c, d]| [[d, a, b], [a, b, c], [b, c, d], [c, d, a]]).collect()
     }
 
+    /// The sides of all faces as they run around them, so that those between two faces come twice.
+    pub(crate) fn sides(&self) -> impl Iterator<Item = [u32; 2]> {
+        let faces = self.triangles.iter().map(|t| &t[..]).chain(self.quads.iter().map(|q| &q[..]));
+        faces.flat_map(|face| (0..face.len()).map(|k| [face[k], face[(k + 1) % face.len()]]))
+    }
+
     /// The patch itself, or with its quads cut in two.
     pub(crate) fn of_triangles(&self) -> Cow<'_, Patch> {
         if self.quads.is_empty() {

@@ -24,7 +24,6 @@ use crate::error::{Error, Result};
 use crate::geometry::embed::count_self_intersections;
 use crate::geometry::laplace::Pattern;
 use crate::geometry::topology::Topology;
-use crate::options::CellShape;
 use crate::patch::Patch;
 use crate::progress::{Clock, Progress, Rising};
 use field::Field;
@@ -118,19 +117,14 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         let extent = (high - low).max_element();
         let least_area = 4.0 * f64::from(f32::EPSILON) * extent * patch.lattice.edge_length;
         let bends = bends(&flat, &field.value, &field.gradient, depth);
-        let around = match patch.cells() {
-            CellShape::Triangle => None,
-            CellShape::Quad => Some(Topology::new(patch.vertices.len(), &corners)),
-        };
         let guide = Guide::new(
-            (&field, &corners, around.as_ref().unwrap_or(&topology), patch.cells()),
+            (&field, patch, &corners),
             |v| bends[v].limb,
-            &patch.loops,
             Inlets::new(patch, middle),
             depth,
             least_area,
         );
-        spread(&mut front, &guide, patch.cells(), progress.part(0.4, 0.8))?;
+        spread(&mut front, &guide, progress.part(0.4, 0.8))?;
         if let Some(twins) = &twins {
             progress.report(0.8)?;
             twins.even(&mut front, &field, (&corners, least_area), |p| guide.inlets.hold(p));

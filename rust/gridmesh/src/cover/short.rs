@@ -83,8 +83,9 @@ pub(super) fn lengthened(
     progress: Progress<'_>,
 ) -> Result<()> {
     let lengths = Lengths::new(patch);
+    let near = |v: usize| lengths.near(v).iter().copied();
     for thin in &THIN[..STAGES] {
-        visit_active(&lengths.topology, 0, ROUNDS, progress, |v, round| {
+        visit_active(0..patch.vertices.len(), near, ROUNDS, progress, |v, round| {
             if lengths.lacking(patch, v) == 0.0 {
                 Visit::Done
             } else if moved(patch, &lengths, v, (*thin, turn(round)), &mut may) {
@@ -134,19 +135,9 @@ fn moved(
 /// Mean length of the sides of all faces.
 fn mean_side(patch: &Patch) -> f64 {
     let (mut sum, mut count) = (0.0, 0usize);
-    for [a, b] in sides(patch) {
-        sum += patch.vertices[a].distance(patch.vertices[b]);
+    for [a, b] in patch.sides() {
+        sum += patch.vertices[a as usize].distance(patch.vertices[b as usize]);
         count += 1;
     }
     sum / count.max(1) as f64
-}
-
-fn faces(patch: &Patch) -> impl Iterator<Item = &[u32]> {
-    patch.triangles.iter().map(|t| &t[..]).chain(patch.quads.iter().map(|q| &q[..]))
-}
-
-/// The sides of all faces, those between two faces twice.
-fn sides(patch: &Patch) -> impl Iterator<Item = [usize; 2]> + '_ {
-    faces(patch)
-        .flat_map(|face| (0..face.len()).map(|k| [face[k] as usize, face[(k + 1) % face.len()] as usize]))
 }

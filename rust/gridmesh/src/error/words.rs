@@ -2,7 +2,16 @@
 
 use std::fmt;
 
-use super::needed::Needed;
+/// What is known of the number of triangles that a drawing needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needed {
+    /// This number works, and none that is a tenth smaller was found to.
+    Least(usize),
+    /// Numbers up to this one were tried, and none of them works.
+    MoreThan(usize),
+    /// It was not searched for.
+    Unknown,
+}
 
 pub(super) fn not_symmetric(
     what: &str,

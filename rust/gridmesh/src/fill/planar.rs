@@ -13,6 +13,5 @@ pub(crate) mod quality;
 mod scaled;
 pub(crate) mod settle;
 pub(crate) mod small;
-pub(crate) mod stars;
 pub(crate) mod steps;
 pub(crate) mod walls;

@@ -1,7 +1,8 @@
 //! Vertices visited round by round, as long as they or their neighbours move.
 
+use std::ops::Range;
+
 use crate::error::Result;
-use crate::geometry::topology::Topology;
 use crate::progress::Progress;
 
 /// Vertices between two questions whether to go on.
@@ -25,20 +26,20 @@ pub(crate) struct Rounds {
     pub stuck: u8,
 }
 
-/// Visits the vertices from `first` on in the order of their numbers, then those of them that are to be visited again.
-/// `visit` takes the vertex and the round.
+/// Visits vertices in the order of their numbers, then those of them that are to be visited again. `near`: their
+/// neighbours, each as often as it likes. `visit` takes the vertex and the round.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`].
-pub(crate) fn visit_active(
-    topology: &Topology,
-    first: usize,
+pub(crate) fn visit_active<I: Iterator<Item = u32>>(
+    vertices: Range<usize>,
+    near: impl Fn(usize) -> I,
     rounds: Rounds,
     progress: Progress<'_>,
     mut visit: impl FnMut(usize, usize) -> Visit,
 ) -> Result<()> {
-    let mut active: Vec<u32> = (first as u32..topology.start.len() as u32 - 1).collect();
-    let mut left = vec![rounds.stuck; topology.start.len() - 1];
+    let mut active: Vec<u32> = (vertices.start as u32..vertices.end as u32).collect();
+    let mut left = vec![rounds.stuck; vertices.len()];
     for round in 0..rounds.most {
         let mut next = vec![];
         for (k, &v) in active.iter().enumerate() {
@@ -48,16 +49,15 @@ pub(crate) fn visit_active(
             match visit(v as usize, round) {
                 Visit::Done => {}
                 Visit::Stuck => {
-                    let left = &mut left[v as usize];
+                    let left = &mut left[v as usize - vertices.start];
                     *left = left.saturating_sub(1);
                     if *left > 0 {
                         next.push(v);
                     }
                 }
                 Visit::Moved => {
-                    let near = &topology.near[topology.range(v as usize)];
-                    for u in near.iter().copied().chain([v]).filter(|&u| u as usize >= first) {
-                        left[u as usize] = rounds.stuck;
+                    for u in near(v as usize).chain([v]).filter(|&u| vertices.contains(&(u as usize))) {
+                        left[u as usize - vertices.start] = rounds.stuck;
                         next.push(u);
                     }
                 }

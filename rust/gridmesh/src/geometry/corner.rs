@@ -40,13 +40,24 @@ impl Ideal {
 
     /// Half of |J|^2, J the map from the ideal: equals `det` if it is one.
     pub fn stretch(self, a: DVec2, b: DVec2) -> f64 {
-        let across = || (b - a).length_squared();
+        let sides = self.sides([a, b, b - a].map(DVec2::length_squared));
+        if self == Ideal::Equilateral { sides / 3.0 } else { 0.5 * sides }
+    }
+
+    /// Sum of the squared sides that are compared with the area: all, or those of the quad. Given are the squares of the
+    /// two sides at the vertex that moves, the one to the vertex that follows it first, and of that across.
+    pub fn sides(self, [a, b, across]: [f64; 3]) -> f64 {
         match self {
-            Ideal::Equilateral => (a.length_squared() + b.length_squared() + across()) / 3.0,
-            Ideal::Own => 0.5 * (a.length_squared() + b.length_squared()),
-            Ideal::Next => 0.5 * (a.length_squared() + across()),
-            Ideal::Last => 0.5 * (b.length_squared() + across()),
+            Ideal::Equilateral => a + b + across,
+            Ideal::Own => a + b,
+            Ideal::Next => a + across,
+            Ideal::Last => b + across,
         }
+    }
+
+    /// Those sides over twice the area, at best.
+    pub fn best(self) -> f64 {
+        if self == Ideal::Equilateral { EQUILATERAL } else { 2.0 }
     }
 
     /// Gradient of `stretch` as the vertex moves, and its second derivative, times the identity.
@@ -85,12 +96,11 @@ pub(crate) struct Corner {
 impl Corner {
     /// The corner with the sides `a` and, counter-clockwise, `b`, in a surface with this unit normal.
     pub fn new(ideal: Ideal, a: DVec3, b: DVec3, normal: DVec3) -> Self {
-        let across = || (b - a).length_squared();
-        let (sides, lengthening, curvature) = match ideal {
-            Ideal::Equilateral => (a.length_squared() + b.length_squared() + across(), -2.0 * (a + b), 4.0),
-            Ideal::Own => (a.length_squared() + b.length_squared(), -2.0 * (a + b), 4.0),
-            Ideal::Next => (a.length_squared() + across(), -2.0 * a, 2.0),
-            Ideal::Last => (b.length_squared() + across(), -2.0 * b, 2.0),
+        let sides = ideal.sides([a, b, b - a].map(DVec3::length_squared));
+        let (lengthening, curvature) = match ideal {
+            Ideal::Equilateral | Ideal::Own => (-2.0 * (a + b), 4.0),
+            Ideal::Next => (-2.0 * a, 2.0),
+            Ideal::Last => (-2.0 * b, 2.0),
         };
         let cross = a.cross(b);
         let mut area = cross.length();
@@ -105,7 +115,7 @@ impl Corner {
             curvature,
             area: area.max(THINNEST * sides),
             widening: (a - b).cross(facing),
-            best: if ideal == Ideal::Equilateral { EQUILATERAL } else { 2.0 },
+            best: ideal.best(),
         }
     }
 

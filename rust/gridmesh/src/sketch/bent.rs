@@ -48,11 +48,7 @@ impl Job<'_> {
             return Ok(None);
         }
         let started = Instant::now();
-        let ground = match self.ground(asked, progress) {
-            // What the solver cannot do is left to the straight lattice; the report says so.
-            Err(Error::Solver { .. }) => None,
-            ground => ground?,
-        };
+        let ground = unless_unsolved(self.ground(asked, progress))?;
         self.lap("bend", started);
         let mut best: Option<Found> = None;
         if let Some(ground) = ground {
@@ -77,12 +73,8 @@ impl Job<'_> {
         // The second bend is traced if the first was not expected to be better, or is not good when it is placed.
         for pass in 0..TRACED {
             let started = Instant::now();
-            let outlines =
-                match self.bent_outlines(strength, ground, asked, pass > 0, progress.part(0.0, 0.3)) {
-                    // As above.
-                    Err(Error::Solver { .. }) => Vec::new(),
-                    outlines => outlines?,
-                };
+            let outlines = self.bent_outlines(strength, ground, asked, pass > 0, progress.part(0.0, 0.3));
+            let outlines = unless_unsolved(outlines)?;
             let is_last = outlines.len() != 1 || self.options.cells == CellShape::Quad;
             let mut outlines: Vec<(Bent, Lattice, Outline)> = outlines.into_iter().skip(pass).collect();
             outlines.sort_by(|a, b| (a.0.price + a.2.cost).total_cmp(&(b.0.price + b.2.cost)));
@@ -260,5 +252,13 @@ impl Job<'_> {
                 Found { faults: faults(&placed), bent, outline, placed, mirror_error }
             },
         ))
+    }
+}
+
+/// Nothing where the solver cannot go on: that is left to the straight lattice, and the report says so.
+fn unless_unsolved<T: Default>(found: Result<T>) -> Result<T> {
+    match found {
+        Err(Error::Solver { .. }) => Ok(T::default()),
+        found => found,
     }
 }

@@ -1,43 +1,84 @@
-//! Measures of the triangles around a vertex of a front.
+//! The triangles around a vertex of a front, and how good they are.
 
 use glam::DVec3;
 
 use crate::geometry::corner::Ideal;
+use crate::geometry::stars::{CornerStars, Stars};
+use crate::geometry::topology::Topology;
+use crate::patch::Patch;
 
 /// What [`Fan::sharpest`] is at least where a corner of a quad is reflex: more than any cotangent that is let be.
 pub(super) const REFLEX: f64 = 1e6;
 
-/// The triangles around a vertex, of quads those at their corners. To its measures `at` tells where vertices lie.
+/// What is around each interior vertex.
+pub(super) enum Around<'a> {
+    Triangles(&'a Topology),
+    Quads(CornerStars),
+}
+
+impl<'a> Around<'a> {
+    /// Of a patch; `topology` is that of its triangles, or of its quads cut in two.
+    pub fn new(patch: &Patch, topology: &'a Topology) -> Self {
+        if patch.quads.is_empty() {
+            return Around::Triangles(topology);
+        }
+        Around::Quads(CornerStars::new(&patch.quads, None, patch.n_boundary(), patch.vertices.len()))
+    }
+
+    /// The vertices that share an edge with an interior one.
+    pub fn near(&self, v: usize) -> &[u32] {
+        match self {
+            Around::Triangles(topology) => &topology.near[topology.range(v)],
+            Around::Quads(stars) => stars.near(v - stars.n_loop()),
+        }
+    }
+
+    /// The triangles around an interior vertex.
+    pub fn fan(&self, v: usize) -> Fan<'_> {
+        match self {
+            Around::Triangles(topology) => Fan { triangles: topology.fan(v), corners: &[] },
+            Around::Quads(stars) => Fan { triangles: &[], corners: stars.corners(v - stars.n_loop()) },
+        }
+    }
+}
+
+/// The triangles around a vertex, each by the two others of its vertices: equilateral ones, or those at the corners of
+/// quads. To the measures `at` tells where vertices lie.
 #[derive(Clone, Copy)]
 pub(super) struct Fan<'a> {
-    /// The two vertices of each that follow the one in the middle.
-    pub pairs: &'a [[u32; 2]],
-    /// What each should look like; none if all are to be equilateral.
-    pub ideals: Option<&'a [Ideal]>,
+    triangles: &'a [[u32; 2]],
+    corners: &'a [(u32, u32, Ideal)],
 }
 
 impl<'a> Fan<'a> {
-    /// The two vertices of each triangle that follow the one in the middle, and what it should look like.
-    pub fn iter(&self) -> impl Iterator<Item = (u32, u32, Ideal)> {
-        let ideals = self.ideals;
-        let ideal = move |k: usize| ideals.map_or(Ideal::Equilateral, |ideals| ideals[k]);
-        self.pairs.iter().enumerate().map(move |(k, &[a, b])| (a, b, ideal(k)))
+    /// The triangles, and what each should look like.
+    pub fn iter(self) -> impl Iterator<Item = (u32, u32, Ideal)> + 'a {
+        let triangles = self.triangles.iter().map(|&[a, b]| (a, b, Ideal::Equilateral));
+        triangles.chain(self.corners.iter().copied())
+    }
+
+    /// Mean length of the edges at a vertex at `point`.
+    pub fn mean_edge(self, at: impl Fn(u32) -> DVec3, point: DVec3) -> f64 {
+        let edges = self.iter().filter(|(.., ideal)| ideal.is_own());
+        let (sum, count) =
+            edges.fold((0.0, 0.0), |(sum, count), (a, ..)| (sum + point.distance(at(a)), count + 1.0));
+        sum / f64::max(count, 1.0)
     }
 
     /// Least cosine between the surface's normal at a vertex at `point` and the triangles around it: how
     /// well they stand for the surface. A vertex that leaves a narrow ridge cuts it off.
-    pub fn facing(&self, at: impl Fn(u32) -> DVec3, point: DVec3, normal: DVec3) -> f64 {
-        let cosine = |&[a, b]: &[u32; 2]| {
+    pub fn facing(self, at: impl Fn(u32) -> DVec3, point: DVec3, normal: DVec3) -> f64 {
+        let cosine = |(a, b, _): (u32, u32, Ideal)| {
             let (a, b) = (at(a) - point, at(b) - point);
             a.cross(b).normalize_or_zero().dot(normal)
         };
-        self.pairs.iter().map(cosine).fold(f64::INFINITY, f64::min)
+        self.iter().map(cosine).fold(f64::INFINITY, f64::min)
     }
 
-    /// Largest cotangent of the angles of the triangles around a vertex at `point`; of quads the cotangent of the
-    /// corner that is furthest from a right angle; from [`REFLEX`] on, the more the further, if one is reflex, seen along the surface's
-    /// normal there.
-    pub fn sharpest(&self, at: impl Fn(u32) -> DVec3, point: DVec3, normal: DVec3) -> f64 {
+    /// Largest cotangent of the angles of the triangles around a vertex at `point`. Of quads the cotangent of the corner
+    /// that is furthest from a right angle; where one is reflex, seen along the surface's normal, [`REFLEX`] or more, the
+    /// more the nearer it is to three right angles.
+    pub fn sharpest(self, at: impl Fn(u32) -> DVec3, point: DVec3, normal: DVec3) -> f64 {
         let largest = |(i, j, ideal): (u32, u32, Ideal)| {
             let (a, b) = (at(i) - point, at(j) - point);
             let c = b - a;
@@ -50,7 +91,6 @@ impl<'a> Fan<'a> {
             let area = a.cross(b);
             let facing = area.dot(normal);
             if ideal != Ideal::Equilateral && facing <= 0.0 {
-                // A right angle at the wrong side counts most.
                 return REFLEX * (2.0 - facing / cosine.hypot(facing).max(f64::MIN_POSITIVE));
             }
             cosine / area.length()
@@ -58,21 +98,12 @@ impl<'a> Fan<'a> {
         self.iter().map(largest).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Least ratio of twice the area to the sum of the squared sides of the triangles around a vertex at
-    /// `point`; 0.29 if they are equilateral. Of corners of quads the sides are the quad's, and the ratio is scaled to
-    /// the same.
-    pub fn worst(&self, at: impl Fn(u32) -> DVec3, point: DVec3) -> f64 {
-        const SCALE: f64 = 0.577_350_269_189_625_8;
+    /// Least ratio of area to squared sides of the triangles around a vertex at `point`: one if all are ideal.
+    pub fn worst(self, at: impl Fn(u32) -> DVec3, point: DVec3) -> f64 {
         let ratio = |(i, j, ideal): (u32, u32, Ideal)| {
             let (a, b) = (at(i) - point, at(j) - point);
-            let area = a.cross(b).length();
-            let [a, b, c] = [a, b, b - a].map(|side| side.length_squared());
-            match ideal {
-                Ideal::Equilateral => area / (a + b + c),
-                Ideal::Own => SCALE * area / (a + b),
-                Ideal::Next => SCALE * area / (a + c),
-                Ideal::Last => SCALE * area / (b + c),
-            }
+            let sides = ideal.sides([a, b, b - a].map(DVec3::length_squared));
+            a.cross(b).length() * ideal.best() / sides
         };
         self.iter().map(ratio).fold(f64::INFINITY, f64::min)
     }

@@ -3,13 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use crate::body::inflate::crease::{Crease, creases};
-use crate::body::inflate::fan::Fan;
+use crate::body::inflate::fan::Around;
 use crate::body::inflate::field::{Field, Place};
 use crate::body::inflate::inlets::Inlets;
-use crate::geometry::corner::Ideal;
-use crate::geometry::topology::Topology;
-use crate::options::CellShape;
-use crate::patch::Loop;
+use crate::patch::{Loop, Patch};
 
 /// The front of a body: a graph over the flat patch.
 pub(crate) struct Front {
@@ -50,7 +47,7 @@ impl Front {
         }
         let stays = guide.crease[v].as_ref().is_none_or(|crease| crease.holds(point) || !crease.holds(start));
         stays
-            && guide.fan(v).pairs.iter().all(|&[a, b]| {
+            && guide.around.fan(v).iter().all(|(a, b, _)| {
                 (self.flat[a as usize] - point).perp_dot(self.flat[b as usize] - point) >= guide.least_area
             })
     }
@@ -110,12 +107,12 @@ fn surface_normal(gradient: DVec2, height: f64) -> DVec3 {
 /// What guides the vertices of a front.
 pub(crate) struct Guide<'a> {
     pub field: &'a Field<'a>,
+    /// The flat patch.
+    pub patch: &'a Patch,
     /// The triangles that stay positive in projection: the field's own, or those at the corners of quads.
     pub corners: &'a [[u32; 3]],
-    /// Those around each vertex.
-    pub around: &'a Topology,
-    /// What each of `around.fans` should look like; empty if all are to be equilateral.
-    ideals: Vec<Ideal>,
+    /// Those around each interior vertex.
+    pub around: Around<'a>,
     /// Height of the surface above the middle of a circle of radius one.
     pub depth: f64,
     /// Where each vertex is to slide: a height.
@@ -133,20 +130,19 @@ pub(crate) struct Guide<'a> {
 impl<'a> Guide<'a> {
     /// `limb` is 0 where the surface is round and 1 in a limb.
     pub fn new(
-        (field, corners, around, cells): (&'a Field<'a>, &'a [[u32; 3]], &'a Topology, CellShape),
+        (field, patch, corners): (&'a Field<'a>, &'a Patch, &'a [[u32; 3]]),
         limb: impl Fn(usize) -> f64,
-        loops: &[Loop],
         inlets: Inlets,
         depth: f64,
         least_area: f64,
     ) -> Self {
-        let first: usize = loops.iter().map(Loop::len).sum();
+        let (first, loops) = (patch.n_boundary(), &patch.loops);
         let goal = |v: usize| if v < first { 0.0 } else { unrolled(field, v, limb(v), depth) };
         Guide {
             field,
+            patch,
             corners,
-            around,
-            ideals: if cells == CellShape::Quad { ideals_of_quads(corners, around) } else { vec![] },
+            around: Around::new(patch, field.topology),
             depth,
             goal: (0..field.value.len()).map(goal).collect(),
             crease: creases(field, loops, first),
@@ -155,27 +151,6 @@ impl<'a> Guide<'a> {
             least_area,
         }
     }
-
-    /// The triangles around a vertex.
-    pub fn fan(&self, v: usize) -> Fan<'_> {
-        let range = self.around.fan_start[v] as usize..self.around.fan_start[v + 1] as usize;
-        Fan { pairs: &self.around.fans[range.clone()], ideals: self.ideals.get(range) }
-    }
-}
-
-/// What each triangle of the fans should look like, of the triangles at the corners of quads: the vertex in the middle of
-/// each is the corner.
-fn ideals_of_quads(corners: &[[u32; 3]], around: &Topology) -> Vec<Ideal> {
-    let mut ideals = vec![Ideal::Own; around.fans.len()];
-    let mut slots = around.fan_start.clone();
-    for corner in corners {
-        for (v, ideal) in corner.iter().zip([Ideal::Next, Ideal::Own, Ideal::Last]) {
-            let slot = &mut slots[*v as usize];
-            ideals[*slot as usize] = ideal;
-            *slot += 1;
-        }
-    }
-    ideals
 }
 
 /// The point of the plane below the foot of `point` on the surface `z^2 = field`.

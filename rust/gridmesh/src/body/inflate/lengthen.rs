@@ -27,20 +27,19 @@ const REACHES: [f64; 4] = [1.0, 0.5, 0.2, 0.07];
 /// than the sharpest there and sharper than [`THIN`] or [`THIN_OF_QUADS`] says. In none the sharpest corner of the whole
 /// becomes sharper, but for one that is better than their first. Every triangle stays positive in projection; where that
 /// holds a vertex fast, its neighbours make room. Near-linear.
-pub(crate) fn lengthen(
-    front: &mut Front,
-    guide: &Guide<'_>,
-    cells: CellShape,
-    progress: Progress<'_>,
-) -> Result<()> {
-    let limits = if cells == CellShape::Triangle { THIN } else { THIN_OF_QUADS };
+pub(crate) fn lengthen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
+    let limits = match guide.patch.cells() {
+        CellShape::Triangle => THIN,
+        CellShape::Quad => THIN_OF_QUADS,
+    };
+    let near = |v: usize| guide.around.fan(v).iter().flat_map(|(a, b, _)| [a, b]);
     let mean = mean_length(front, guide);
     let sharp =
-        |v: usize| guide.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v));
+        |v: usize| guide.around.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v));
     let thinnest = (front.first..front.flat.len()).map(sharp).fold(limits[0], f64::max);
     for ((share, level), thin) in STAGES.into_iter().zip(limits) {
         let (wanted, thin) = (share * mean, thin.min(thinnest));
-        visit_active(guide.around, front.first, ROUNDS, progress, |v, round| {
+        visit_active(front.first..front.flat.len(), near, ROUNDS, progress, |v, round| {
             let limits = Limits { wanted, level, thin, turn: turn(round) };
             if lacking(front, guide, v, front.position(v), wanted) == 0.0 {
                 Visit::Done
@@ -66,25 +65,17 @@ struct Limits {
     turn: f64,
 }
 
-/// Mean length of the edges of the body: those of the silhouette count once, others for the back as well. Of quads the
-/// diagonals count as edges here and below.
+/// Mean length of the edges of the body: those of the silhouette count once, others for the back as well.
 fn mean_length(front: &Front, guide: &Guide<'_>) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for v in 0..front.flat.len() {
-        let here = front.position(v);
-        for &u in guide.around.near[guide.around.range(v)].iter().filter(|&&u| u as usize > v) {
-            let times = if (u as usize) < front.first { 1.0 } else { 2.0 };
-            sum += times * here.distance(front.position(u as usize));
-            count += times;
-        }
-    }
+    let lengths =
+        guide.patch.sides().map(|[a, b]| front.position(a as usize).distance(front.position(b as usize)));
+    let (sum, count) = lengths.fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
     sum / f64::max(count, 1.0)
 }
 
 /// What the edges at a vertex lack at `point`.
 fn lacking(front: &Front, guide: &Guide<'_>, v: usize, point: DVec3, wanted: f64) -> f64 {
-    let near = &guide.around.near[guide.around.range(v)];
-    near.iter().map(|&u| lack(point.distance(front.position(u as usize)), wanted)).sum()
+    guide.around.near(v).iter().map(|&u| lack(point.distance(front.position(u as usize)), wanted)).sum()
 }
 
 /// Moves a vertex to where the edges at it lack less.
@@ -97,7 +88,7 @@ fn moved_apart(front: &mut Front, guide: &Guide<'_>, v: usize, limits: &Limits) 
 /// Moves the neighbours of a vertex to where its triangles are larger in projection.
 fn has_made_room(front: &mut Front, guide: &Guide<'_>, v: usize, limits: &Limits) -> bool {
     let mut has_moved = false;
-    for &u in &guide.around.near[guide.around.range(v)] {
+    for &u in guide.around.near(v) {
         if u as usize >= front.first {
             let lacked = lacking(front, guide, u as usize, front.position(u as usize), limits.wanted);
             let cost = |front: &Front, point: DVec3| {
@@ -114,7 +105,7 @@ fn has_made_room(front: &mut Front, guide: &Guide<'_>, v: usize, limits: &Limits
 /// Twice the least area in projection of the triangles at `v`, were its neighbour `u` at `point`.
 fn room(front: &Front, guide: &Guide<'_>, v: usize, u: u32, point: DVec2) -> f64 {
     let place = |w: u32| if w == u { point } else { front.flat[w as usize] } - front.flat[v];
-    let areas = guide.fan(v).pairs.iter().map(|&[a, b]| place(a).perp_dot(place(b)));
+    let areas = guide.around.fan(v).iter().map(|(a, b, _)| place(a).perp_dot(place(b)));
     areas.fold(f64::INFINITY, f64::min)
 }
 
@@ -127,7 +118,7 @@ fn moved(
     present: f64,
     cost: impl Fn(&Front, DVec3) -> f64,
 ) -> bool {
-    let fan = guide.fan(v);
+    let fan = guide.around.fan(v);
     let (here, start) = (front.position(v), front.flat[v]);
     let normal = front.normal(guide, v);
     let (e, f) = normal.any_orthonormal_pair();

@@ -18,8 +18,8 @@ const SHARP: f64 = 1.732_050_807_568_877_2;
 /// The same for corners of quads, 50 and 130 degrees.
 const SHARP_OF_QUADS: f64 = 0.839_099_631_177_28;
 
-/// A vertex may make its worst triangle worse if it stays better than this, see [`Fan::worst`].
-const GOOD: f64 = 0.2;
+/// A vertex may make its worst triangle worse if it stays better than this, see `Fan::worst`.
+const GOOD: f64 = 0.69;
 
 /// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
 pub(super) const LEVEL: f64 = 0.7;
@@ -33,9 +33,9 @@ const REACHES: [f64; 3] = [0.3, 0.12, 0.05];
 /// One sweep over the vertices, each moved along the surface to where its triangles are best.
 ///
 /// A triangle's badness is the sum of its squared sides over its area, for the corner of a quad that of the
-/// quad's two sides, all seen in the tangent plane of the vertex: convex in the vertex's position there. One Newton step, weighted by the
-/// badness itself so that the worst triangles count most, is taken and shortened until no triangle
-/// falls below `least_area` in projection.
+/// quad's two sides, all seen in the tangent plane of the vertex: convex in the vertex's position there. One
+/// Newton step, weighted by the badness itself so that the worst triangles count most, is taken and shortened
+/// until no triangle falls below `least_area` in projection.
 pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
     let field = guide.field;
     for v in front.first..front.flat.len() {
@@ -46,17 +46,15 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
         let normal = front.normal(guide, v);
         let (e, f) = normal.any_orthonormal_pair();
         let here = front.position(v);
-        let fan = guide.fan(v);
+        let fan = guide.around.fan(v);
         let mut model = Quadratic::default();
-        let mut reach = 0.0;
         for (i, j, ideal) in fan.iter() {
             let (a, b) = (front.position(i as usize) - here, front.position(j as usize) - here);
-            reach += a.length();
             let mut corner = Corner::new(ideal, a, b, normal);
             let mut flat = Quadratic::default();
             if (i as usize) < front.first && (j as usize) < front.first {
-                // Fewer sides are compared at the corner of a quad. By trial: corners in space are widest so.
-                let share = if ideal == Ideal::Equilateral { 0.5 } else { 0.25 };
+                // The height counts beside the other sides as at an equilateral triangle.
+                let share = 0.5 * ideal.best() / Ideal::Equilateral.best();
                 let flatter = share * (guide.flatness[i as usize] + guide.flatness[j as usize]);
                 let m = corner.widening.normalize_or_zero();
                 let height = a.dot(m);
@@ -71,7 +69,7 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
             model += flat.scaled(weight);
         }
         let Some(u) = model.minimum() else { continue };
-        let u = u.clamp_length_max(0.5 * reach / fan.pairs.len() as f64);
+        let u = u.clamp_length_max(0.5 * fan.mean_edge(front.positions(), here));
         let Some((target, _)) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else {
             continue;
         };
@@ -100,17 +98,17 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
 }
 
 /// Moves the vertices of the sharpest triangles to where the least angle around them is largest, of quads
-/// to where the corner furthest from a right angle is nearest to one, by trial in eight directions. A vertex is left alone once it has not moved for some rounds, nor
-/// its neighbours.
-pub(crate) fn sharpen(
-    front: &mut Front,
-    guide: &Guide<'_>,
-    cells: CellShape,
-    progress: Progress<'_>,
-) -> Result<()> {
-    let sharp = if cells == CellShape::Triangle { SHARP } else { SHARP_OF_QUADS };
-    visit_active(guide.around, front.first, ROUNDS, progress, |v, round| {
-        let present = guide.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v));
+/// to where the corner furthest from a right angle is nearest to one, by trial in eight directions. A vertex
+/// is left alone once it has not moved for some rounds, nor its neighbours.
+pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
+    let sharp = match guide.patch.cells() {
+        CellShape::Triangle => SHARP,
+        CellShape::Quad => SHARP_OF_QUADS,
+    };
+    let near = |v: usize| guide.around.fan(v).iter().flat_map(|(a, b, _)| [a, b]);
+    visit_active(front.first..front.flat.len(), near, ROUNDS, progress, |v, round| {
+        let present =
+            guide.around.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v));
         if present <= sharp {
             return Visit::Done;
         }
@@ -122,12 +120,11 @@ pub(crate) fn sharpen(
 /// Moves `v`, the largest cotangent around which is `present`, to the best of eight places around it;
 /// false if none is better.
 fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reach: f64, turn: f64) -> bool {
-    let fan = guide.fan(v);
+    let fan = guide.around.fan(v);
     let (here, start) = (front.position(v), front.flat[v]);
     let normal = front.normal(guide, v);
     let (e, f) = normal.any_orthonormal_pair();
-    let lengths = fan.pairs.iter().map(|&[a, _]| here.distance(front.position(a as usize)));
-    let mean = lengths.sum::<f64>() / fan.pairs.len() as f64;
+    let mean = fan.mean_edge(front.positions(), here);
     let fidelity = fan.facing(front.positions(), here, normal).min(LEVEL);
     let mut best = present;
     let mut moved = false;

@@ -7,7 +7,6 @@ use super::polish::{sharpen, sweep};
 use crate::body::inflate::front::{Front, Guide};
 use crate::error::Result;
 use crate::geometry::active::ASK_EVERY;
-use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Spreads the vertices of a front over its surface, the silhouette fixed.
@@ -15,12 +14,7 @@ use crate::progress::Progress;
 /// In turn all slide a part of the way to their goals and improve the triangles around them; at the
 /// end those of the sharpest triangles, or corners of quads, are moved once more. Every triangle, or corner, stays
 /// positive in projection, so that the front stays a graph over the drawing. Near-linear.
-pub(crate) fn spread(
-    front: &mut Front,
-    guide: &Guide<'_>,
-    cells: CellShape,
-    progress: Progress<'_>,
-) -> Result<()> {
+pub(crate) fn spread(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
     const LEGS: usize = 3;
     for leg in 0..LEGS {
         slide(front, guide, 1.0 / (LEGS - leg) as f64, progress)?;
@@ -31,9 +25,9 @@ pub(crate) fn spread(
         sweep(front, guide, progress)?;
     }
     progress.report(0.8)?;
-    sharpen(front, guide, cells, progress)?;
+    sharpen(front, guide, progress)?;
     progress.report(0.9)?;
-    lengthen(front, guide, cells, progress)?;
+    lengthen(front, guide, progress)?;
     progress.report(1.0)
 }
 

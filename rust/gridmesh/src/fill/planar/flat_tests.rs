@@ -70,9 +70,9 @@ proptest! {
         prop_assume!(widest < 3.0);
         // About one pair in four has an edge already.
         let taken = |i: usize, j: usize| seed > 0 && n > 3 && (i * 7 + j * 13 + seed).is_multiple_of(4);
-        let patch = fill(&polygon, &taken);
-        check(&polygon, &patch, &taken);
-        prop_assert!(!patch.folded);
+        let made = fill(&polygon, &taken);
+        check(&polygon, &made, &taken);
+        prop_assert!(!made.folded);
     }
 
     #[test]
@@ -81,8 +81,8 @@ proptest! {
     ) {
         let polygon: Vec<DVec2> = points.into_iter().map(DVec2::from).collect();
         let taken = |_: usize, _: usize| all;
-        let patch = fill(&polygon, &taken);
-        check(&polygon, &patch, &taken);
+        let made = fill(&polygon, &taken);
+        check(&polygon, &made, &taken);
     }
 }
 
@@ -91,19 +91,19 @@ fn even_round_loops_are_regular_inside() {
     for n in (6..60).filter(|&n| n != 7) {
         let polygon: Vec<DVec2> =
             (0..n).map(|k| DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect();
-        let patch = fill(&polygon, &none);
-        check(&polygon, &patch, &none);
-        assert_eq!((patch.folded, patch.quality.irregular), (false, 0), "{n}");
-        assert!(patch.quality.min_angle > 0.35, "{n}: {}", patch.quality.min_angle);
+        let made = fill(&polygon, &none);
+        check(&polygon, &made, &none);
+        assert_eq!((made.folded, made.quality.irregular), (false, 0), "{n}");
+        assert!(made.quality.min_angle > 0.35, "{n}: {}", made.quality.min_angle);
     }
 }
 
 #[test]
 fn loops_on_a_line_and_points_that_coincide_are_filled_folded() {
     let line: Vec<DVec2> = (0..7).map(|k| DVec2::new(f64::from(k), 0.0)).collect();
-    let patch = fill(&line, &none);
-    check(&line, &patch, &none);
-    assert!(patch.folded);
+    let made = fill(&line, &none);
+    check(&line, &made, &none);
+    assert!(made.folded);
     let point = [DVec2::ZERO; 8];
     check(&point, &fill(&point, &none), &none);
 }
@@ -113,11 +113,11 @@ fn long_edges_beside_short_ones_are_filled() {
     // One edge of a square is split a hundred times.
     let mut polygon: Vec<DVec2> = (0..100).map(|k| DVec2::new(0.01 * f64::from(k), 0.0)).collect();
     polygon.extend([(1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from));
-    let patch = fill(&polygon, &none);
-    check(&polygon, &patch, &none);
-    assert!(!patch.folded);
-    assert!(patch.quality.min_angle > 0.06, "{}", patch.quality.min_angle);
-    assert!(patch.patch.triangles.len() < 2000, "{}", patch.patch.triangles.len());
+    let made = fill(&polygon, &none);
+    check(&polygon, &made, &none);
+    assert!(!made.folded);
+    assert!(made.quality.min_angle > 0.06, "{}", made.quality.min_angle);
+    assert!(made.patch.triangles.len() < 2000, "{}", made.patch.triangles.len());
 }
 
 #[test]

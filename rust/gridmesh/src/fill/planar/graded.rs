@@ -9,9 +9,9 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::flips::improve_valences;
 use super::settle::{Rings, even_out, untangle};
-use super::stars::Stars;
 use super::walls::Walls;
 use crate::error::{Error, Result};
+use crate::geometry::stars::Stars;
 use crate::lattice::axial::Axial;
 use crate::path::placement::Lattice;
 use crate::progress::Progress;

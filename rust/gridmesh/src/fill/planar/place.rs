@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use super::mean_value::{spread, step};
 use super::settle::{Rings, even_out, extend, untangle};
-use super::stars::Stars;
 use crate::error::Result;
+use crate::geometry::stars::Stars;
 use crate::lattice::assemble::Region;
 use crate::lattice::grid::Triangular;
 use crate::path::placement::Lattice;

@@ -19,8 +19,8 @@ use super::flat_patch::{FlatFill, FlatPatch, Method};
 use super::place::{self, Similarity};
 use super::scaled::Scaled;
 use super::settle::extend;
-use super::stars::{CornerStars, Stars};
 use crate::error::Result;
+use crate::geometry::stars::{CornerStars, Stars};
 use crate::progress::Progress;
 
 /// Badness below which no further way is tried.

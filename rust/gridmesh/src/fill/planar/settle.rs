@@ -8,10 +8,10 @@
 
 use glam::DVec2;
 
-use super::stars::Stars;
 use crate::error::Result;
 use crate::geometry::corner::Ideal;
 use crate::geometry::quadratic::Quadratic;
+use crate::geometry::stars::Stars;
 use crate::progress::Progress;
 
 /// Vertices between two questions whether to go on.

@@ -11,8 +11,8 @@ use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::room;
 use crate::fill::options::Smooth;
 use crate::fill::planar::flat_patch::quads_of;
-use crate::fill::planar::stars::{CornerStars, Stars};
 use crate::geometry::corner::Ideal;
+use crate::geometry::stars::{CornerStars, Stars};
 use crate::progress::Progress;
 
 /// Share of the last step that is taken: with all of it patches of few quads bulge, since diagonals stand for curved

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::error::{Error, Result};
 use crate::fill::loops::mesh::{Rim, place};
-use crate::fill::planar::stars::CornerStars;
+use crate::geometry::stars::CornerStars;
 
 /// Patch and surroundings as one mesh: first the loop's vertices in the direction of the patch, then
 /// the new ones, then those of the mesh around.

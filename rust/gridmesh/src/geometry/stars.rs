@@ -1,9 +1,9 @@
 //! The triangles around each interior vertex of a patch that are to be positive, and near to an ideal each.
 
-use crate::geometry::corner::Ideal;
+use super::corner::Ideal;
 
 /// What is around each interior vertex of a patch.
-pub(in crate::fill) trait Stars {
+pub(crate) trait Stars {
     /// Vertices of the loop: interior ones are numbered from there.
     fn n_loop(&self) -> usize;
 
@@ -67,6 +67,11 @@ impl CornerStars {
         stars
     }
 
+    /// The corners around the i-th interior vertex, see [`Stars::triangles`].
+    pub fn corners(&self, i: usize) -> &[(u32, u32, Ideal)] {
+        &self.corners[self.start[i] as usize..self.start[i + 1] as usize]
+    }
+
     /// With a vertex more for each quad, in its middle.
     pub fn with_centres(mut self, quads: &[[u32; 4]]) -> Self {
         for quad in quads {
@@ -93,6 +98,6 @@ impl Stars for CornerStars {
     }
 
     fn triangles(&self, i: usize) -> impl Iterator<Item = (u32, u32, Ideal)> {
-        self.corners[self.start[i] as usize..self.start[i + 1] as usize].iter().copied()
+        self.corners(i).iter().copied()
     }
 }
