@@ -19,7 +19,7 @@ const SHARP: f64 = 1.732_050_807_568_877_2;
 const SHARP_OF_QUADS: f64 = 0.839_099_631_177_28;
 
 /// A vertex may make its worst triangle worse if it stays better than this, see `Fan::worst`.
-const GOOD: f64 = 0.69;
+const GOOD: f64 = 0.692_8;
 
 /// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
 pub(super) const LEVEL: f64 = 0.7;
