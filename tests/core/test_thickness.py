@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from sketches import DRAWINGS, SHAPES, circle
 
+from addon.bodies import density
+
 SIZES = [1.0, 1e-9, 1e9]
 
 
@@ -97,6 +99,14 @@ def test_automatic_keeps_its_limits(name):
     assert 900 <= report["triangles"] <= 22000
     less = gridmesh.mesh_sketch(points, triangles="auto", max_triangles=4000).report
     assert less["triangles"] <= 4400
+
+
+@pytest.mark.parametrize("points", [hand(0.12), bar(10, 1), circle(), DRAWINGS["camel"]["points"]])
+def test_the_extension_knows_what_automatic_chooses(points):
+    """It needs the number before there is a mesh, and tells how many would put five across."""
+    most = 8000
+    made = gridmesh.mesh_sketch(points, triangles="auto", max_triangles=most)
+    assert density.automatic(points, [], most) == pytest.approx(made.report["triangles"], rel=0.1)
 
 
 def test_only_automatic_measures_limbs():

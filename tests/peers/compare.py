@@ -42,7 +42,7 @@ from importlib.metadata import version
 from pathlib import Path
 from statistics import median, quantiles
 
-from drawing import Drawing, is_simple, load, resampled
+from drawing import Drawing, edge_length, is_simple, load, resampled
 from measure import measure
 from meshers import Failed, Gmsh, InRust, Mesh, Mesher, Netgen, Ours, Problem, RustProcess, Triangle
 from remeshers import InstantMeshes, TriWild
@@ -172,11 +172,6 @@ def compare(
     for numbers in row.values():
         numbers["of_triangle"] = numbers["milliseconds"] / row[peer]["milliseconds"]
     return row
-
-
-def edge_length(drawing: Drawing, n_triangles: int) -> float:
-    """Of equilateral triangles that cover the drawing."""
-    return (drawing.area / n_triangles * 4 / 3**0.5) ** 0.5
 
 
 def search(mesher: Mesher, problem: Problem, edge: float, keep: bool) -> tuple[float, Mesh]:

@@ -34,6 +34,11 @@ def load() -> list[Drawing]:
     return drawings
 
 
+def edge_length(drawing: Drawing, n_triangles: int) -> float:
+    """Of equilateral triangles that cover the drawing."""
+    return (drawing.area / n_triangles * 4 / 3**0.5) ** 0.5
+
+
 def signed_area(contour: np.ndarray) -> float:
     following = np.roll(contour, -1, axis=0)
     return float((contour[:, 0] * following[:, 1] - contour[:, 1] * following[:, 0]).sum() / 2)
