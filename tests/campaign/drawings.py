@@ -23,6 +23,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "core"))
 from checks import check_patch
+from json_lines import resumed
 
 EXPECTED = {
     "too_coarse",
@@ -296,9 +297,8 @@ def main() -> int:
     parser.add_argument("--journal", type=Path)
     arguments = parser.parse_args()
     done: dict[int, dict[str, Any]] = {}
-    if arguments.journal is not None and arguments.journal.exists():
-        lines = arguments.journal.read_text().splitlines(keepends=True)
-        done = {one["seed"]: one for one in map(json.loads, (line for line in lines if line.endswith("\n")))}
+    if arguments.journal is not None:
+        done = {one["seed"]: one for one in resumed(arguments.journal)}
     try:
         for seed in range(arguments.seed, arguments.seed + arguments.cases):
             if seed in done:

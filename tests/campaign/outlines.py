@@ -26,6 +26,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "core"))
 
 from checks import check_body, check_patch
+from json_lines import outlines, resumed, rows_of
 from quad_checks import check_quad_body, check_quad_patch
 
 Task = tuple[str, list[list[float]], list[list[list[float]]], str, int]
@@ -88,22 +89,10 @@ def done(task: Task) -> dict[str, Any]:
 
 def tasks(corpus: Path, every: int, kinds: list[tuple[str, int]], known: set) -> Iterator[Task]:
     """What is not in the journal yet."""
-    with corpus.open() as lines:
-        for k, line in enumerate(lines):
-            if k % every:
-                continue
-            row = json.loads(line)
-            name = f"{row['source']} {row['name']}"
-            for cells, count in kinds:
-                if (name, cells, count) not in known:
-                    yield name, row["outer"], row["holes"], cells, count
-
-
-def rows_of(journal: Path) -> list[dict[str, Any]]:
-    """What is in the journal; a line that was torn when it was stopped is done again."""
-    if not journal.exists():
-        return []
-    return [json.loads(line) for line in journal.read_text().splitlines(keepends=True) if line.endswith("\n")]
+    for name, outline in outlines(corpus, every):
+        for cells, count in kinds:
+            if (name, cells, count) not in known:
+                yield name, outline["outer"], outline["holes"], cells, count
 
 
 def summed_up(rows: list[dict[str, Any]]) -> None:
@@ -152,24 +141,22 @@ def drawn(corpus: Path, worst: list[dict[str, Any]], file: Path) -> None:
     """The patches of these rows, as a sheet of pictures."""
     wanted = {row["name"]: row for row in worst}
     size, columns, pictures = 240, 8, []
-    with corpus.open() as lines:
-        for line in lines:
-            outline = json.loads(line)
-            row = wanted.get(f"{outline['source']} {outline['name']}")
-            if row is None:
-                continue
-            outer, holes = np.array(outline["outer"]), [np.array(hole) for hole in outline["holes"]]
-            patch = meshed(outer, holes, row["cells"], row["count"])
-            low, extent = outer.min(axis=0), np.ptp(outer, axis=0).max()
-            at = (patch.vertices - low) / extent * (size - 20)
-            k = len(pictures)
-            at = at * [1, -1] + [(k % columns) * size, (k // columns + 1) * size - 20]
-            faces = patch.quads if row["cells"] == "quads" else patch.triangles
-            paths = "".join("M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in at[face]) + "Z" for face in faces)
-            title = f"{row['angle']:.1f} {outline['name']}"
-            pictures.append(
-                f'<path d="{paths}"/><text x="{k % columns * size}" y="{(k // columns + 1) * size - 4}">{title}</text>'
-            )
+    for name, outline in outlines(corpus):
+        row = wanted.get(name)
+        if row is None:
+            continue
+        outer, holes = np.array(outline["outer"]), [np.array(hole) for hole in outline["holes"]]
+        patch = meshed(outer, holes, row["cells"], row["count"])
+        low, extent = outer.min(axis=0), np.ptp(outer, axis=0).max()
+        at = (patch.vertices - low) / extent * (size - 20)
+        k = len(pictures)
+        at = at * [1, -1] + [(k % columns) * size, (k // columns + 1) * size - 20]
+        faces = patch.quads if row["cells"] == "quads" else patch.triangles
+        paths = "".join("M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in at[face]) + "Z" for face in faces)
+        title = f"{row['angle']:.1f} {outline['name']}"
+        pictures.append(
+            f'<path d="{paths}"/><text x="{k % columns * size}" y="{(k // columns + 1) * size - 4}">{title}</text>'
+        )
     rows = -(-len(pictures) // columns)
     head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{columns * size}" height="{rows * size}">'
     style = (
@@ -193,10 +180,9 @@ def main() -> int:
     kinds = [("triangles", count) for count in chosen.triangles] + [
         ("quads", count) for count in chosen.quads
     ]
-    rows = rows_of(chosen.journal)
+    rows = rows_of(chosen.journal) if chosen.summary else resumed(chosen.journal)
     if not chosen.summary:
         known = {(row["name"], row["cells"], row["count"]) for row in rows}
-        chosen.journal.write_text("".join(json.dumps(row) + "\n" for row in rows))
         workers = multiprocessing.get_context("spawn").Pool(chosen.processes)
         with workers as pool, chosen.journal.open("a") as journal:
             for row in pool.imap_unordered(done, tasks(chosen.corpus, chosen.every, kinds, known), 4):

@@ -31,7 +31,6 @@ from __future__ import annotations
 
 import argparse
 import gc
-import os
 import platform
 import re
 import subprocess
@@ -44,11 +43,8 @@ from statistics import median, quantiles
 
 from drawing import Drawing, edge_length, is_simple, load, resampled
 from measure import measure
-from meshers import Failed, Gmsh, InRust, Mesh, Mesher, Netgen, Ours, Problem, RustProcess, Triangle
-from remeshers import InstantMeshes, TriWild
-
-# Ours would use every core; read when it first starts a thread. The others have one anyway.
-os.environ["RAYON_NUM_THREADS"] = "1"
+from meshers import Failed, InRust, Mesh, Mesher, Ours, Problem, RustProcess, Triangle
+from remeshers import peers
 
 ROOT = Path(__file__).parent.parent.parent
 COUNTS = [500, 2000, 10_000, 100_000]
@@ -98,12 +94,7 @@ def main() -> None:
         Ours("gridmesh, angle fixed", angle=0.0),
         InRust("gridmesh, angle fixed, from Rust", rust, "optimal", ours=True),
         Ours("gridmesh `grown`, angle fixed", boundary="grown", angle=0.0),
-        Triangle("Triangle `pq30a`"),
-        Gmsh("gmsh, frontal"),
-        Netgen("netgen"),
-        InstantMeshes("Instant Meshes, 6-RoSy", aligned=False),
-        InstantMeshes("Instant Meshes, 6-RoSy, boundary aligned", aligned=True),
-        TriWild("TriWild"),
+        *peers(),
         InRust("spade, refinement (Rust)", rust, "spade"),
         InRust("lattice points + spade (Rust)", rust, "lattice"),
     ]

@@ -33,8 +33,7 @@ def connectivity(triangles: np.ndarray) -> tuple[dict[str, float], np.ndarray]:
     The numbers are those of two copies glued along the boundary: an interior vertex is there twice, a
     boundary vertex of valence v becomes one of valence 2 v - 2.
     """
-    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    edges, uses = np.unique(sides, axis=0, return_counts=True)
+    edges, uses = edges_of(triangles)
     rim = edges[uses == 1]
     valence = np.bincount(edges.ravel())
     on_rim = np.zeros(len(valence), bool)
@@ -50,6 +49,13 @@ def connectivity(triangles: np.ndarray) -> tuple[dict[str, float], np.ndarray]:
         "chords": float(chords.sum()),
     }
     return numbers, rim
+
+
+def edges_of(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Undirected edges, (e, 2), and the number of triangles at each."""
+    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, uses = np.unique(sides, axis=0, return_counts=True)
+    return edges, uses
 
 
 def shapes(vertices: np.ndarray, triangles: np.ndarray) -> tuple[float, float]:

@@ -8,6 +8,7 @@ untimed, which is in favour of gmsh and netgen; arrays of the result are made wi
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import time
@@ -30,6 +31,9 @@ except OSError as error:
         "libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxfixes3 libxft2 libxinerama1 libxrender1"
     )
     sys.exit(f"gmsh does not load ({error}); on Debian it needs\n\n    sudo apt-get install {packages}\n")
+
+# Ours would use every core; read when it first starts a thread. The others have one anyway.
+os.environ["RAYON_NUM_THREADS"] = "1"
 
 
 class Failed(Exception):

@@ -1,4 +1,4 @@
-"""Instant Meshes and TriWild behind the face of `meshers.py`.
+"""Instant Meshes and TriWild behind the face of `meshers.py`, and the list of all peers that have Python modules.
 
 Instant Meshes lays a field of six directions over a mesh and extracts triangles from it; what it is given here is Triangle's
 mesh of the drawing with four times as many triangles as are wanted, untimed, which is in its favour. TriWild gets the
@@ -16,7 +16,7 @@ import pyinstantmeshes
 import triangle
 import wildmeshing
 from drawing import point_inside, sides
-from meshers import Failed, Mesh, Mesher, Problem, timed
+from meshers import Failed, Gmsh, Mesh, Mesher, Netgen, Problem, Triangle, timed
 
 
 @contextmanager
@@ -106,3 +106,15 @@ class TriWild(Mesher):
         if not len(triangles):
             raise Failed("no triangles")
         return Mesh(seconds, len(triangles), vertices[:, :2], triangles.astype(int))
+
+
+def peers() -> list[Mesher]:
+    """The meshers of others that have Python modules, with their names in tables."""
+    return [
+        Triangle("Triangle `pq30a`"),
+        Gmsh("gmsh, frontal"),
+        Netgen("netgen"),
+        InstantMeshes("Instant Meshes, 6-RoSy", aligned=False),
+        InstantMeshes("Instant Meshes, 6-RoSy, boundary aligned", aligned=True),
+        TriWild("TriWild"),
+    ]

@@ -14,7 +14,7 @@
 """How often we and other meshers fail over outlines of a corpus. From the folder of the project:
 
     uv run tests/campaign/corpus.py CORPUS.jsonl
-    uv run tests/peers/outlines.py CORPUS.jsonl JOURNAL.jsonl --every 200
+    uv run tests/peers/failures.py CORPUS.jsonl JOURNAL.jsonl --every 200
 
 Every outline is meshed once by each, with about as many triangles as are asked for: the size is corrected once, and the
 nearer of two meshes is taken. Others get the drawing resampled to edges of that size, or as it is drawn where that would
@@ -29,7 +29,7 @@ from __future__ import annotations
 import argparse
 import json
 import multiprocessing
-import os
+import sys
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator
@@ -39,40 +39,24 @@ from typing import Any
 
 import numpy as np
 from drawing import Drawing, edge_length, is_simple, resampled, turned
-from measure import measure
-from meshers import Failed, Gmsh, Mesh, Mesher, Netgen, Ours, Problem, Triangle
-from remeshers import InstantMeshes, TriWild
+from measure import edges_of, measure
+from meshers import Failed, Mesh, Mesher, Ours, Problem
+from remeshers import peers
 
-# Ours would use every core; read when it first starts a thread. The others have one anyway.
-os.environ["RAYON_NUM_THREADS"] = "1"
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
+
+from json_lines import outlines, resumed
 
 PATIENCE = 60.0
 FARTHEST = 3.0
 """Edges that a mesh may be from the drawing, or the drawing from it."""
 
 
-def meshers() -> list[Mesher]:
-    """Ours first."""
-    return [
-        Ours("gridmesh"),
-        Triangle("Triangle `pq30a`"),
-        Gmsh("gmsh, frontal"),
-        Netgen("netgen"),
-        InstantMeshes("Instant Meshes, 6-RoSy", aligned=False),
-        InstantMeshes("Instant Meshes, 6-RoSy, boundary aligned", aligned=True),
-        TriWild("TriWild"),
-    ]
-
-
-def outlines(corpus: Path, every: int) -> Iterator[Drawing]:
+def drawings(corpus: Path, every: int) -> Iterator[Drawing]:
     """Every so many outlines of the corpus."""
-    with corpus.open() as lines:
-        for k, line in enumerate(lines):
-            if k % every == 0:
-                row = json.loads(line)
-                contours = [np.array(row["outer"]), *map(np.array, row["holes"])]
-                contours = [turned(contour, i == 0) for i, contour in enumerate(contours)]
-                yield Drawing(f"{row['source']} {row['name']}", contours)
+    for name, row in outlines(corpus, every):
+        contours = [np.array(row["outer"]), *map(np.array, row["holes"])]
+        yield Drawing(name, [turned(contour, i == 0) for i, contour in enumerate(contours)])
 
 
 def problem_of(drawing: Drawing, edge: float, count: int) -> Problem:
@@ -94,8 +78,8 @@ def fault(mesh: Mesh, drawing: Drawing) -> str | None:
     least = (areas * np.sign(areas.sum())).min()
     if least <= 0:
         return "inverted"
-    halves = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    edges, uses = np.unique(np.sort(halves, axis=1), axis=0, return_counts=True)
+    halves = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    edges, uses = edges_of(triangles)
     if uses.max() > 2 or len(np.unique(halves, axis=0)) < len(halves):
         return "not manifold"
     rim = edges[uses == 1]
@@ -213,17 +197,15 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=2000, help="number of triangles")
     parser.add_argument("--minutes", type=float, default=np.inf, help="stop after so many, with the table")
     chosen = parser.parse_args()
-    known = chosen.journal.read_text().splitlines(keepends=True) if chosen.journal.exists() else []
-    rows = [json.loads(line) for line in known if line.endswith("\n")]
+    rows = resumed(chosen.journal)
     done = {(row["name"], row["mesher"]) for row in rows}
     since = time.monotonic()
-    all_meshers = meshers()
-    with chosen.journal.open("w") as journal:
-        journal.writelines(json.dumps(row) + "\n" for row in rows)
-        for drawing in outlines(chosen.corpus, chosen.every):
+    meshers: list[Mesher] = [Ours("gridmesh"), *peers()]
+    with chosen.journal.open("a") as journal:
+        for drawing in drawings(chosen.corpus, chosen.every):
             if time.monotonic() - since > 60 * chosen.minutes:
                 break
-            for mesher in all_meshers:
+            for mesher in meshers:
                 if (drawing.name, mesher.name) not in done:
                     row = {"name": drawing.name, "mesher": mesher.name}
                     rows.append(row | tried(mesher, drawing, chosen.count))
