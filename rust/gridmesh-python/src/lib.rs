@@ -5,6 +5,7 @@
 //! of drawings, `batch` is the parallel map, `combine` unites drawings, `thickness` measures them, `picture`
 //! traces them, `decode` reads their files, `harmonic` carries values on, `bones` weighs bones.
 #![forbid(unsafe_code)]
+#![deny(clippy::disallowed_methods)]
 
 mod arrays;
 mod batch;

@@ -27,7 +27,7 @@ use crate::{error, options};
 ///     Number of threads; None: one per processor, or with an executor one per task. Results do not depend on it.
 /// executor : concurrent.futures.Executor, optional
 ///     Does the work elsewhere: processes, or the machines of a cluster (`distributed.Client.get_executor()`), which
-///     need this module too. Results are the same bytes on processors of the same kind.
+///     need this module too. Results are the same bytes wherever they are made.
 /// progress : callable, optional
 ///     Called from this thread with the fraction of drawings done; cancels by returning False.
 /// **options

@@ -127,8 +127,8 @@ fn densities(contours: &[ClosedCurve], carrier: &Carrier, given: &[Vec<f64>]) ->
             };
             let (segment, t) = contour.source(s / rim.length * contour.length());
             let (i, n) = (segment as usize, given.len());
-            let (from, to) = (given.get(i)?.ln(), given.get((i + 1) % n)?.ln());
-            found.push((from + t * (to - from)).exp());
+            let (from, to) = (libm::log(*given.get(i)?), libm::log(*given.get((i + 1) % n)?));
+            found.push(libm::exp(from + t * (to - from)));
         }
     }
     Some(found)
@@ -169,7 +169,7 @@ impl Bent {
     pub(crate) fn scale_range(&self) -> f64 {
         let (low, high) =
             self.image.u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &u| (l.min(u), h.max(u)));
-        (high - low).exp()
+        libm::exp(high - low)
     }
 
     /// A lattice of the bent plane as it lies in the middle of the drawing: where positions are measured.

@@ -34,12 +34,13 @@
 //! # What holds everywhere
 //!
 //! Everything returned keeps its promises, or an [`Error`] says what is wrong, where, what is allowed and what to do; no input makes
-//! it panic. The same input gives the same bytes for any number of threads. Whatever takes long reports progress, and stops where that
-//! returns false. Positions are `f64`, angles are in radians.
+//! it panic. The same input gives the same bytes for any number of threads, on every system and processor. Whatever takes long reports
+//! progress, and stops where that returns false. Positions are `f64`, angles are in radians.
 //!
 //! Source: Nealen, Pett, Alexa, Igarashi: *GridMesh: Fast and High Quality 2D Mesh Generation for Interactive 3D Shape
 //! Modeling*, 2009. What is done beyond it, and why, is told in `docs/algorithm.md`, where things are in `docs/architecture.md`.
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 pub mod bend;
 pub mod body;

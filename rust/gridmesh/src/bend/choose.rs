@@ -201,7 +201,7 @@ impl Sizes {
             .map(|t| {
                 let [a, b, c] = t.map(|i| ground.carrier.vertices[i as usize]);
                 let mean = t.iter().map(|&i| u[i as usize]).sum::<f64>() / 3.0;
-                (-mean, (b - a).perp_dot(c - a) * (2.0 * mean).exp())
+                (-mean, (b - a).perp_dot(c - a) * libm::exp(2.0 * mean))
             })
             .collect();
         sizes.sort_by(|a, b| a.0.total_cmp(&b.0));

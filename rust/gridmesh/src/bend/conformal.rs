@@ -222,7 +222,7 @@ impl Solver<'_> {
         for t in &carrier.triangles {
             let corner = t.map(|i| carrier.vertices[i as usize]);
             let mean = |of: &[f64]| t.iter().map(|&i| of[i as usize]).sum::<f64>() / 3.0;
-            let gradient = DVec2::from_angle(mean(v)) * mean(u).exp();
+            let gradient = DVec2::from_angle(mean(v)) * libm::exp(mean(u));
             for k in 0..3 {
                 // Twice the area times the gradient of the corner's hat function.
                 let across = (corner[(k + 2) % 3] - corner[(k + 1) % 3]).perp();
@@ -244,8 +244,8 @@ pub fn keep_area(carrier: &Carrier, u: &mut [f64]) {
         let [a, b, c] = t.map(|i| carrier.vertices[i as usize]);
         let doubled = (b - a).perp_dot(c - a);
         before += doubled;
-        after += doubled * (2.0 / 3.0 * t.iter().map(|&i| u[i as usize]).sum::<f64>()).exp();
+        after += doubled * libm::exp(2.0 / 3.0 * t.iter().map(|&i| u[i as usize]).sum::<f64>());
     }
-    let shift = 0.5 * (after / before).ln();
+    let shift = 0.5 * libm::log(after / before);
     u.iter_mut().for_each(|u| *u -= shift);
 }

@@ -18,11 +18,11 @@ pub struct Image {
 impl Image {
     /// The linear part of the map near a vertex, and its inverse.
     pub(super) fn turned(&self, i: usize, d: DVec2) -> DVec2 {
-        self.u[i].exp() * DVec2::from_angle(self.v[i]).rotate(d)
+        libm::exp(self.u[i]) * DVec2::from_angle(self.v[i]).rotate(d)
     }
 
     fn turned_back(&self, i: usize, d: DVec2) -> DVec2 {
-        (-self.u[i]).exp() * DVec2::from_angle(-self.v[i]).rotate(d)
+        libm::exp(-self.u[i]) * DVec2::from_angle(-self.v[i]).rotate(d)
     }
 
     /// True if no triangle of the carrier is turned over (exact).

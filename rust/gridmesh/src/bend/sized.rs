@@ -55,11 +55,11 @@ impl Solver<'_> {
         let mut v = rotation.v.clone();
         for _ in 0..rounds {
             let u = self.scale(&v)?;
-            let after: Vec<f64> = areas.iter().zip(&u).map(|(area, u)| area * (2.0 * u).exp()).collect();
+            let after: Vec<f64> = areas.iter().zip(&u).map(|(area, u)| area * libm::exp(2.0 * u)).collect();
             let sum: f64 = after.iter().sum();
             let shares: Vec<f64> = after.iter().map(|a| a / sum).collect();
             // What u is above its mean where the area is kept.
-            let shift = 0.5 * (sum / whole).ln() - dot(&u, &shares);
+            let shift = 0.5 * libm::log(sum / whole) - dot(&u, &shares);
             let mean = dot(&u, &shares);
             let targets: Vec<f64> = floors.iter().map(|floor| floor + shift).collect();
             let below = |(i, length): (usize, &f64)| {

@@ -129,7 +129,7 @@ fn off_course(points: &[DVec2], heading: f64, contour: f64) -> Vec<f64> {
             // Places at which a chord, or its mirror image, is near.
             let centre = sign * (s - shift);
             for [middle, length, off] in within(centre - 3.0 * SIGMA..centre + 3.0 * SIGMA) {
-                let weight = length * (-0.5 * ((middle - centre) / SIGMA).powi(2)).exp();
+                let weight = length * libm::exp(-0.5 * ((middle - centre) / SIGMA).powi(2));
                 sum += weight * off;
                 weights += weight;
             }

@@ -58,7 +58,7 @@ impl Tangents {
         for k in (middle - reach).ceil() as i64..=(middle + reach).floor() as i64 {
             let lap = k.div_euclid(count);
             let angle = self.angles[k.rem_euclid(count) as usize] + lap as f64 * self.gain;
-            let weight = (-0.5 * ((k as f64 - middle) * self.step / SIGMA).powi(2)).exp();
+            let weight = libm::exp(-0.5 * ((k as f64 - middle) * self.step / SIGMA).powi(2));
             sum += weight * angle;
             weights += weight;
         }

@@ -35,14 +35,14 @@ impl Wish {
 
     /// So many times the triangles at each boundary vertex.
     pub fn of_densities(densities: &[f64]) -> Self {
-        let sizes = densities.iter().map(|density| 0.5 * density.ln()).collect();
+        let sizes = densities.iter().map(|density| 0.5 * libm::log(*density)).collect();
         Self { sizes, shares: vec![1.0; densities.len()] }
     }
 }
 
 /// Log scale that each boundary vertex wishes for: finer where the drawing is narrow.
 fn narrowness(widths: &[f64]) -> Vec<f64> {
-    widths.iter().map(|width| (WIDE.ln() - width).clamp(0.0, MOST)).collect()
+    widths.iter().map(|width| (libm::log(WIDE) - width).clamp(0.0, MOST)).collect()
 }
 
 /// How much the direction of each boundary vertex counts, 0 to 1: less at tips and in parts too narrow for
@@ -50,7 +50,7 @@ fn narrowness(widths: &[f64]) -> Vec<f64> {
 pub fn room(widths: &[f64]) -> Vec<f64> {
     const NARROW: f64 = 2.5;
     const LEAST: f64 = 0.02;
-    widths.iter().map(|width| (width.exp() / NARROW).powi(2).clamp(LEAST, 1.0)).collect()
+    widths.iter().map(|width| (libm::exp(*width) / NARROW).powi(2).clamp(LEAST, 1.0)).collect()
 }
 
 /// The boundary vertices in the narrowest part of the contours, a seventh of their length.
@@ -98,7 +98,7 @@ pub fn log_widths(carrier: &Carrier, progress: Progress<'_>) -> Result<Vec<f64>>
                 if depth > 0.0 { d.length_squared() / (2.0 * depth) } else { f64::INFINITY }
             };
             let width = 2.0 * at.iter().map(radius).fold(f64::INFINITY, f64::min);
-            logs.push(width.clamp(0.5, 1e6).ln());
+            logs.push(libm::log(width.clamp(0.5, 1e6)));
         }
         found.extend((0..count).map(|i| smoothed(rim, &logs, i)));
     }
@@ -124,7 +124,7 @@ fn smoothed(rim: &Rim, logs: &[f64], i: usize) -> f64 {
         let d = (rim.arcs[k] - here).abs();
         let d = d.min(rim.length - d);
         if d < reach {
-            let weight = (-0.5 * (d / SIGMA).powi(2)).exp();
+            let weight = libm::exp(-0.5 * (d / SIGMA).powi(2));
             sum += weight * logs[k];
             weights += weight;
         }

@@ -288,7 +288,7 @@ impl Sheet {
         let s = if self.view.central {
             // Between two rays at the angle `part` from the first one.
             let (u, v) = (self.view.stretch(a), self.view.stretch(b));
-            let (x, y) = ((whole - part).sin() / u, part.sin() / v);
+            let (x, y) = (libm::sin(whole - part) / u, libm::sin(part) / v);
             if x + y != 0.0 { y / (x + y) } else { part / whole }
         } else {
             part / whole
@@ -348,7 +348,7 @@ impl View {
         }
         let step = b - a;
         let across = step.length_squared() + a.perp_dot(step).powi(2);
-        across.sqrt().atan2(1.0 + a.dot(b))
+        libm::atan2(across.sqrt(), 1.0 + a.dot(b))
     }
 
     /// Length of the ray to the point of the plane at `q`, at depth 1.

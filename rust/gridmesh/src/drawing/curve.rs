@@ -263,7 +263,7 @@ impl ClosedCurve {
                 let p = self.points[i];
                 let before = p - self.point_from(self.arc[i] - window, &mut back);
                 let after = self.point_from(self.arc[i] + window, &mut ahead) - p;
-                before.perp_dot(after).atan2(before.dot(after))
+                libm::atan2(before.perp_dot(after), before.dot(after))
             })
             .collect()
     }

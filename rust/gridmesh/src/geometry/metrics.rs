@@ -169,7 +169,7 @@ pub fn min_angle(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
         let largest = dots[0].max(dots[1]).max(dots[2]);
         largest_cotangent = largest_cotangent.max(if area > 0.0 { largest / area } else { f64::INFINITY });
     }
-    if triangles.is_empty() { 0.0 } else { 1f64.atan2(largest_cotangent) }
+    if triangles.is_empty() { 0.0 } else { libm::atan2(1.0, largest_cotangent) }
 }
 
 /// The angle between the normals of the two triangles of each inner edge, in radians, with the
@@ -196,7 +196,7 @@ pub fn face_angles(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<([u32; 2],
         .filter(|pair| pair.len() == 2)
         .map(|pair| {
             let (n, m) = (normals[pair[0].1], normals[pair[1].1]);
-            (pair[0].0, n.cross(m).length().atan2(n.dot(m)))
+            (pair[0].0, libm::atan2(n.cross(m).length(), n.dot(m)))
         })
         .collect()
 }

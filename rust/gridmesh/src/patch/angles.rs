@@ -42,5 +42,5 @@ fn sharpest(patch: &Patch, counts: impl Fn(&[u32; 3]) -> bool) -> f64 {
         let dot = (-a.dot(b)).max(-b.dot(c)).max(-c.dot(a));
         most = most.max(dot / a.perp_dot(b));
     }
-    1f64.atan2(most)
+    libm::atan2(1.0, most)
 }

@@ -48,7 +48,7 @@ pub(crate) fn expel(
             let ahead = (wall - at).normalize_or_zero();
             BEYOND.map(|beyond| wall + beyond * h * ahead)
         });
-        let allowed = cotangent(at).max(1.0 / LEAST_ANGLE.tan());
+        let allowed = cotangent(at).max(1.0 / libm::tan(LEAST_ANGLE));
         let mut good: Vec<(f64, DVec2)> = places
             .map(|place| (cotangent(place), place))
             .filter(|&(cotangent, _)| cotangent.is_finite() && cotangent <= allowed)

@@ -31,7 +31,7 @@ use crate::progress::Progress;
 pub(crate) fn placements(symmetry: &Symmetry, angle: Option<f64>, cells: CellShape) -> Vec<(f64, DVec2)> {
     const SHIFTS: [f64; 4] = [0.0, 0.5, 0.25, 0.75];
     let direction = symmetry.axis.direction;
-    let along = direction.y.atan2(direction.x);
+    let along = libm::atan2(direction.y, direction.x);
     let on_direction = SHIFTS.map(|shift| (along, DVec2::new(shift, 0.0)));
     // Rows lie across the axis: every other one has a point on it.
     let on_rows = SHIFTS.map(|shift| (along + FRAC_PI_2, DVec2::new(0.0, 2.0 * ROW_HEIGHT * shift)));

@@ -41,7 +41,7 @@ pub(crate) fn blunted(
         let (rim, line) = (&rims[stray.contour], &lines[stray.contour]);
         let at = stray.arc / h;
         let Some(angle) = tip(line, at) else { return true };
-        let back = (0.5 * ACROSS / (0.5 * angle).sin()).clamp(BACK.0, BACK.1);
+        let back = (0.5 * ACROSS / libm::sin(0.5 * angle)).clamp(BACK.0, BACK.1);
         let after = (stray.edge + 1) % rim.s.len();
         // The last edge ends at the first vertex, a lap on.
         let lap = if after == 0 { line.length() } else { 0.0 };

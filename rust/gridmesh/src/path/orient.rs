@@ -68,7 +68,7 @@ fn stretches_of(curve: &ClosedCurve, edge_length: f64, step: f64, found: &mut Ve
             let middle = 0.5 * (ends[0] + ends[1]);
             curve.point_at(middle + half) - curve.point_at(middle - half)
         };
-        let direction = chord.y.atan2(chord.x).rem_euclid(step);
+        let direction = libm::atan2(chord.y, chord.x).rem_euclid(step);
         found.push(Stretch { direction: if direction < step { direction } else { 0.0 }, length });
     }
 }
@@ -90,7 +90,7 @@ fn predictions(stretches: &[Stretch], shape: CellShape) -> Vec<(f64, f64)> {
     let mut before = Vec::with_capacity(stretches.len());
     for stretch in stretches {
         before.push(total);
-        let (sin, cos) = (2.0 * stretch.direction).sin_cos();
+        let (sin, cos) = libm::sincos(2.0 * stretch.direction);
         total[0] += stretch.length * cos;
         total[1] += stretch.length * sin;
         length += stretch.length;
@@ -101,7 +101,7 @@ fn predictions(stretches: &[Stretch], shape: CellShape) -> Vec<(f64, f64)> {
         .map(|(stretch, below)| {
             let angle = stretch.direction;
             // Directions beyond the angle are past it by their difference, the others by 60 more.
-            let sum = |of: [f64; 2], by: f64| of[0] * by.cos() - of[1] * by.sin();
+            let sum = |of: [f64; 2], by: f64| of[0] * libm::cos(by) - of[1] * libm::sin(by);
             let beyond = [total[0] - below[0], total[1] - below[1]];
             let cosines = sum(beyond, -2.0 * angle - step) + sum(below, step - 2.0 * angle);
             (0.5 * (cosines - cosine * length), angle)

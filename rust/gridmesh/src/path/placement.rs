@@ -131,14 +131,14 @@ impl Lattice {
 
     /// From the units of the drawing to lattice units.
     pub fn to_units(&self, point: DVec2) -> DVec2 {
-        let (sin, cos) = self.angle.sin_cos();
+        let (sin, cos) = libm::sincos(self.angle);
         let d = (point - self.origin) / self.edge_length;
         DVec2::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x)
     }
 
     /// From lattice units to the units of the drawing.
     pub fn from_units(&self, units: DVec2) -> DVec2 {
-        let (sin, cos) = self.angle.sin_cos();
+        let (sin, cos) = libm::sincos(self.angle);
         self.origin
             + self.edge_length * DVec2::new(cos * units.x - sin * units.y, sin * units.x + cos * units.y)
     }

@@ -128,7 +128,7 @@ impl Target {
 pub(crate) fn smooth(points: &[DVec2], sigma: f64) -> Vec<DVec2> {
     let n = points.len();
     let radius = ((3.0 * sigma).ceil() as usize).min(n / 2);
-    let weights: Vec<f64> = (0..=radius).map(|k| (-0.5 * (k as f64 / sigma).powi(2)).exp()).collect();
+    let weights: Vec<f64> = (0..=radius).map(|k| libm::exp(-0.5 * (k as f64 / sigma).powi(2))).collect();
     let total = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
     (0..n)
         .map(|i| {

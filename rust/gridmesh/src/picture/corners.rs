@@ -145,7 +145,7 @@ fn corner(line: &Line<'_>, i: usize, (gap, length): (f64, f64)) -> Option<Corner
     };
     let (before, after) = (straight(&side(false), noise)?, straight(&side(true), noise)?);
     // Both run away from the corner.
-    let turn = (-before.1).perp_dot(after.1).atan2((-before.1).dot(after.1));
+    let turn = libm::atan2((-before.1).perp_dot(after.1), (-before.1).dot(after.1));
     if turn.abs() < TURN || turn.abs() > SHARPEST {
         return None;
     }
@@ -154,7 +154,7 @@ fn corner(line: &Line<'_>, i: usize, (gap, length): (f64, f64)) -> Option<Corner
     let at = before.0 + s * before.1;
     // The corner lies before both sides begin.
     let ahead = (at - before.0).dot(before.1) < 0.0 && (at - after.0).dot(after.1) < 0.0;
-    let half_tangent = (0.5 * (std::f64::consts::PI - turn.abs())).tan();
+    let half_tangent = libm::tan(0.5 * (std::f64::consts::PI - turn.abs()));
     let allowed = (CUT_OFF.0 / half_tangent + CUT_OFF.1).min(FARTHEST);
     let to_segment = |j: usize| nearest_on_segment(at, samples[i].at, samples[j].at).1.sqrt();
     if !ahead || to_segment((i + 1) % n).min(to_segment((i + n - 1) % n)) > allowed {
@@ -200,7 +200,7 @@ fn straight(points: &[DVec2], noise: f64) -> Option<(DVec2, DVec2)> {
         xy += d.x * d.y;
         yy += d.y * d.y;
     }
-    let direction = DVec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy));
+    let direction = DVec2::from_angle(0.5 * libm::atan2(2.0 * xy, xx - yy));
     let direction =
         if direction.dot(points[points.len() - 1] - points[0]) < 0.0 { -direction } else { direction };
     let straight = points.iter().all(|&point| direction.perp_dot(point - mean).abs() <= STRAIGHT * noise);

@@ -3,12 +3,11 @@
 //! Light that falls unevenly on a sheet changes slowly: the brightness of the paper is a parabola of place, fitted
 //! to the brightest pixels of blocks, without the blocks that a drawing darkens.
 
-use faer::Mat;
-use faer::prelude::Solve;
-
 use crate::error::Result;
+use crate::geometry::cholesky::Pattern;
 use crate::picture::field::Picture;
 use crate::picture::threshold::otsu;
+use crate::progress::Progress;
 
 /// Blocks along the longer side.
 const BLOCKS: usize = 24;
@@ -123,31 +122,32 @@ fn powers([x, y]: [f64; 2]) -> [f64; 6] {
     [1.0, x, y, x * x, x * y, y * y]
 }
 
-/// The polynomial of this many terms that fits best.
+/// The polynomial of this many terms that fits best; `None` if there are too few blocks, or none fits.
 fn least_squares(blocks: &[([f64; 2], f64)], terms: usize) -> Option<[f64; 6]> {
     if blocks.len() < terms {
         return None;
     }
-    let mut normal = Mat::<f64>::zeros(terms, terms);
-    let mut right = Mat::<f64>::zeros(terms, 1);
+    // The normal equations, of which the upper triangle is stored column by column.
+    let column = |j: usize| j * (j + 1) / 2;
+    let mut normal = vec![0.0; column(terms)];
+    let mut coefficients = [0.0; 6];
     for &(at, value) in blocks {
         let powers = powers(at);
-        for i in 0..terms {
-            right[(i, 0)] += powers[i] * value;
-            for j in 0..terms {
-                normal[(i, j)] += powers[i] * powers[j];
+        for j in 0..terms {
+            coefficients[j] += powers[j] * value;
+            for i in 0..=j {
+                normal[column(j) + i] += powers[i] * powers[j];
             }
         }
     }
-    for i in 0..terms {
-        normal[(i, i)] += 1e-9;
+    for j in 0..terms {
+        normal[column(j) + j] += 1e-9;
     }
-    let solution = normal.partial_piv_lu().solve(&right);
-    let mut coefficients = [0.0; 6];
-    for (i, coefficient) in coefficients.iter_mut().enumerate().take(terms) {
-        *coefficient = solution[(i, 0)];
-    }
-    coefficients.iter().all(|c| c.is_finite()).then_some(coefficients)
+    let starts = (0..=terms).map(column).collect();
+    let rows = (0..terms).flat_map(|j| 0..=j).collect();
+    let pattern = Pattern::new("paper", starts, rows, Progress::NONE).ok()?;
+    pattern.factor(normal, Progress::NONE).ok()?.solve(&mut coefficients[..terms], 1).ok()?;
+    Some(coefficients)
 }
 
 #[cfg(test)]

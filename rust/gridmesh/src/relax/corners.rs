@@ -41,7 +41,7 @@ pub fn settle_corners(
             let corner = rim.s[k];
             let cost = |i: usize, moved: f64| {
                 let each = interior / f64::from(fan[rim.start + i].max(1));
-                let ideal = (each / std::f64::consts::FRAC_PI_3).ln();
+                let ideal = libm::log(each / std::f64::consts::FRAC_PI_3);
                 ideal * ideal + 0.1 * moved * moved
             };
             let mut best = (cost(k, 0.0) - 0.05, k, 0.0);

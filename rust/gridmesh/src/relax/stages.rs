@@ -166,7 +166,7 @@ where
             })
             .collect();
         let sharpest = sharpness.iter().filter(|s| !s.2).map(|s| s.1).fold(most, f64::max);
-        let limit = most.max(cotangent((1.0 / sharpest).atan().to_degrees() + MARGIN));
+        let limit = most.max(cotangent(libm::atan(1.0 / sharpest).to_degrees() + MARGIN));
         let worst: Vec<u32> = sharpness
             .into_iter()
             .filter(|&(_, sharpness, at_corner)| sharpness > if at_corner { cornered } else { limit })
@@ -231,13 +231,13 @@ where
     pub fn least_angle(&self) -> f64 {
         let all = self.band.triangles.iter().map(|t| sharpness(t.map(|v| self.band.positions[v as usize])));
         let equilateral = cotangent(60.0);
-        1f64.atan2(all.fold(equilateral, f64::max))
+        libm::atan2(1.0, all.fold(equilateral, f64::max))
     }
 }
 
 /// Cotangent of an angle in degrees.
 fn cotangent(degrees: f64) -> f64 {
-    1.0 / degrees.to_radians().tan()
+    1.0 / libm::tan(degrees.to_radians())
 }
 
 /// Cotangent of the least angle of a triangle: the greatest of the three.

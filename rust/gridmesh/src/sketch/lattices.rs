@@ -95,7 +95,7 @@ impl Job<'_> {
         let of_area = (self.area / (self.options.cells.area() * n as f64)).sqrt();
         let length = self.contours.iter().map(ClosedCurve::length).sum::<f64>();
         let crowded = (LEAST_EACH * length / (n as f64 * of_area)).powi(3);
-        of_area * (0.5 * crowded + (0.25 * crowded * crowded + 1.0).sqrt()).cbrt()
+        of_area * libm::cbrt(0.5 * crowded + (0.25 * crowded * crowded + 1.0).sqrt())
     }
 
     /// The edge length where the drawing is wide enough for `n` cells. The lattice path cuts off what it

@@ -42,7 +42,7 @@ impl Job<'_> {
         let triangles = asked.round().max(1.0) as usize;
         let at = |step: i32| (asked.max(6.0) * STEP.powi(step)).ceil() as usize;
         // The largest size, and whether it is the symmetry that allows no larger one.
-        let steps = |size: f64| ((size / asked.max(6.0)).ln() / STEP.ln()).floor().max(0.0) as i32;
+        let steps = |size: f64| (libm::log(size / asked.max(6.0)) / libm::log(STEP)).floor().max(0.0) as i32;
         let limit = steps(MAX_TRIANGLES);
         let most_symmetric = self.most_symmetric();
         let last = most_symmetric.map_or(limit, |most| steps(most - 1.0).min(limit));

@@ -96,10 +96,10 @@ impl Job<'_> {
                 break;
             }
             // Of a drawing that is all outline the number changes less than by the square.
-            let here = (edge_length.ln(), ratio.ln());
+            let here = (libm::log(edge_length), libm::log(ratio));
             let power =
                 before.map_or_else(|| self.guess(n).1, |(h, r): (f64, f64)| (r - here.1) / (here.0 - h));
-            edge_length *= ratio.powf(1.0 / power.clamp(1.0, 2.0)).clamp(0.7, 1.4);
+            edge_length *= libm::pow(ratio, 1.0 / power.clamp(1.0, 2.0)).clamp(0.7, 1.4);
             before = Some(here);
         }
         let allowed = match asked {

@@ -131,7 +131,7 @@ impl Picture {
     /// panels for it show the plane spanned by x and the vertical of the view.
     pub fn body(&mut self, surface: &Surface, tilt: f64) {
         const SHADES: f64 = 24.0;
-        let (sin, cos) = tilt.sin_cos();
+        let (sin, cos) = libm::sincos(tilt);
         let view = |p: DVec3| DVec3::new(p.x, sin * p.y + cos * p.z, sin * p.z - cos * p.y);
         let seen: Vec<DVec3> = surface.vertices.iter().map(|&p| view(p)).collect();
         let light = DVec3::new(-0.45, 0.55, 0.7).normalize();

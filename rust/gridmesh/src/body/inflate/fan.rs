@@ -91,7 +91,7 @@ impl<'a> Fan<'a> {
             let area = a.cross(b);
             let facing = area.dot(normal);
             if ideal != Ideal::Equilateral && facing <= 0.0 {
-                return REFLEX * (2.0 - facing / cosine.hypot(facing).max(f64::MIN_POSITIVE));
+                return REFLEX * (2.0 - facing / libm::hypot(cosine, facing).max(f64::MIN_POSITIVE));
             }
             cosine / area.length()
         };

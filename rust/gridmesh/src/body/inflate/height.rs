@@ -190,7 +190,7 @@ pub(crate) fn bends(flat: &Flat<'_>, value: &[f64], gradient: &[DVec2], depth: f
         let (dx, dy) = (xx[v], yy[v]);
         let mixed = 0.5 * (dx.y + dy.x);
         // The sum of the second derivatives is -4 at depth 1.
-        let difference = (0.5 * (dx.x - dy.y)).hypot(mixed);
+        let difference = libm::hypot(0.5 * (dx.x - dy.y), mixed);
         let limb = (0.5 * difference / (depth * depth)).min(1.0);
         let level = gradient[v].perp().normalize_or_zero();
         let hollow = level.x * level.x * dx.x + 2.0 * level.x * level.y * mixed + level.y * level.y * dy.y;

@@ -129,7 +129,7 @@ fn moved(
     let mut is_moved = false;
     for reach in REACHES {
         for k in 0..8 {
-            let (sin, cos) = (f64::from(k) * FRAC_PI_4 + limits.turn).sin_cos();
+            let (sin, cos) = libm::sincos(f64::from(k) * FRAC_PI_4 + limits.turn);
             let target = here + reach * limits.wanted * (cos * e + sin * f);
             // Off the surface by a second-order term: a cheap first look.
             if cost(front, target) >= best || fan.sharpest(front.positions(), target, normal) > thin {

@@ -98,18 +98,18 @@ impl Section {
         }
         let step = FRAC_PI_2 / STEPS as f64;
         let length = |k: usize| {
-            let (sin, cos) = ((k as f64 + 0.5) * step).sin_cos();
+            let (sin, cos) = libm::sincos((k as f64 + 0.5) * step);
             let (_, slope) = self.curve.at((sin * radius / self.top).min(1.0));
-            sin.hypot(slope * cos)
+            libm::hypot(sin, slope * cos)
         };
         let mut along = [0.0; STEPS + 1];
         for k in 0..STEPS {
             along[k + 1] = along[k] + length(k);
         }
-        let wanted = (height / radius).min(1.0).asin() / FRAC_PI_2 * along[STEPS];
+        let wanted = libm::asin((height / radius).min(1.0)) / FRAC_PI_2 * along[STEPS];
         let k = along.partition_point(|&a| a < wanted).clamp(1, STEPS) - 1;
         let angle = step * (k as f64 + (wanted - along[k]) / (along[k + 1] - along[k]));
-        radius * angle.sin()
+        radius * libm::sin(angle)
     }
 }
 

@@ -35,7 +35,7 @@ impl Twins {
             .iter()
             .map(|&p| p - foot)
             .fold(DMat2::ZERO, |sum, d| sum + DMat2::from_cols(d * d.x, d * d.y));
-        let turn = 0.5 * (2.0 * moments.x_axis.y).atan2(moments.x_axis.x - moments.y_axis.y);
+        let turn = 0.5 * libm::atan2(2.0 * moments.x_axis.y, moments.x_axis.x - moments.y_axis.y);
         let step = std::f64::consts::PI / f64::from(DIRECTIONS);
         let of_lattice = (0..DIRECTIONS).map(|k| patch.lattice.angle + f64::from(k) * step);
         let principal = [turn, turn + std::f64::consts::FRAC_PI_2];

@@ -201,7 +201,7 @@ impl Room {
             let outward = axis.cross(first) * if self.inverted { -1.0 } else { 1.0 };
             let angle = |v: u32| {
                 let d = across(v);
-                (-d.dot(outward)).atan2(d.dot(first)).rem_euclid(std::f64::consts::TAU)
+                libm::atan2(-d.dot(outward), d.dot(first)).rem_euclid(std::f64::consts::TAU)
             };
             angle(c) < angle(other)
         })

@@ -312,14 +312,14 @@ fn least_corner(face: &[u32], position: impl Fn(u32) -> DVec3) -> f64 {
     let corner = |k: usize| {
         let [before, here, after] = [k + n - 1, k, k + 1].map(|k| position(face[k % n]));
         let (back, ahead) = (before - here, after - here);
-        back.cross(ahead).length().atan2(back.dot(ahead))
+        libm::atan2(back.cross(ahead).length(), back.dot(ahead))
     };
     (0..n).map(corner).fold(f64::INFINITY, f64::min)
 }
 
 /// Smallest angle of a triangle, and twice its inscribed by its circumscribed radius.
 pub(in crate::cut) fn shape([a, b, c]: [DVec3; 3]) -> (f64, f64) {
-    let angle = |p: DVec3, q: DVec3| p.cross(q).length().atan2(p.dot(q));
+    let angle = |p: DVec3, q: DVec3| libm::atan2(p.cross(q).length(), p.dot(q));
     let least = angle(b - a, c - a).min(angle(c - b, a - b)).min(angle(a - c, b - c));
     let [x, y, z] = [b.distance(c), c.distance(a), a.distance(b)];
     let double = (b - a).cross(c - a).length();

@@ -134,7 +134,7 @@ impl Line<'_> {
     /// What an edge between two places costs.
     fn cost(&self, from: (f64, usize), to: (f64, usize), step: f64, tolerance: f64) -> f64 {
         const SAMPLES: usize = 12;
-        let uneven = ((to.0 - from.0) / step).max(1e-6).ln();
+        let uneven = libm::log(((to.0 - from.0) / step).max(1e-6));
         let point = |s: f64| {
             let (k, t) = self.at(s);
             self.points[k - 1].lerp(self.points[k], t)

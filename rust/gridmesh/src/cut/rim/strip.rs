@@ -172,7 +172,7 @@ impl<'a> Strip<'a> {
             least if least == y => (c - b, a - b),
             _ => (a - c, b - c),
         };
-        p.cross(q).length().atan2(p.dot(q))
+        libm::atan2(p.cross(q).length(), p.dot(q))
     }
 
     /// The old surface's normal at a vertex: the mean over the triangles there.

@@ -21,14 +21,14 @@ impl Roll {
     pub fn flatten(&self, at: DVec2) -> DVec2 {
         match self.middle {
             None => at,
-            Some(middle) => at.y * DVec2::new((at.x - middle).sin(), (at.x - middle).cos()),
+            Some(middle) => at.y * DVec2::new(libm::sin(at.x - middle), libm::cos(at.x - middle)),
         }
     }
 
     pub fn unflatten(&self, p: DVec2) -> DVec2 {
         match self.middle {
             None => p,
-            Some(middle) => DVec2::new(middle + p.x.atan2(p.y), p.length()),
+            Some(middle) => DVec2::new(middle + libm::atan2(p.x, p.y), p.length()),
         }
     }
 }

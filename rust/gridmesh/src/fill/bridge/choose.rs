@@ -133,7 +133,7 @@ impl<'a> Chooser<'a> {
             let around = k as f64 / SAMPLES as f64;
             let (a, b) = (lower.edge(around), upper.edge(around));
             // Edges grow evenly from one loop to the other.
-            let edge = if (a - b).abs() > 1e-3 * a { (a - b) / (a / b).ln() } else { a };
+            let edge = if (a - b).abs() > 1e-3 * a { (a - b) / libm::log(a / b) } else { a };
             loft.length(around) / (edge * height)
         };
         let exact = rows.is_some();
@@ -205,7 +205,7 @@ impl<'a> Chooser<'a> {
     pub fn stacked(&self) -> Chosen {
         let (m, n) = (self.lower.len() as f64, self.upper.len() as f64);
         let rows = (self.mean().round() as usize).max(self.least as usize);
-        let length = |row: usize| (m * (n / m).powf(row as f64 / rows as f64)).round() as usize;
+        let length = |row: usize| (m * libm::pow(n / m, row as f64 / rows as f64)).round() as usize;
         // The vertex of the upper loop above the first one of the lower.
         let shift = self.upper.before(self.lower.around[0]).round();
         let first = shift.rem_euclid(n) as usize;

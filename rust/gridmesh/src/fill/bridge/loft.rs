@@ -157,8 +157,8 @@ fn slope(from: DVec3, onward: DVec3, to: DVec3, back: DVec3, radius: f64) -> DVe
     let length = chord.length();
     let back = if back == DVec3::ZERO { chord / length.max(f64::MIN_POSITIVE) } else { -back };
     // Of the arc that turns by as much.
-    let angle = onward.dot(back).clamp(-1.0, 1.0).acos().clamp(1e-3, 2.8);
-    let slope = onward * (length * 2.0 * (0.25 * angle).tan() / (0.5 * angle).sin());
+    let angle = libm::acos(onward.dot(back).clamp(-1.0, 1.0)).clamp(1e-3, 2.8);
+    let slope = onward * (length * 2.0 * libm::tan(0.25 * angle) / libm::sin(0.5 * angle));
     let aside = slope.reject_from_normalized(chord.try_normalize().unwrap_or(onward));
     let most = REACH * radius;
     if aside.length() > most { slope * (most / aside.length()) } else { slope }

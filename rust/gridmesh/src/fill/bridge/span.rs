@@ -213,7 +213,7 @@ impl<'a> Span<'a> {
         let grow = (upper.ring.length * m as f64) / (lower.ring.length * n as f64);
         for (v, (&around, &height)) in tube.around.iter().zip(&tube.height).enumerate() {
             let even = (grow - 1.0).abs() < 1e-3;
-            let height = if even { height } else { (grow.powf(height) - 1.0) / (grow - 1.0) };
+            let height = if even { height } else { (libm::pow(grow, height) - 1.0) / (grow - 1.0) };
             flat[m + n + v] = DVec2::new(around, height);
         }
         let inner = flat[m + n..].iter().map(|p| loft.at(p.x, p.y).point).collect::<Vec<_>>();

@@ -55,7 +55,7 @@ fn improve(local: &mut Local, v: u32) -> bool {
     for step in STEPS {
         for way in 0..WAYS {
             let t = std::f64::consts::TAU * way as f64 / WAYS as f64;
-            let there = p + step * size * (t.cos() * e + t.sin() * f);
+            let there = p + step * size * (libm::cos(t) * e + libm::sin(t) * f);
             let found = worst(there);
             if found > best.0 {
                 best = (found, there);

@@ -73,7 +73,7 @@ fn flux(points: &[DVec2], lengths: &[f64], progress: Progress<'_>) -> Result<Vec
     let n = points.len();
     let before = |k: usize| lengths[(k + n - 1) % n];
     let scale: Vec<f64> =
-        (0..n).map(|k| 0.5 * (before(k).max(1e-300) * lengths[k].max(1e-300)).ln()).collect();
+        (0..n).map(|k| 0.5 * libm::log(before(k).max(1e-300) * lengths[k].max(1e-300))).collect();
     let share: Vec<f64> = (0..n).map(|k| 0.5 * (before(k) + lengths[k])).collect();
     let mut flux = vec![0.0; n];
     let rows = ASK_EVERY / n.max(1) + 1;

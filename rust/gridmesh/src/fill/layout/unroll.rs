@@ -241,7 +241,7 @@ fn inscribed(positions: &[DVec3]) -> Vec<DVec2> {
     let total: f64 = lengths.iter().sum();
     // The angles at the centre as a function of the curvature; at the largest one the longest edge is
     // a diameter. If the others then fall short of the other half, the centre lies beyond that edge.
-    let angle = |length: f64, curvature: f64| 2.0 * (0.5 * length * curvature).min(1.0).asin();
+    let angle = |length: f64, curvature: f64| 2.0 * libm::asin((0.5 * length * curvature).min(1.0));
     let others = |c: f64| (0..n).filter(|&k| k != longest).map(|k| angle(lengths[k], c)).sum::<f64>();
     let inside = others(2.0 / most) >= TAU / 2.0;
     let (mut low, mut high) = (0.0, 2.0 / most);

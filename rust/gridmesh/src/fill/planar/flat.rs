@@ -361,7 +361,7 @@ fn turn_costs(
         std::array::from_fn(|t| {
             let valence = 6 - t as i32;
             let angle = (std::f64::consts::PI - turning[k]).clamp(0.05, 6.2) / f64::from(valence - 1);
-            let off = (angle / std::f64::consts::FRAC_PI_3).ln();
+            let off = libm::log(angle / std::f64::consts::FRAC_PI_3);
             let mut cost = f64::from((valence - wanted[k]).abs()) + shape * off * off;
             if valence == 2 {
                 // A triangle at the tip: no room for it where the loop is straight, and its third

@@ -185,7 +185,7 @@ impl SizeField {
         let least = self.edges.iter().map(|e| e.1).fold(f64::INFINITY, f64::min);
         // The finest lattice has edges of the least size; one coarse triangle covers all.
         let fine = least.max(across * 1e-5).max(f64::MIN_POSITIVE);
-        let levels = (4.0 * across / fine).log2().ceil().clamp(1.0, 24.0) as u32;
+        let levels = libm::log2(4.0 * across / fine).ceil().clamp(1.0, 24.0) as u32;
         let origin = low - DVec2::new(across, 0.5 * across);
         let descent = Descent { field: self, low, high, origin, fine, progress };
         let all: Vec<u32> = (0..polygon.len() as u32).collect();

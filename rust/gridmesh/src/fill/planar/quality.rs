@@ -65,7 +65,7 @@ pub(in crate::fill) fn measure(
             quality.mean_ratio += 4.0 * double * double / (x * y * z * perimeter);
         }
         for (u, v) in [(b - a, c - a), (c - b, a - b), (a - c, b - c)] {
-            let angle = u.perp_dot(v).atan2(u.dot(v));
+            let angle = libm::atan2(u.perp_dot(v), u.dot(v));
             quality.min_angle = quality.min_angle.min(if angle.is_finite() { angle } else { -1.0 });
         }
     }

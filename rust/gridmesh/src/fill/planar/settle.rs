@@ -118,7 +118,7 @@ pub(in crate::fill) fn extend(
 ) -> Result<()> {
     let n = stars.n_loop();
     // The best factor for a grid of this diameter.
-    let factor = 2.0 / (1.0 + (std::f64::consts::PI / wave.max(2.0)).sin());
+    let factor = 2.0 / (1.0 + libm::sin(std::f64::consts::PI / wave.max(2.0)));
     for sweep in 0..sweeps {
         let mut largest = 0.0f64;
         let mut visit = |i: usize| {

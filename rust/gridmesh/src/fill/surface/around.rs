@@ -32,7 +32,7 @@ pub(crate) fn is_around(positions: &[DVec3], first: usize, n: usize, triangles: 
                 return 0.0;
             }
             sign = own;
-            turned += sine.atan2(p.dot(q));
+            turned += libm::atan2(sine, p.dot(q));
         }
         if turned.abs() < 3.0 * std::f64::consts::PI { sign } else { 0.0 }
     };

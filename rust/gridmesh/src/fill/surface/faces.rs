@@ -181,7 +181,7 @@ impl Patchwork {
         let mut corner = |before: DVec3, here: DVec3, after: DVec3, normal: DVec3| {
             let (back, ahead) = (before - here, after - here);
             let cross = ahead.cross(back);
-            let angle = cross.length().atan2(ahead.dot(back));
+            let angle = libm::atan2(cross.length(), ahead.dot(back));
             let angle = if cross.dot(normal) < 0.0 { std::f64::consts::TAU - angle } else { angle };
             range = [angle.min(range[0]), angle.max(range[1])];
         };

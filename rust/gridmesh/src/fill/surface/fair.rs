@@ -162,7 +162,7 @@ impl<'a> Bending<'a> {
             let area = 0.5 * (inner.length() + outer.length());
             let (m, o) = (inner.normalize_or_zero(), outer.normalize_or_zero());
             // Raising the apex of the patch's triangle turns its normal away from the apex.
-            let angle = m.cross(o).dot(edge.normalize_or_zero()).atan2(m.dot(o));
+            let angle = libm::atan2(m.cross(o).dot(edge.normalize_or_zero()), m.dot(o));
             coefficients.push(-m.dot(normals[c as usize]) / height.max(f64::MIN_POSITIVE));
             right.push([-angle]);
             weights.push(seam * edge.length_squared() / area.max(f64::MIN_POSITIVE));

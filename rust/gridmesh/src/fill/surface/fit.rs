@@ -372,7 +372,7 @@ pub(in crate::fill) fn rim_angle(work: &Patchwork, positions: &[DVec3]) -> f64 {
         let [a, b, c, d] = [a, b, c, d].map(|v| positions[v as usize]);
         let edge = b - a;
         let (inner, outer) = (edge.cross(c - a), (d - a).cross(edge));
-        sum += edge.length() * inner.cross(outer).length().atan2(inner.dot(outer));
+        sum += edge.length() * libm::atan2(inner.cross(outer).length(), inner.dot(outer));
         total += edge.length();
     }
     if total > 0.0 { sum / total } else { 0.0 }

@@ -236,7 +236,7 @@ impl Patchwork {
             let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
             for k in 0..3 {
                 let (u, w) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
-                normals[corners[k] as usize] += normal * u.cross(w).length().atan2(u.dot(w));
+                normals[corners[k] as usize] += normal * libm::atan2(u.cross(w).length(), u.dot(w));
             }
         }
         normals.into_iter().map(|normal| normal.normalize_or(DVec3::Z)).collect()

@@ -89,7 +89,7 @@ impl Sides<'_> {
         let window = CORNER_WINDOW * self.lattice.edge_length;
         let p = contour.point_at(s);
         let (before, after) = (p - contour.point_at(s - window), contour.point_at(s + window) - p);
-        before.perp_dot(after).atan2(before.dot(after)).abs() > self.corner_angle
+        libm::atan2(before.perp_dot(after), before.dot(after)).abs() > self.corner_angle
     }
 
     /// The point on the left and the image of its partner, halfway between.

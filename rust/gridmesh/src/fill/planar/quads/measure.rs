@@ -107,17 +107,17 @@ impl Corners {
         let (mut least, mut most, mut off, mut ratio) = (PI, 0.0f64, 0.0, 0.0);
         for [a, b, c] in cells.quads.iter().flat_map(corners).map(|c| c.map(|v| positions[v as usize])) {
             let (back, ahead) = (a - b, c - b);
-            let angle = ahead.perp_dot(back).atan2(ahead.dot(back));
+            let angle = libm::atan2(ahead.perp_dot(back), ahead.dot(back));
             // Beyond a straight angle a corner is concave, or its quad inverted.
             let angle = if angle.is_finite() { angle.rem_euclid(2.0 * PI) } else { 2.0 * PI };
             least = least.min(angle);
             most = most.max(angle);
             off += (angle - FRAC_PI_2).abs();
-            ratio += angle.sin().max(0.0);
+            ratio += libm::sin(angle).max(0.0);
         }
         for [a, b, c] in cells.odd.iter().map(|t| t.map(|v| positions[v as usize])) {
             for (u, v) in [(b - a, c - a), (c - b, a - b), (a - c, b - c)] {
-                let angle = u.perp_dot(v).atan2(u.dot(v));
+                let angle = libm::atan2(u.perp_dot(v), u.dot(v));
                 least = least.min(if angle.is_finite() { angle } else { -1.0 });
             }
         }

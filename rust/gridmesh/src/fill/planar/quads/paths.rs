@@ -264,5 +264,5 @@ impl Wanted {
 /// What corners of an angle cost: nothing if right, much where they become straight.
 fn skew(corner: f64) -> f64 {
     const MOST: f64 = 20.0;
-    if corner >= PI { MOST } else { (2.0 * (1.0 / corner.sin() - 1.0)).min(MOST) }
+    if corner >= PI { MOST } else { (2.0 * (1.0 / libm::sin(corner) - 1.0)).min(MOST) }
 }
