@@ -64,7 +64,8 @@ def problem_of(path: str, platform: str = sys.platform) -> str | None:
     if "\0" in path:
         return "it has a NUL character"
     try:
-        os.fsencode(path)
+        # Windows itself takes them, but Blender opens nothing of that name.
+        path.encode() if platform == "win32" else os.fsencode(path)
     except UnicodeEncodeError:
         return "it has half a character (a lone surrogate), which no file name can have"
     if platform == "win32":

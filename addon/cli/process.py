@@ -175,7 +175,9 @@ class Worker:
             encoding="utf-8",
             errors="replace",
             cwd=Path(__file__).parents[2],
-            start_new_session=True,  # Ctrl-C is for this process; the item at hand is finished
+            # Ctrl-C is for this process; the item at hand is finished.
+            start_new_session=True,
+            creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
         )
         self.number = self.process.pid
         self._answers = queue.SimpleQueue()

@@ -7,6 +7,9 @@ import pytest
 
 from addon.cli import arguments, files, jobs, places, runner
 
+# Windows has no named pipes among its files, and lets few users make links.
+posix = pytest.mark.skipif(os.name != "posix", reason="pipes and links among files are POSIX")
+
 SQUARE = {"points": [[0, 0], [1, 0], [1, 1], [0, 1]]}
 
 
@@ -87,6 +90,7 @@ def odd(tmp_path):
     return tmp_path
 
 
+@posix
 @pytest.mark.parametrize("name", ["pipe", "folder", "zero", "link", "loop", "nothing"])
 def test_only_regular_files_are_read(odd, name):
     with pytest.raises((files.FileError, OSError)):
@@ -104,6 +108,7 @@ def gltf(folder, *uris, name="a.gltf"):
     return path
 
 
+@posix
 @pytest.mark.parametrize(
     ("uri", "kind"),
     [
@@ -170,6 +175,7 @@ def test_size_is_looked_at_before_content(tmp_path):
         files.key_of([], [str(gltf(tmp_path, "a.bin", name="b.gltf"))], 1000, outside=False)
 
 
+@posix
 def test_materials_of_an_obj_are_files_that_it_reads(tmp_path):
     path = tmp_path / "a.obj"
     path.write_text("mtllib none.mtl\nmtllib b.mtl\nv 0 0 0\n")
@@ -204,6 +210,13 @@ def test_names_that_windows_keeps_for_itself():
     assert places.problem_of("a/console.ply", "win32") is None
 
 
+def test_half_characters_are_refused_on_windows_too():
+    assert "half a character" in places.problem_of("a/\ud800.ply", "win32")
+    assert "half a character" in places.problem_of("a/\udc80.ply", "win32")
+    assert places.problem_of("a/\udc80.ply", "linux") is None  # a byte that is no UTF-8
+
+
+@posix
 def test_ways_to_the_same_output_are_found(tmp_path):
     (tmp_path / "real").mkdir()
     (tmp_path / "linked").symlink_to("real")
@@ -228,6 +241,7 @@ def test_names_that_differ_by_case_are_the_same_where_the_system_says_so(tmp_pat
     assert problems(read(tmp_path, *items)) == [None, "duplicate_out"]
 
 
+@posix
 def test_outputs_overwrite_no_input_and_no_jobs(tmp_path):
     (tmp_path / "other.ply").symlink_to("a.ply")
     (tmp_path / "j.ply").write_text(
@@ -247,6 +261,7 @@ def test_outputs_overwrite_no_input_and_no_jobs(tmp_path):
     assert problems(found) == ["overwrites", "overwrites", "overwrites", None, None, "overwrites"]
 
 
+@posix
 @pytest.mark.parametrize(
     "report", ["jobs.jsonl", "x/../jobs.jsonl", "linked.jsonl", "in.json", "a.ply", "other.txt"]
 )

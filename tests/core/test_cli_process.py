@@ -15,6 +15,7 @@ from addon.cli import drafts, limits, process, runner
 ROOT = Path(__file__).parents[2]
 READY = "import os, sys, signal, mmap, time; print('@gridmesh {}', flush=True); sys.stdin.readline()\n"
 TOUCH = "x = bytearray(1_000_000)\nwhile True: x += bytes(10_000_000)\n"
+posix = pytest.mark.skipif(os.name != "posix", reason="Windows has no signals")
 linux = pytest.mark.skipif(sys.platform != "linux", reason="memory is watched on Linux alone")
 
 
@@ -35,7 +36,7 @@ def ask(monkeypatch):
 
 
 ENDS = {
-    "killed by the system": "os.kill(os.getpid(), signal.SIGKILL)",
+    "killed by the system": "os.kill(os.getpid(), getattr(signal, 'SIGKILL', signal.SIGTERM))",
     "segmentation fault": "os.kill(os.getpid(), signal.SIGSEGV)",
     "abort": "os.abort()",
     "exit": "os._exit(1)",
@@ -49,6 +50,7 @@ def test_a_crash_is_a_crash(ask, end):
     assert (answer["status"], answer["kind"]) == ("error", "crashed")
 
 
+@posix
 def test_a_crash_names_its_signal(ask):
     assert "SIGSEGV" in ask(ENDS["segmentation fault"])["message"]
 
@@ -166,6 +168,7 @@ def test_talk_without_end_fills_no_disk(ask, monkeypatch):
     assert answer["kind"] == "stopped"
 
 
+@posix
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize(
     "script", ["while True: pass", "signal.signal(15, signal.SIG_IGN); time.sleep(1000)"]
