@@ -15,7 +15,7 @@ from addon.cli import drafts, limits, process, runner
 ROOT = Path(__file__).parents[2]
 READY = "import os, sys, signal, mmap, time; print('@gridmesh {}', flush=True); sys.stdin.readline()\n"
 TOUCH = "x = bytearray(1_000_000)\nwhile True: x += bytes(10_000_000)\n"
-posix = pytest.mark.skipif(os.name != "posix", reason="Windows has no signals")
+posix = pytest.mark.skipif(os.name != "posix", reason="Windows has no signals, and does not say what lives")
 linux = pytest.mark.skipif(sys.platform != "linux", reason="memory is watched on Linux alone")
 
 
@@ -138,6 +138,7 @@ def test_a_worker_that_closes_its_output_and_lives_on_is_ended(ask, monkeypatch)
     assert ask("os.close(1); time.sleep(1000)", seconds=0)["kind"] == "crashed"
 
 
+@posix
 def test_a_worker_that_hangs_at_its_end_is_ended(monkeypatch):
     monkeypatch.setattr(process, "_PATIENCE", 0.3)
     answers = 'print(\'@gridmesh {"status": "ok"}\', flush=True)\nsignal.signal(signal.SIGTERM, signal.SIG_IGN)\ntime.sleep(1000)'
@@ -203,6 +204,7 @@ def test_after_the_second_signal_nothing_is_started():
     worker.close()
 
 
+@posix
 def test_drafts_of_the_dead_are_removed_and_those_of_the_living_stay(tmp_path):
     """Two runs may write the same file at once, each to a draft of its own."""
     out = tmp_path / ("n" * 240 + ".ply")
