@@ -168,6 +168,10 @@ def warnings_of(report: dict[str, Any]) -> list[str]:
         found.append(
             "The joints meet the parts or themselves; blend less, move a part, or switch Strict on to refuse that"
         )
+    if report["exact"]:
+        found.append(
+            f"{counted(report['exact'], 'joint')} with thin faces, as the surfaces cut each other; faces are too large there: subdivide the parts"
+        )
     if report["alone"]:
         found.append(
             f"{counted(report['alone'], 'part')} without contact to others; moved into another one it would be joined"

@@ -525,6 +525,9 @@ _JOINS = {
     "Select two closed meshes or more in Object Mode, one of them active": (
         "Zwei oder mehr geschlossene Meshes im Objektmodus auswählen, eines davon aktiv"
     ),
+    "{} with thin faces, as the surfaces cut each other; faces are too large there: subdivide the parts": (
+        "{0} mit dünnen Flächen, wie sich die Oberflächen schneiden; die Flächen dort sind zu groß: die Teile unterteilen"
+    ),
     "The joints meet the parts or themselves; blend less, move a part, or switch Strict on to refuse that": (
         "Die Übergänge treffen die Teile oder sich selbst; schmaler verbinden, einen Teil verschieben oder „Streng“ "
         "einschalten, um das abzulehnen"

@@ -68,7 +68,13 @@ def test_damaged_lines_say_nothing(tmp_path, damage):
 
 @pytest.mark.parametrize(
     "odd",
-    ["folder", pytest.param("pipe", marks=posix), pytest.param("linked pipe", marks=posix), "below a file", "text"],
+    [
+        "folder",
+        pytest.param("pipe", marks=posix),
+        pytest.param("linked pipe", marks=posix),
+        "below a file",
+        "text",
+    ],
 )
 def test_what_can_be_no_report_is_refused(tmp_path, odd):
     (tmp_path / "folder").mkdir()

@@ -235,6 +235,29 @@ def test_arms_side_by_side_whose_collars_would_touch():
     assert made.report["self_intersections"] == 0
 
 
+@pytest.mark.parametrize("blend", [1.0, 2.0, 5.0])
+def test_a_blend_wider_than_a_part_leaves_the_part(blend):
+    """It becomes narrower, and where even that is too wide, the exact union stays as it is."""
+    turn = joins.rotation(np.array([1.0, 2, 3]), 0.7).T
+    vertices, triangles = torus(n=6, m=4)
+    bar_vertices, quads = bar((0.6, 0.6, 3), cells=(1, 1, 1))
+    for parts, exact in (
+        (((vertices, triangles), (vertices @ turn + [0.9, 0.3, 0.1], triangles)), 1),
+        ((bar((1, 1, 4), cells=(1, 1, 4)), (bar_vertices @ turn, quads)), 1),
+        ((ball(edge=0.3), (bar_vertices @ turn + [0.3, 0, 0.4], quads)), 0),
+    ):
+        report = joined(*parts, blend=blend).report
+        assert abs(report["volume"] / report["exact_volume"] - 1) < 0.06
+        assert (report["exact"], report["self_intersections"]) == (exact, 0)
+
+
+@pytest.mark.parametrize("at", [(4.5, 0, 0), (0, 0, 0.3)])
+def test_a_bar_of_few_faces_in_a_fine_ball_is_not_cut_off(at):
+    vertices, quads = bar((8, 0.6, 0.6), cells=(1, 1, 1))
+    report = joined(ball(edge=0.02), (vertices + at, quads)).report
+    assert abs(report["volume"] / report["exact_volume"] - 1) < 0.05
+
+
 def test_edge_lengths_of_one_to_four_are_graded():
     made = joined(ball(edge=0.16), ball((1.2, 0, 0), 0.7, edge=0.04))
     assert made.report["components"] == 1

@@ -146,9 +146,10 @@ fn read(part: &Bound<'_, PyAny>) -> PyResult<(Vec<DVec3>, Vec<u32>, Vec<u32>)> {
 /// report : dict
 ///     Plain numbers: "watertight", "components", "genus", "alone" (parts that meet no other), "swallowed" (parts within
 ///     others), "turned" (parts given inside out), "curves" (closed lines in which surfaces meet), "collars" (patches), "tubes" and
-///     "fills" (of those, lattices between two rims and in one), "collar_triangles", "collar_vertices" and "collar_irregular" (new
+///     "fills" (of those, lattices between two rims and in one), "exact" (of those, triangles of the exact union as they are, where any
+///     other patch would meet something or take most of a part away), "collar_triangles", "collar_vertices" and "collar_irregular" (new
 ///     ones, and those with a valence other than six), "irregular" (of all vertices; corners of quads count one and a half
-///     triangles), "min_angle" (of new triangles, radians), "self_intersections" (pairs of triangles, at least one of them new),
+///     triangles), "min_angle" (of new triangles, radians), "self_intersections" (pairs of triangles, at least one of them new and not of the exact union),
 ///     "volume", "exact_volume" (of the exact union), and "seconds", a dict of times per stage.
 #[pyclass(frozen, module = "gridmesh")]
 pub struct Joined {
@@ -308,6 +309,7 @@ fn report(py: Python<'_>, report: &JoinReport) -> PyResult<Py<PyDict>> {
     dict.set_item("collars", report.collars)?;
     dict.set_item("tubes", report.tubes)?;
     dict.set_item("fills", report.fills)?;
+    dict.set_item("exact", report.exact)?;
     dict.set_item("collar_triangles", report.collar_triangles)?;
     dict.set_item("collar_vertices", report.collar_vertices)?;
     dict.set_item("collar_irregular", report.collar_irregular)?;

@@ -22,7 +22,7 @@ use self::collar::{Curves, Left};
 pub use self::options::{JoinOptions, JoinReport};
 pub use self::parts::Part;
 use self::parts::Parts;
-use self::patch::Patch;
+use self::patch::{Kind, Patch};
 use self::rims::Outside;
 use self::site::Site;
 use self::strips::{Strip, strips};
@@ -34,6 +34,9 @@ use crate::progress::{Clock, Progress};
 
 /// Times that the blend of curves in one collar is halved, until each has its own.
 const HALVED: usize = 2;
+
+/// Times that the blend of curves is halved whose patches would meet something, or be no blend but most of a part.
+const NARROWED: usize = 2;
 
 /// Joins closed meshes: one closed mesh of what is in any of them.
 ///
@@ -123,22 +126,20 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
     let mut report = JoinReport { turned: parts.turned, curves: curves.count, ..JoinReport::default() };
     (report.alone, report.swallowed) = apart(&parts, &union, &seams);
     let stage = Stage { parts: &parts, union: &union, left: &left, curves: &curves, seams: &seams, options };
-    let (outside, strips) = stage.collars(progress.part(0.4, 0.5))?;
-    clock.stage("collars");
-    let (mut kept, mut polygons) = (vec![], vec![]);
-    for (&t, &f) in parts.triangles.iter().zip(&parts.face_of) {
-        if outside.faces[f as usize] {
-            kept.push(t);
-            polygons.push(f);
+    clock.stage("lines");
+    let mut most = vec![1.0; curves.count];
+    let mut rounds = if options.blend > 0.0 { NARROWED } else { 0 };
+    let mut from = 0.4;
+    let (site, strips, closed) = loop {
+        let to = 0.5 * (from + 0.9);
+        let (site, strips, closed) = stage.closed(&most, progress.part(from, to))?;
+        let tight = strips.iter().zip(&closed).filter(|(_, patch)| patch.kind == Kind::Exact);
+        let tight = tight.flat_map(|(strip, _)| &strip.curves).collect::<Vec<_>>();
+        if tight.is_empty() || rounds == 0 {
+            break (site, strips, closed);
         }
-    }
-    let site =
-        Site { parts: &parts, union: &union, seams: &seams, outside: &outside, options, kept, polygons };
-    let each = |strip: &Strip, progress: Progress<'_>| site.close(strip, progress);
-    let closing = progress.part(0.5, 0.9);
-    let closed: Vec<Patch> = match strips.as_slice() {
-        [strip] => vec![each(strip, closing)?],
-        _ => in_parallel(&strips, |strip| strip.triangles.len(), closing, each)?,
+        tight.into_iter().for_each(|&c| most[c] *= 0.5);
+        (rounds, from) = (rounds - 1, to);
     };
     clock.stage("patches");
     let patches = strips.into_iter().map(|strip| strip.rims).zip(closed).collect::<Vec<_>>();
@@ -179,10 +180,32 @@ impl Stage<'_> {
         Ok((outside, found))
     }
 
+    /// The strips and what takes their place, if the blend of each curve is at most so many times what is asked for.
+    fn closed(&self, most: &[f64], progress: Progress<'_>) -> Result<(Site<'_>, Vec<Strip>, Vec<Patch>)> {
+        let &Stage { parts, union, seams, options, .. } = self;
+        let (outside, strips) = self.collars(most, progress.part(0.0, 0.2))?;
+        let (mut kept, mut polygons) = (vec![], vec![]);
+        for (&t, &f) in parts.triangles.iter().zip(&parts.face_of) {
+            if outside.faces[f as usize] {
+                kept.push(t);
+                polygons.push(f);
+            }
+        }
+        let volumes = (0..parts.len()).map(|part| parts.volume(part)).collect();
+        let site = Site { parts, union, seams, outside, options, kept, polygons, volumes };
+        let each = |strip: &Strip, progress: Progress<'_>| site.close(strip, progress);
+        let closing = progress.part(0.2, 1.0);
+        let closed = match strips.as_slice() {
+            [strip] => vec![each(strip, closing)?],
+            _ => in_parallel(&strips, |strip| strip.triangles.len(), closing, each)?,
+        };
+        Ok((site, strips, closed))
+    }
+
     /// What stays, and the strips between; collars of several curves, and those that are not annuli, are made narrower as
     /// long as that helps.
-    fn collars(&self, progress: Progress<'_>) -> Result<(Outside, Vec<Strip>)> {
-        let mut scales = vec![1.0; self.curves.count];
+    fn collars(&self, most: &[f64], progress: Progress<'_>) -> Result<(Outside, Vec<Strip>)> {
+        let mut scales = most.to_vec();
         let simple = |strip: &Strip| {
             strip.sound && strip.rims.len() == 2 && strip.euler == 0 && strip.curves.len() == 1
         };
@@ -202,7 +225,7 @@ impl Stage<'_> {
         let narrow = self.attempt(&scales)?;
         let mut wide_scales = scales.clone();
         for strip in narrow.1.iter().filter(|s| !simple(s)) {
-            strip.curves.iter().for_each(|&c| wide_scales[c] = 1.0);
+            strip.curves.iter().for_each(|&c| wide_scales[c] = most[c]);
         }
         let wide = self.attempt(&wide_scales)?;
         Ok(if wide.1.iter().all(|s| s.sound) { wide } else { narrow })

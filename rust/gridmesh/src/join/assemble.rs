@@ -53,7 +53,7 @@ impl Joined {
         mut report: JoinReport,
         progress: Progress<'_>,
     ) -> Result<Joined> {
-        let Site { parts, union, outside, options, .. } = *site;
+        let Site { parts, union, ref outside, options, .. } = *site;
         let n = parts.vertices.len();
         let mut name = vec![NONE; n];
         let kept = || (0..parts.n_faces() as u32).filter(|&f| outside.faces[f as usize]);
@@ -96,19 +96,23 @@ impl Joined {
         }
         made.add_faces(parts, &name, kept(), &new);
         let at = |v: u32| made.vertices[v as usize];
-        let boxes = patches
-            .iter()
-            .scan(0, |start, (_, patch)| {
-                let own = *start..*start + patch.triangles.len();
-                *start = own.end;
-                Some(Box3::around(new[own].iter().flatten().map(|&v| at(v))))
-            })
-            .collect::<Vec<_>>();
+        // The union's own triangles meet what the parts' did, and each other by what rounding does to the lines.
+        let (mut boxes, mut fresh, mut exact, mut start) = (vec![], vec![], vec![], 0);
+        for (_, patch) in patches {
+            let own = &new[start..start + patch.triangles.len()];
+            start += own.len();
+            if patch.kind == Kind::Exact {
+                exact.extend_from_slice(own);
+            } else {
+                boxes.push(Box3::around(own.iter().flatten().map(|&v| at(v))));
+                fresh.extend_from_slice(own);
+            }
+        }
         let mut near = near_boxes(&boxes, &made.vertices, &triangles[..old]).concat();
         near.sort_unstable();
         near.dedup();
-        let near = near.into_iter().map(|t| triangles[t as usize]).collect::<Vec<_>>();
-        let (pairs, place) = count_meetings(at, &new, &near, false, MOST, progress)?;
+        let near = near.into_iter().map(|t| triangles[t as usize]).chain(exact).collect::<Vec<_>>();
+        let (pairs, place) = count_meetings(at, &fresh, &near, false, MOST, progress)?;
         if let (true, Some(at)) = (options.strict, place) {
             return Err(Error::JoinIntersects { pairs, at: at.into() });
         }
@@ -118,6 +122,7 @@ impl Joined {
         report.collars = patches.len();
         report.tubes = of(Kind::Tube);
         report.fills = of(Kind::Fill);
+        report.exact = of(Kind::Exact);
         report.collar_triangles = new.len();
         report.collar_vertices = made.vertices.len() - first_new;
         report.min_angle = min_angle(&made.vertices, &new);

@@ -59,6 +59,8 @@ pub struct JoinReport {
     pub tubes: usize,
     /// Of those, patches in one rim.
     pub fills: usize,
+    /// Of those, triangles of the exact union as they are: any other patch would meet something, or take most of a part away.
+    pub exact: usize,
     /// New triangles.
     pub collar_triangles: usize,
     /// New vertices.
@@ -69,7 +71,7 @@ pub struct JoinReport {
     pub irregular: usize,
     /// Smallest angle of a new triangle, in radians; of none 0.
     pub min_angle: f64,
-    /// Pairs of triangles, at least one of them new, that meet where they should not.
+    /// Pairs of triangles, at least one of them new and not of the exact union, that meet where they should not.
     pub self_intersections: usize,
     /// Volume enclosed.
     pub volume: f64,

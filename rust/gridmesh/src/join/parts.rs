@@ -184,6 +184,12 @@ impl Parts {
         &self.corners[self.offsets[f as usize] as usize..self.offsets[f as usize + 1] as usize]
     }
 
+    /// The volume that a part encloses.
+    pub fn volume(&self, part: usize) -> f64 {
+        let [first, end] = [self.first[part][2], self.first[part + 1][2]];
+        volume(&self.vertices, &self.triangles[first as usize..end as usize])
+    }
+
     /// The number of faces.
     pub fn n_faces(&self) -> usize {
         self.offsets.len() - 1

@@ -1,6 +1,7 @@
 //! The patch in place of a strip: a tube, a fill, or the strip itself with even triangles.
 
 use std::cell::OnceCell;
+use std::collections::BTreeSet;
 
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -35,6 +36,12 @@ const ROUNDS: usize = 3;
 /// Times that a strip is made anew with shorter edges where it meets something.
 const FINER: usize = 3;
 
+/// So much of the smallest part's volume may be gained or lost by a patch; it would not be a blend otherwise.
+const CHANGED: f64 = 0.3;
+
+/// A strip that wants more even triangles than so many, and so many times its own, stays as it is.
+const MANY: (f64, f64) = (4_000.0, 3.0);
+
 /// How much shorter, and how far around in edge lengths, at full strength and fading out.
 const SHORTER: f64 = 0.6;
 const AROUND: [f64; 2] = [2.0, 6.0];
@@ -48,6 +55,8 @@ pub(super) enum Kind {
     Fill,
     /// The union's own surface, triangulated anew.
     Strip,
+    /// The union's own triangles.
+    Exact,
 }
 
 /// What takes the place of a strip.
@@ -63,6 +72,8 @@ pub(super) struct Patch {
 /// A patch and what is wrong with it.
 struct Try {
     patch: Patch,
+    /// Changes the volume by more than a blend does.
+    far: bool,
     /// Triangles, or pairs of them, that meet something.
     meetings: usize,
     angle: f64,
@@ -74,12 +85,20 @@ struct Try {
 
 impl Try {
     /// Less is better.
-    fn faults(&self) -> (usize, f64) {
-        (self.meetings, self.odd as f64 + FLAT * (1.0 - self.angle / FINE).max(0.0))
+    fn faults(&self) -> (bool, usize, f64) {
+        (self.far, self.meetings, self.odd as f64 + FLAT * (1.0 - self.angle / FINE).max(0.0))
+    }
+
+    fn is_sound(&self) -> bool {
+        !self.far && self.meetings == 0
+    }
+
+    fn is_fine(&self) -> bool {
+        self.is_sound() && self.angle > FINE
     }
 
     fn is_good(&self) -> bool {
-        self.meetings == 0 && self.angle > FINE && (self.odd as f64) <= FEW * self.patch.vertices.len() as f64
+        self.is_fine() && (self.odd as f64) <= FEW * self.patch.vertices.len() as f64
     }
 }
 
@@ -122,17 +141,20 @@ impl Place<'_> {
             }
             let other = self.refined(&it.patch, progress.part(0.3, 0.5))?;
             let it = other.into_iter().fold(it, better);
-            if it.meetings == 0 && it.angle > FINE {
+            if it.is_fine() {
                 return Ok(it.patch);
             }
             best = Some(it);
         }
-        if strip.sound {
-            let own = self.even(progress.part(0.5, 1.0))?;
-            best = match (best, own) {
-                (Some(a), Some(b)) => Some(better(a, b)),
-                (a, b) => a.or(b),
-            };
+        if strip.sound
+            && let Some(taken) = take(self.site, strip)
+        {
+            best = best.into_iter().chain(self.even(&taken, progress.part(0.5, 0.9))?).reduce(better);
+            if !best.as_ref().is_some_and(Try::is_sound) {
+                // What meets there does so in the parts.
+                let own = self.tried(&taken.local, &[], Kind::Exact);
+                best = best.into_iter().chain([own]).reduce(better);
+            }
         }
         best.map(|it| it.patch).ok_or_else(|| {
             let reason = "what was taken away there has no border of whole edges";
@@ -170,6 +192,7 @@ impl Place<'_> {
         };
         match made {
             Ok(Fill { vertices, triangles, report, .. }) => Ok(Some(Try {
+                far: self.is_far(&vertices, &triangles),
                 patch: Patch { kind, vertices, triangles },
                 meetings: report.self_intersections,
                 angle: report.min_angle,
@@ -206,14 +229,17 @@ impl Place<'_> {
         self.smoothed(local, &beyond, patch.kind, progress.part(0.4, 1.0)).map(Some)
     }
 
-    /// The strip with even triangles, faired unless the line is to stay; with shorter edges where that would meet something.
-    fn even(&self, progress: Progress<'_>) -> Result<Option<Try>> {
-        let Some(Taken { local: given, beyond }) = take(self.site, self.strip) else { return Ok(None) };
+    /// The strip with even triangles, faired unless the line is to stay; with shorter edges where that would meet something. `None` if
+    /// there would be too many.
+    fn even(&self, taken: &Taken, progress: Progress<'_>) -> Result<Option<Try>> {
+        let (mut given, beyond) = (taken.local.clone(), &taken.beyond);
         let ground = Ground::of(&given);
         let crease = self.site.options.blend == 0.0;
-        let mut given = given;
         let mut best: Option<Try> = None;
         for level in 0..=FINER {
+            if given.even_triangles() > MANY.0 + MANY.1 * given.triangles.len() as f64 {
+                break;
+            }
             let part =
                 progress.part(level as f64 / (FINER + 1) as f64, (level + 1) as f64 / (FINER + 1) as f64);
             let mut local = given.clone();
@@ -223,14 +249,11 @@ impl Place<'_> {
                 self.tried(&local, &bad, Kind::Strip)
             } else {
                 regularize(&mut local, Some(&ground), part.part(0.4, 0.6))?;
-                self.smoothed(local, &beyond, Kind::Strip, part.part(0.6, 1.0))?
+                self.smoothed(local, beyond, Kind::Strip, part.part(0.6, 1.0))?
             };
-            let places = made.places.clone();
-            best = Some(match best {
-                Some(it) => better(it, made),
-                None => made,
-            });
-            if places.is_empty() {
+            let (places, far) = (made.places.clone(), made.far);
+            best = best.into_iter().chain([made]).reduce(better);
+            if places.is_empty() || far {
                 break;
             }
             for v in given.border..given.positions.len() {
@@ -241,6 +264,22 @@ impl Place<'_> {
             }
         }
         Ok(best)
+    }
+
+    /// Whether triangles in place of the strip change the volume by more than a blend does.
+    fn is_far(&self, vertices: &[DVec3], triangles: &[[u32; 3]]) -> bool {
+        let Site { parts, union, .. } = self.site;
+        let n = parts.vertices.len() as u32;
+        // Both end at the same rims, so that any point may be the origin.
+        let six =
+            |[a, b, c]: [DVec3; 3]| (a - self.strip.at).dot((b - self.strip.at).cross(c - self.strip.at));
+        let at = |v: u32| if v < n { parts.vertices[v as usize] } else { vertices[(v - n) as usize] };
+        let own = |&t: &u32| union.triangles[t as usize].map(|v| union.vertices[v as usize]);
+        let new = triangles.iter().map(|t| six(t.map(at))).sum::<f64>();
+        let old = self.strip.triangles.iter().map(|t| six(own(t))).sum::<f64>();
+        let of = self.strip.triangles.iter().map(|&t| union.part(parts, t as usize)).collect::<BTreeSet<_>>();
+        let least = of.into_iter().map(|part| self.site.volumes[part]).fold(f64::INFINITY, f64::min);
+        (new - old).abs() > 6.0 * CHANGED * least
     }
 
     /// Fairs, as far as nothing meets by it.
@@ -269,6 +308,7 @@ impl Place<'_> {
         };
         let middle = |&t: &u32| local.corners(t).iter().sum::<DVec3>() / 3.0;
         Try {
+            far: self.is_far(&patch.vertices, &patch.triangles),
             patch,
             meetings: bad.len(),
             angle: min_angle(&local.positions, &local.triangles),

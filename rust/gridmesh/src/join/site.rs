@@ -10,9 +10,11 @@ pub(super) struct Site<'a> {
     pub parts: &'a Parts,
     pub union: &'a Union,
     pub seams: &'a [([u32; 2], [u32; 2])],
-    pub outside: &'a Outside,
+    pub outside: Outside,
     pub options: &'a JoinOptions,
     /// The faces that stay, as triangles, and the face of each.
     pub kept: Vec<[u32; 3]>,
     pub polygons: Vec<u32>,
+    /// Of each part.
+    pub volumes: Vec<f64>,
 }

@@ -19,6 +19,9 @@ const THIN: f64 = 0.1;
 /// Cosine of the angle by which a triangle may turn.
 const TURN: f64 = 0.3;
 
+/// Twice the area of an equilateral triangle, by the square of its edge.
+const EQUILATERAL: f64 = 0.866_025_403_784_438_6;
+
 /// A mesh whose connections change.
 #[derive(Clone, Debug)]
 pub(crate) struct Local {
@@ -107,6 +110,16 @@ impl Local {
     pub fn length(&self, [a, b]: [u32; 2]) -> f64 {
         let wanted = 0.5 * (self.sizes[a as usize] + self.sizes[b as usize]);
         self.positions[a as usize].distance(self.positions[b as usize]) / wanted
+    }
+
+    /// About how many triangles with edges as wanted have the same area.
+    pub fn even_triangles(&self) -> f64 {
+        let share = |(t, own): (u32, &[u32; 3])| {
+            let [a, b, c] = self.corners(t);
+            let wanted = own.iter().map(|&v| self.sizes[v as usize]).sum::<f64>() / 3.0;
+            (b - a).cross(c - a).length() / (EQUILATERAL * wanted.powi(2))
+        };
+        (0..).zip(&self.triangles).map(share).sum()
     }
 
     /// The positions of a triangle's corners.
