@@ -128,7 +128,9 @@ def cut_faults(vertices: np.ndarray, faces: np.ndarray, done: Any, closed: bool,
     found, area, volume, caps = [], 0.0, 0.0, []
     for piece in done.pieces:
         triangles, face = joins.fanned(piece)
-        every = joins.sides(triangles)
+        following = np.arange(len(piece.corners)) + 1
+        following[piece.offsets[1:] - 1] = piece.offsets[:-1]
+        every = np.c_[piece.corners, piece.corners[following]]
         directed = np.unique(every, axis=0)
         if closed and (
             len(directed) != len(every) or not np.array_equal(directed, np.unique(every[:, ::-1], axis=0))

@@ -5,11 +5,18 @@ from __future__ import annotations
 import doctest
 import inspect
 import pickle
+import sys
+from pathlib import Path
 
 import gridmesh
 import numpy as np
 import pytest
 from checks import check_array
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
+
+import joins
+import models
 
 DOWN = [0, 0, -1]
 
@@ -94,6 +101,17 @@ def test_closed_pieces_with_mirrored_caps(stroke, edge_length):
     assert abs(sum(done.report["volumes"]) - total) <= (1e-9 if edge_length is None else 1e-2) * total
     if edge_length:
         assert done.report["defect"] <= 0.05 * edge_length
+
+
+def test_faces_on_which_rebuilt_triangles_come_to_lie_are_rebuilt_too():
+    """Otherwise the triangles that lie there are dropped, and the piece has a hole."""
+    rng = np.random.default_rng(532)
+    whale = dict(joins.outlines(None))["whale"]
+    body = gridmesh.inflate(gridmesh.mesh_sketch(whale, triangles=3000), depth=0.54)
+    vertices = body.vertices + rng.normal(0, 0.01, body.vertices.shape)
+    line, direction = models.stroke(rng)
+    cut = gridmesh.cut(vertices, body.triangles, line, direction=direction, edge_length=0.1)
+    assert not any(len(open_edges(piece)) for piece in cut.pieces)
 
 
 @pytest.mark.parametrize("smooth", ["flat", "tangent"])

@@ -23,7 +23,7 @@ pub(in crate::cut) struct Strip<'a> {
     around: FxHashMap<u32, Vec<u32>>,
     /// Vertices on the border of the strip: they stay, and so do the edges between them.
     border: FxHashSet<u32>,
-    /// Faces whose triangles were changed.
+    /// Faces whose triangles were changed, and those on which changed ones came to lie.
     pub altered: FxHashSet<u32>,
     /// Triangles changed since somebody took the list.
     pub fresh: Vec<u32>,
@@ -258,6 +258,7 @@ impl<'a> Strip<'a> {
             }
         }
         if let Some(part) = part {
+            self.altered.insert(part.face);
             for v in part.corners {
                 self.around.entry(v).or_default().push(t);
             }
