@@ -22,7 +22,8 @@ use crate::{arrays, reports};
 ///     with any number of corners, as in `cut`. Not modified. One given inside out is turned.
 /// blend : float
 ///     So many edge lengths to each side of the lines where surfaces meet, along the surface, are taken away and closed
-///     by one patch, smooth to both sides. 0 keeps the lines as creases, with even edges along them. 0 to 1000.
+///     by one patch, smooth to both sides. 0 keeps the lines as creases, with even edges along them. 0 to 1000. Fewer
+///     where that would meet something or take most of a part away; see "exact" in the report.
 /// edge_length : float, optional
 ///     The edge length that `blend` counts in. None: of each part its own mean near the line.
 /// strict : bool

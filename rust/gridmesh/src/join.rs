@@ -42,7 +42,9 @@ const NARROWED: usize = 2;
 ///
 /// Where two surfaces meet, all faces within `blend` edge lengths of the line, to both sides along the surface, make room for one
 /// patch, smooth to both sides: a lattice tube between two rims, a grid patch in one, otherwise the union's own surface with
-/// even triangles, faired. With `blend` 0 the line stays as a crease, with even edges along it.
+/// even triangles, faired. With `blend` 0 the line stays as a crease, with even edges along it. Where the parts' faces are so large
+/// that a patch would meet something or take most of a part away, the blend becomes narrower, and in the end the union's own
+/// triangles stay.
 ///
 /// The result is closed and manifold and has the topology of the exact union; this is checked. Elsewhere all vertices and faces are
 /// those of the parts, bit for bit, quads and polygons too (a part given inside out is turned). Parts that meet no other stay

@@ -235,15 +235,19 @@ impl Place<'_> {
         let (mut given, beyond) = (taken.local.clone(), &taken.beyond);
         let ground = Ground::of(&given);
         let crease = self.site.options.blend == 0.0;
+        let many = MANY.0 + MANY.1 * given.triangles.len() as f64;
         let mut best: Option<Try> = None;
         for level in 0..=FINER {
-            if given.even_triangles() > MANY.0 + MANY.1 * given.triangles.len() as f64 {
+            if given.even_triangles() > many {
                 break;
             }
             let part =
                 progress.part(level as f64 / (FINER + 1) as f64, (level + 1) as f64 / (FINER + 1) as f64);
             let mut local = given.clone();
             remesh(&mut local, &ground, part.part(0.0, 0.4))?;
+            if local.triangles.len() as f64 > many {
+                break;
+            }
             let made = if crease {
                 let bad = tangled(&local, self.near(), part.part(0.4, 1.0))?;
                 self.tried(&local, &bad, Kind::Strip)
@@ -252,8 +256,9 @@ impl Place<'_> {
                 self.smoothed(local, beyond, Kind::Strip, part.part(0.6, 1.0))?
             };
             let (places, far) = (made.places.clone(), made.far);
+            let hopeless = best.as_ref().is_some_and(|best| 2 * made.meetings > best.meetings);
             best = best.into_iter().chain([made]).reduce(better);
-            if places.is_empty() || far {
+            if places.is_empty() || far || hopeless {
                 break;
             }
             for v in given.border..given.positions.len() {
