@@ -1122,8 +1122,6 @@ _LIBRARY_PARTS = {
     "{}: {} left out, smaller than Least Area": "{0}: {1} weggelassen, kleiner als „Kleinste Fläche“",
     "{} picture": "{0} Bild",
     "{} pictures": "{0} Bilder",
-    "{} joint": "{0} Übergang",
-    "{} joints": "{0} Übergänge",
     "{} part": "{0} Teil",
     "{} parts": "{0} Teile",
     "{} mesh": "{0} Mesh",

@@ -126,6 +126,19 @@ def sides(triangles):
     return np.asarray(triangles, np.int64)[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
 
 
+def polygon_sides(mesh):
+    """The directed sides of faces with any number of corners: those of a joined mesh, or of a piece of a cut one."""
+    after = np.arange(len(mesh.corners)) + 1
+    after[mesh.offsets[1:] - 1] = mesh.offsets[:-1]
+    return np.c_[mesh.corners, mesh.corners[after]].astype(np.int64)
+
+
+def close(directed):
+    """Whether every directed side is there once, and so is the one against it."""
+    codes, turned = directed[:, 0] << 32 | directed[:, 1], directed[:, 1] << 32 | directed[:, 0]
+    return len(np.unique(codes)) == len(codes) and np.array_equal(np.sort(codes), np.sort(turned))
+
+
 def fanned(joined):
     """All faces as triangles, and the face of each."""
     rows = []
@@ -147,8 +160,7 @@ def faults(parts, joined):
     found = []
     triangles, _ = fanned(joined)
     every = sides(triangles)
-    unique = np.unique(every, axis=0)
-    if len(unique) != len(every) or not np.array_equal(unique, np.unique(every[:, ::-1], axis=0)):
+    if not close(every):
         found.append("not closed and manifold")
     used = np.unique(triangles)
     if not np.array_equal(used, np.arange(len(joined.vertices))):

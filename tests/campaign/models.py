@@ -33,13 +33,6 @@ def mesh_of(file: Path) -> Mesh:
         return joins.scaled(held["vertices"]), held["faces"]
 
 
-def is_closed(faces: np.ndarray) -> bool:
-    """Every edge has two faces, wound alike."""
-    every = fills.half_edges(faces)
-    codes, turned = every[:, 0] << 32 | every[:, 1], every[:, 1] << 32 | every[:, 0]
-    return len(np.unique(codes)) == len(codes) and np.array_equal(np.sort(codes), np.sort(turned))
-
-
 # ---------------------------------------------------------------- holes
 
 
@@ -107,7 +100,7 @@ def cut(rng: np.random.Generator, files: list[Path], row: Row) -> None:
     options = {"cells": str(rng.choice(["triangles", "quads"]))}
     if rng.random() < 0.5:
         options["edge_length"] = float(rng.choice([0.01, 0.02, 0.05]))
-    row |= options | {"closed": is_closed(faces)}
+    row |= options | {"closed": joins.close(joins.sides(faces))}
     since = time.process_time()
     done = gridmesh.cut(vertices, faces, line, direction=direction, **options)
     row["cpu"] = time.process_time() - since
@@ -123,18 +116,18 @@ def cut(rng: np.random.Generator, files: list[Path], row: Row) -> None:
         row["angle"] = joins.least_angle(corners[0])
 
 
+def area_of(vertices: np.ndarray, triangles: np.ndarray) -> float:
+    """The area of triangles."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+
+
 def cut_faults(vertices: np.ndarray, faces: np.ndarray, done: Any, closed: bool, rebuilt: bool) -> list[str]:
     """What the pieces break of what is promised."""
     found, area, volume, caps = [], 0.0, 0.0, []
     for piece in done.pieces:
         triangles, face = joins.fanned(piece)
-        following = np.arange(len(piece.corners)) + 1
-        following[piece.offsets[1:] - 1] = piece.offsets[:-1]
-        every = np.c_[piece.corners, piece.corners[following]]
-        directed = np.unique(every, axis=0)
-        if closed and (
-            len(directed) != len(every) or not np.array_equal(directed, np.unique(every[:, ::-1], axis=0))
-        ):
+        if closed and not joins.close(joins.polygon_sides(piece)):
             found.append(f"the {piece.side} piece is not closed and manifold")
         if not np.isfinite(piece.vertices).all():
             found.append(f"the {piece.side} piece is not finite")
@@ -145,16 +138,13 @@ def cut_faults(vertices: np.ndarray, faces: np.ndarray, done: Any, closed: bool,
         old &= piece.source_weights[:, 0] == 1
         if not rebuilt and not np.array_equal(piece.vertices[old], vertices[piece.source_vertices[old, 0]]):
             found.append(f"vertices of the {piece.side} piece have moved")
-        a, b, c = (piece.vertices[triangles[:, k]] for k in range(3))
-        areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-        area += areas[~cap].sum()
+        area += area_of(piece.vertices, triangles[~cap])
         volume += joins.volume(piece.vertices - vertices[0], triangles)
         cells = piece.vertices[triangles[cap]].tolist()
         caps.append(np.array(sorted(sorted(map(tuple, cell)) for cell in cells)))
     if len(caps) == 2 and not np.array_equal(caps[0], caps[1]):
         found.append("the caps are not those of each other")
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    whole = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+    whole = area_of(vertices, faces)
     slack = 0.05 if rebuilt else 1e-9
     if abs(area - whole) > slack * whole:
         found.append(f"the area was {whole} and is {area}")
@@ -174,7 +164,7 @@ def join(rng: np.random.Generator, files: list[Path], row: Row) -> None:
     while len(parts) < 2:
         file = files[rng.integers(len(files))]
         vertices, faces = mesh_of(file)
-        if not is_closed(faces):
+        if not joins.close(joins.sides(faces)):
             continue
         if parts:
             turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]

@@ -46,15 +46,9 @@ def circle(x: float, y: float, r: float, n: int = 30) -> np.ndarray:
     return np.vstack([ring, ring[:1]])
 
 
-def directed_edges(piece: gridmesh.Piece) -> np.ndarray:
-    after = np.arange(len(piece.corners)) + 1
-    after[piece.offsets[1:] - 1] = piece.offsets[:-1]
-    return np.c_[piece.corners, piece.corners[after]]
-
-
 def open_edges(piece: gridmesh.Piece) -> np.ndarray:
     """Edges without a neighbour; all others have exactly one, wound against them."""
-    edges = directed_edges(piece).astype(np.int64)
+    edges = joins.polygon_sides(piece)
     keys = edges[:, 0] * len(piece.vertices) + edges[:, 1]
     assert len(np.unique(keys)) == len(keys)
     return edges[~np.isin(edges[:, 1] * len(piece.vertices) + edges[:, 0], keys)]

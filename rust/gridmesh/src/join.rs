@@ -3,8 +3,8 @@
 //! [`join()`] does it all. `parts` checks and numbers what is given, `union` finds out by an exact Boolean operation what is within
 //! other parts and where surfaces meet, `collar` which faces lie near that, `rims` makes the borders of what stays simple loops,
 //! `strips` finds the pieces of the union between them. For each one `patch` makes a tube or a fill, or, where it is neither an
-//! annulus nor a disk, takes the piece itself (`take`); triangles are made even there with what `fill::even` has. `assemble` puts all
-//! together and proves it closed.
+//! annulus nor a disk, takes the piece itself (`take`); triangles are made even there with what `fill::even` has, or stay as they are
+//! where no other patch will do. `assemble` puts all together and proves it closed.
 
 mod assemble;
 mod collar;
@@ -193,8 +193,7 @@ impl Stage<'_> {
                 polygons.push(f);
             }
         }
-        let volumes = (0..parts.len()).map(|part| parts.volume(part)).collect();
-        let site = Site { parts, union, seams, outside, options, kept, polygons, volumes };
+        let site = Site { parts, union, seams, outside, options, kept, polygons };
         let each = |strip: &Strip, progress: Progress<'_>| site.close(strip, progress);
         let closing = progress.part(0.2, 1.0);
         let closed = match strips.as_slice() {

@@ -29,6 +29,8 @@ pub(super) struct Parts {
     pub face_of: Vec<u32>,
     /// The first vertex, face and triangle of each part, and the ends.
     pub first: Vec<[u32; 3]>,
+    /// What each part encloses.
+    pub volumes: Vec<f64>,
     /// Parts that were given inside out.
     pub turned: usize,
 }
@@ -71,6 +73,7 @@ impl Parts {
             triangles: vec![],
             face_of: vec![],
             first: vec![[0; 3]],
+            volumes: vec![],
             turned: 0,
         };
         for (number, part) in given.iter().enumerate() {
@@ -98,7 +101,9 @@ impl Parts {
             self.offsets.push(self.corners.len() as u32);
         }
         let own = triangle as usize..self.triangles.len();
-        if volume(&self.vertices, &self.triangles[own.clone()]) < 0.0 {
+        let enclosed = volume(&self.vertices, &self.triangles[own.clone()]);
+        self.volumes.push(enclosed.abs());
+        if enclosed < 0.0 {
             self.turned += 1;
             self.triangles[own].iter_mut().for_each(|t| t.swap(1, 2));
             for f in face as usize..self.offsets.len() - 1 {
@@ -182,12 +187,6 @@ impl Parts {
     /// The corners of a face.
     pub fn face(&self, f: u32) -> &[u32] {
         &self.corners[self.offsets[f as usize] as usize..self.offsets[f as usize + 1] as usize]
-    }
-
-    /// The volume that a part encloses.
-    pub fn volume(&self, part: usize) -> f64 {
-        let [first, end] = [self.first[part][2], self.first[part + 1][2]];
-        volume(&self.vertices, &self.triangles[first as usize..end as usize])
     }
 
     /// The number of faces.

@@ -1,4 +1,4 @@
-//! The patch in place of a strip: a tube, a fill, or the strip itself with even triangles.
+//! The patch in place of a strip: a tube, a fill, or the strip itself, with even triangles or as it is.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -283,7 +283,7 @@ impl Place<'_> {
         let new = triangles.iter().map(|t| six(t.map(at))).sum::<f64>();
         let old = self.strip.triangles.iter().map(|t| six(own(t))).sum::<f64>();
         let of = self.strip.triangles.iter().map(|&t| union.part(parts, t as usize)).collect::<BTreeSet<_>>();
-        let least = of.into_iter().map(|part| self.site.volumes[part]).fold(f64::INFINITY, f64::min);
+        let least = of.into_iter().map(|part| parts.volumes[part]).fold(f64::INFINITY, f64::min);
         (new - old).abs() > 6.0 * CHANGED * least
     }
 

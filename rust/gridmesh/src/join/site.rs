@@ -15,6 +15,4 @@ pub(super) struct Site<'a> {
     /// The faces that stay, as triangles, and the face of each.
     pub kept: Vec<[u32; 3]>,
     pub polygons: Vec<u32>,
-    /// Of each part.
-    pub volumes: Vec<f64>,
 }

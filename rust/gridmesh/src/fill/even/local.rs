@@ -6,6 +6,7 @@ use glam::DVec3;
 use rustc_hash::FxHashSet;
 
 use crate::geometry::topology::NONE;
+use crate::path::placement::ROW_HEIGHT;
 
 /// What a triangle that is gone consists of.
 const GONE: [u32; 3] = [NONE; 3];
@@ -18,9 +19,6 @@ const THIN: f64 = 0.1;
 
 /// Cosine of the angle by which a triangle may turn.
 const TURN: f64 = 0.3;
-
-/// Twice the area of an equilateral triangle, by the square of its edge.
-const EQUILATERAL: f64 = 0.866_025_403_784_438_6;
 
 /// A mesh whose connections change.
 #[derive(Clone, Debug)]
@@ -117,7 +115,7 @@ impl Local {
         let share = |(t, own): (u32, &[u32; 3])| {
             let [a, b, c] = self.corners(t);
             let wanted = own.iter().map(|&v| self.sizes[v as usize]).sum::<f64>() / 3.0;
-            (b - a).cross(c - a).length() / (EQUILATERAL * wanted.powi(2))
+            (b - a).cross(c - a).length() / (ROW_HEIGHT * wanted.powi(2))
         };
         (0..).zip(&self.triangles).map(share).sum()
     }
