@@ -204,6 +204,33 @@ def test_a_knot_is_filled_counted_and_refused_if_strict() -> None:
     assert caught.value.kind == "fill_intersects"
 
 
+@pytest.mark.parametrize("cells", ["triangles", "quads"])
+@pytest.mark.parametrize("smooth", ["tangent", "curvature"])
+def test_a_patch_that_would_go_through_something_else_is_a_film(smooth: str, cells: str) -> None:
+    vertices, faces = tube(24)
+    free = gridmesh.fill_hole(vertices, faces, np.arange(24), smooth=smooth, cells=cells)
+    height = free.vertices[:, 2].max()
+    assert height > 0.2
+    assert free.report["repaired"] == 0
+
+    def below(plate: float) -> gridmesh.Fill:
+        far = [[-9, -9, plate], [9, -9, plate], [0, 9, plate]]
+        n = len(vertices)
+        return gridmesh.fill_hole(
+            np.r_[vertices, far], np.r_[faces, [[n, n + 1, n + 2]]], np.arange(24), smooth=smooth, cells=cells
+        )
+
+    film = below(height / 2)
+    assert film.report["self_intersections"] == 0
+    assert film.report["repaired"] == 1
+    assert np.abs(film.vertices[:, 2]).max() < 1e-12
+    assert np.array_equal(below(height * 2).vertices, free.vertices)
+    # The film meets the plate too: the patch stays as it was wished for.
+    through = below(0.0)
+    assert through.report["self_intersections"] > 0
+    assert np.array_equal(through.vertices, free.vertices)
+
+
 def test_far_from_the_origin_and_at_any_size() -> None:
     vertices, faces = tube(19)
     plain = gridmesh.fill_hole(vertices, faces, np.arange(19))

@@ -28,7 +28,8 @@ use crate::watch::Watch;
 ///     grid. Several loops without `sharp`.
 /// smooth : {"flat", "tangent", "curvature"}
 ///     "flat": a soap film in the loop. "tangent": continues the slope of the surface around. "curvature":
-///     its slope and curvature.
+///     its slope and curvature. A patch that would meet something then is a film, if that meets nothing ("repaired" in
+///     the report).
 /// strict : bool
 ///     True: a fill that meets itself or the mesh is refused. False: this is counted in the report.
 /// polygons : (m,) array of int, optional

@@ -8,6 +8,7 @@ mod filled;
 mod job;
 pub(crate) mod layout;
 pub mod loops;
+mod meetings;
 mod one;
 pub(crate) mod options;
 pub(crate) mod parallel;

@@ -18,6 +18,10 @@ use crate::progress::Progress;
 /// So often the cut is drawn anew, through vertices that stood in the way of good triangles.
 const REDRAWN: usize = 4;
 
+/// Once it was drawn anew, that is done again for one new vertex in the way among this many on the line: of long lines
+/// each time takes long, and a few thin triangles more or less do not show.
+const FEW: usize = 300;
+
 /// Vertices that are let go one after the other, until the faces around them can be divided.
 const RELEASES: usize = 200;
 
@@ -120,13 +124,15 @@ impl<'a> Attempt<'a> {
         }
         let Snaps { wanted, released, redrawn } = snaps;
         *redrawn += 1;
+        let on_line = parted.cut.len();
         let again = |in_the_way: Vec<u32>| {
             let before = wanted.len();
             wanted.extend(in_the_way.into_iter().filter(|v| !released.contains(v)));
             let is_other = |wanted: &FxHashSet<u32>| {
                 self.edges.named(vertices, tolerance, wanted, released).names() != names
             };
-            *redrawn <= REDRAWN && wanted.len() > before && is_other(wanted)
+            let enough = if *redrawn == 1 { 0 } else { on_line / FEW };
+            *redrawn <= REDRAWN && wanted.len() > before + enough && is_other(wanted)
         };
         let off = |v: u32| match released.contains(&v) {
             true => f64::INFINITY,

@@ -108,9 +108,12 @@ pub(super) fn even_out(
     Ok(true)
 }
 
-/// Turns edges of triangles with small angles while that makes them larger.
-pub(super) fn flip_all(strip: &mut Strip<'_>, progress: Progress<'_>) -> Result<()> {
-    let mut queue: BTreeSet<u32> = (0..strip.parts.len() as u32).collect();
+/// Turns edges of these triangles, where they have small angles, and of those around while that makes them larger.
+pub(super) fn flip_all(
+    strip: &mut Strip<'_>,
+    mut queue: BTreeSet<u32>,
+    progress: Progress<'_>,
+) -> Result<()> {
     let mut budget = 20 * queue.len();
     while let Some(t) = queue.pop_first().filter(|_| budget > 0) {
         budget -= 1;

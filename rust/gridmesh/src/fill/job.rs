@@ -12,8 +12,6 @@ use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::{groups, refuse_shared_edges};
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::parallel::in_parallel;
-use crate::fill::surface::around::is_around;
-use crate::fill::surface::meet::{Box3, MOST, count_meetings, is_graph, near_boxes};
 use crate::progress::Progress;
 
 /// Vertices this many rings of triangles around a loop must be finite.
@@ -99,63 +97,5 @@ impl Job<'_> {
         self.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
         progress.report(1.0)?;
         Ok(fills)
-    }
-
-    /// Counts what new triangles meet: the mesh, themselves, and those of fills that come before.
-    pub(crate) fn count_meetings(&self, fills: &mut [Result<Fill>], progress: Progress<'_>) -> Result<()> {
-        let since = Instant::now();
-        let n = self.vertices.len() as u32;
-        let done = fills.iter().flatten().map(|fill| {
-            // New vertices of all fills get numbers of their own here.
-            (fill.facets(), fill.vertices.as_slice(), fill.shape.as_ref())
-        });
-        let done = done.collect::<Vec<_>>();
-        let mut first = vec![n];
-        for (_, vertices, _) in &done {
-            first.push(first[first.len() - 1] + vertices.len() as u32);
-        }
-        let owner = |v: u32| first.partition_point(|&f| f <= v) - 1;
-        let position = |v: u32| {
-            if v < n {
-                self.vertices[v as usize]
-            } else {
-                let k = owner(v);
-                done[k].1[(v - first[k]) as usize]
-            }
-        };
-        let named = |k: usize| -> Vec<[u32; 3]> {
-            done[k].0.iter().map(|t| t.map(|v| if v < n { v } else { v - n + first[k] })).collect()
-        };
-        let boxes = (0..done.len())
-            .map(|k| Box3::around(named(k).iter().flatten().map(|&v| position(v))))
-            .collect::<Vec<_>>();
-        let near = near_boxes(&boxes, self.vertices, self.triangles);
-        let count = |&k: &usize, progress: Progress<'_>| {
-            let mut others = near[k].iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
-            others.extend((0..k).filter(|&j| boxes[j].meets(&boxes[k])).flat_map(named));
-            let (around, positions, own) = done[k].2.graph();
-            let apart = match done[k].2.bridged.as_slice() {
-                [bridged] => is_around(positions, bridged.first, around.len(), own),
-                [_, _, ..] => false,
-                [] => is_graph(around, positions, own),
-            };
-            count_meetings(position, &named(k), &others, apart, MOST, progress)
-        };
-        let counts = match (0..done.len()).collect::<Vec<_>>().as_slice() {
-            [] => vec![],
-            [single] => vec![count(single, progress)?],
-            several => in_parallel(several, |&k| done[k].0.len(), progress, count)?,
-        };
-        let seconds = since.elapsed().as_secs_f64();
-        for (item, (pairs, at)) in fills.iter_mut().filter(|fill| fill.is_ok()).zip(counts) {
-            if let Ok(fill) = item {
-                fill.report.self_intersections = pairs;
-                fill.report.seconds.push(("intersections", seconds));
-            }
-            if let (true, Some(at)) = (self.options.strict, at) {
-                *item = Err(Error::FillIntersects { pairs, at: at.into() });
-            }
-        }
-        Ok(())
     }
 }

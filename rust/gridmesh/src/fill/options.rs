@@ -3,7 +3,7 @@
 use crate::error::{Error, Result, told};
 use crate::options::CellShape;
 
-/// How a patch continues the surface around its loop.
+/// How a patch continues the surface around its loop. One that would meet something then is flat, if that meets nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Smooth {
     /// Not at all: a soap film in the loop.

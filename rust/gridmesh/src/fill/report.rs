@@ -46,7 +46,7 @@ pub struct FillReport {
     pub creases: usize,
     /// Those of them that go on: all or none.
     pub creases_kept: usize,
-    /// Fallbacks: solves that failed and were replaced by simpler ones.
+    /// Fallbacks: solves that failed and were replaced by simpler ones, smooth patches that met something and are films.
     pub repaired: usize,
     /// Seconds spent in each stage.
     pub seconds: Vec<(&'static str, f64)>,

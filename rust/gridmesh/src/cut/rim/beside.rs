@@ -3,6 +3,8 @@
 //! Between the line and such an edge there is no room for anything but a strip of triangles from one to the other: the rim of a
 //! thin plate that is split in its thickness.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 use rstar::primitives::Line;
 use rstar::{PointDistance, RTree};
@@ -68,10 +70,15 @@ pub(in crate::cut) fn divide(strip: &mut Strip<'_>, length: f64, progress: Progr
     let mut edges = wanted.collect::<Vec<_>>();
     // The middle ones first, so that each has few edges to turn on its way to the line.
     // All of them a step further, not the first alone.
-    while edges.iter_mut().filter_map(|edge| edge.divide(strip).then_some(())).count() > 0 {
-        flip_all(strip, progress)?;
+    let mut looked_at = (0..strip.parts.len() as u32).collect::<BTreeSet<_>>();
+    loop {
+        let from = strip.fresh.len();
+        if edges.iter_mut().filter_map(|edge| edge.divide(strip).then_some(())).count() == 0 {
+            return Ok(());
+        }
+        looked_at.extend(strip.changed_since(from));
+        flip_all(strip, std::mem::take(&mut looked_at), progress)?;
     }
-    Ok(())
 }
 
 /// The stretch of the segment from `p` to `q` that is inside a box, as shares of the segment.
