@@ -15,7 +15,7 @@ use crate::cut::input::Polygons;
 use crate::cut::sheet::Sheet;
 use crate::error::{Error, Result};
 
-/// Divides all faces that the line meets. With an error comes the triangle that stood in the way.
+/// Divides all faces that the line meets. With an error, the first, come all triangles that stood in the way.
 pub(in crate::cut) fn split(
     vertices: &[DVec3],
     faces: Polygons<'_>,
@@ -23,7 +23,7 @@ pub(in crate::cut) fn split(
     met: &Met,
     crossed: Crossed<'_>,
     tolerance: Tolerance,
-) -> Result<Parted, (Error, Option<[u32; 3]>)> {
+) -> Result<Parted, (Error, Vec<[u32; 3]>)> {
     let Crossed { triangles, edges, hits, nodes } = crossed;
     let mut divider = Divider {
         vertices,
@@ -40,14 +40,21 @@ pub(in crate::cut) fn split(
     let mut divided = vec![false; faces.len()];
     let mut cut_faces = 0;
     let mut at = 0;
+    let (mut failed, mut in_the_way) = (None, vec![]);
     while at < triangles.len() {
         let face = triangles[at].1;
         let end = at + triangles[at..].iter().take_while(|t| t.1 == face).count();
         let first = divider.parts.len();
         for &(corners, face) in &triangles[at..end] {
-            divider.triangle(corners, face).map_err(|error| (error, Some(corners)))?;
+            if let Err(error) = divider.triangle(corners, face) {
+                failed.get_or_insert(error);
+                in_the_way.push(corners);
+            }
         }
         at = end;
+        if failed.is_some() {
+            continue;
+        }
         let new = &divider.parts[first..];
         let whole = new.len() + 2 == faces.face(face as usize).len()
             && new.iter().all(|p| p.left == new[0].left)
@@ -59,6 +66,9 @@ pub(in crate::cut) fn split(
             divided[face as usize] = true;
             cut_faces += 1;
         }
+    }
+    if let Some(error) = failed {
+        return Err((error, in_the_way));
     }
     let Divider { nodes, parts, cut, .. } = divider;
     let parted =
@@ -73,7 +83,7 @@ pub(in crate::cut) fn split(
             || (0..faces.len()).any(|f| !parted.divided[f] && parted.left[f] == side && !touches(f))
     };
     if !has(true) || !has(false) {
-        return Err((Error::StrokeMisses, None));
+        return Err((Error::StrokeMisses, vec![]));
     }
     Ok(parted)
 }
