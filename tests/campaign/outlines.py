@@ -30,6 +30,8 @@ from json_lines import outlines, resumed, rows_of
 from quad_checks import check_quad_body, check_quad_patch
 
 Task = tuple[str, list[list[float]], list[list[list[float]]], str, int]
+SLOW = 20
+"""So many times the median of its size is a long time."""
 REASONS = ("too_coarse", "too_large")
 """Refusals that are allowed: the number of cells does not suit the outline."""
 
@@ -69,6 +71,7 @@ def done(task: Task) -> dict[str, Any]:
             "body_angle": float(np.degrees(body.report["min_angle"])),
             "deviation": report["max_deviation"],
             "meets_itself": not body.report["embedded"],
+            "states": report["search_states"],
         }
     except gridmesh.GridMeshError as refusal:
         row["cpu"] = time.process_time() - since
@@ -122,6 +125,11 @@ def summed_up(rows: list[dict[str, Any]]) -> None:
             worst = values[0] if low else values[-1]
             tails = " ".join(f"p{p} {np.percentile(values, p):8.3f}" for p in at)
             print(f"    {key:10s} {tails} worst {worst:8.3f}")
+        if timed := [row for row in fine if "states" in row]:
+            cpu, states = (np.array([row[key] for row in timed]) for key in ("cpu", "states"))
+            slow = cpu > SLOW * np.median(cpu)
+            told = slow & (states > SLOW * np.median(states))
+            print(f"    above {SLOW} medians of CPU: {slow.sum()}, {told.sum()} of them of search states too")
         said = [row["cpu"] for row in own if "refused" in row]
         if said:
             print(f"    refusals take {1000 * np.median(said):.0f} ms, at most {1000 * max(said):.0f}")

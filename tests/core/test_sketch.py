@@ -250,6 +250,18 @@ def test_a_report_holds_plain_numbers():
         assert all(type(value) in {int, float, bool, type(None)} for value in plain.values())
 
 
+def test_states_of_searches_are_counted_and_tell_of_walls_in_each_others_way():
+    def states(points, **options):
+        return gridmesh.mesh_sketch(points, triangles=500, **options).report["search_states"]
+
+    round_one = circle()
+    teeth = np.column_stack([np.repeat(np.arange(12.0), 2), np.tile([0, 6, 6, 0], 6)])
+    walls = np.vstack([teeth, [[11, -1], [0, -1]]])
+    for options in ({}, {"bend": 0}):
+        assert 0 < states(round_one, **options) == states(round_one, **options)
+        assert states(walls, **options) > 10 * states(round_one, **options)
+
+
 def test_a_patch_survives_pickling_and_copying():
     patch = gridmesh.mesh_sketch(SHAPES["trefoil"]["points"], triangles=700)
     again = pickle.loads(pickle.dumps(patch))

@@ -32,6 +32,7 @@ pub fn sketch(py: Python<'_>, report: &SketchReport) -> PyResult<Py<PyDict>> {
     dict.set_item("bend", report.bend)?;
     dict.set_item("scale_range", report.scale_range)?;
     dict.set_item("placements", report.placements)?;
+    dict.set_item("search_states", report.search_states)?;
     dict.set_item("seconds", seconds(py, &report.seconds)?)?;
     Ok(dict.unbind())
 }

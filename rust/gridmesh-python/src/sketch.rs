@@ -105,8 +105,9 @@ use crate::{options, reports};
 ///     "across" (triangles across the thinnest limb; None unless `triangles` is "auto", and where no part is
 ///     longer than it is wide),
 ///     "repaired" (repeated points dropped), "mirror_error" (greatest distance of a vertex from the
-///     image of its partner, in edge lengths; None without `mirror`), "placements" (of the lattice, tried) and "seconds" (per
-///     stage).
+///     image of its partner, in edge lengths; None without `mirror`), "placements" (of the lattice, tried),
+///     "search_states" (of the searches for boundaries, on all lattices: many where walls are in each other's way, which is what
+///     takes longest) and "seconds" (per stage).
 ///
 /// Raises
 /// ------

@@ -369,6 +369,9 @@ pub struct SketchReport {
     pub scale_range: f64,
     /// Lattice placements tried before one gave a valid patch.
     pub placements: usize,
+    /// States that the searches for boundaries took, on all lattices: many where walls are so near to each other that
+    /// their paths are in each other's way, and then the reason for a long time.
+    pub search_states: u64,
     /// Seconds spent in each stage.
     pub seconds: Vec<(&'static str, f64)>,
 }

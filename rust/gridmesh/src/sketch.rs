@@ -137,6 +137,7 @@ fn mesh(
         seconds: Vec::new(),
         placements: 0,
         states: Meter::new(u64::MAX),
+        bent_states: Meter::new(u64::MAX),
     };
     job.lap("curve", started);
     let asked = match options.edge_length {

@@ -182,9 +182,9 @@ impl Job<'_> {
         let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick(0)).first() else {
             return Ok(None);
         };
-        let Ok((lattice, outline)) = job.outline(asked, Effort::Full, angle, shift, progress)? else {
-            return Ok(None);
-        };
+        let found = job.outline(asked, Effort::Full, angle, shift, progress)?;
+        self.bent_states.add(job.states.taken());
+        let Ok((lattice, outline)) = found else { return Ok(None) };
         let outline = bent.outline(outline, &lattice);
         Ok(Some((bent, lattice, outline)))
     }
@@ -221,6 +221,7 @@ impl Job<'_> {
             seconds: Vec::new(),
             placements: 0,
             states: Meter::new(u64::MAX),
+            bent_states: Meter::new(u64::MAX),
         }
     }
 
@@ -242,6 +243,7 @@ impl Job<'_> {
         let angle = lattice.angle;
         let asked = Asked::EdgeLength(lattice.edge_length);
         let found = job.outline(asked, Effort::Full, angle, DVec2::ZERO, progress.part(0.0, 0.3))?;
+        self.bent_states.add(job.states.taken());
         let Ok((lattice, outline)) = found else { return Ok(None) };
         let outline = bent.outline(outline, &lattice);
         self.placements += 1;

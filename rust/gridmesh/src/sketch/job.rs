@@ -51,8 +51,10 @@ pub(crate) struct Job<'a> {
     pub(crate) thinnest: Option<Limb>,
     pub(crate) seconds: Vec<(&'static str, f64)>,
     pub(crate) placements: usize,
-    /// States that the searches of boundaries took.
+    /// States that the searches of boundaries on straight lattices took.
     pub(crate) states: Meter,
+    /// And on bent ones, which do not count where the others are bounded.
+    pub(crate) bent_states: Meter,
 }
 
 /// Boundaries on several lattices.
@@ -296,6 +298,7 @@ impl Job<'_> {
             bend: bent.as_ref().map_or(0.0, |(bent, _)| bent.share * self.options.bend),
             scale_range: bent.as_ref().map_or(1.0, |(bent, _)| bent.scale_range()),
             placements: self.placements,
+            search_states: self.states.taken() + self.bent_states.taken(),
             seconds: Vec::new(),
         };
         self.lap("report", started);
