@@ -6,7 +6,6 @@ Faces outside the collars stay, with every layer of data that Blender has. Colla
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -25,9 +24,6 @@ _PART, _NUMBER = "gridmesh_{}_part", "gridmesh_{}_number"
 
 _SHARP = np.radians(30.0)
 """Edges of a crease that turn by more are marked sharp."""
-
-_ROUNDS = 2
-"""How often borders between materials are straightened."""
 
 
 def number(mesh: bpy.types.Mesh, part: int) -> None:
@@ -89,7 +85,7 @@ class _Collars:
         bm = self.bm
         around = attributes.Surroundings(bm, *self.loops) if self.loops else None
         example = attributes.model_face(around.faces) if around is not None else None
-        slots = materials.of(self.made.collars, self.old, self.places)
+        slots = materials.of(self.made.collars, self.made.collar_part, self.places)
         new = [bm.verts.new(place) for place in self.places[self.free].tolist()]
         self._write_poses(new)
         face_set = attributes.new_face_set(bm)
@@ -141,40 +137,31 @@ class _Materials:
     def __init__(self, bm: Any, gone: Sequence[Any]) -> None:
         slots = {face.material_index for face in bm.faces}
         self.only = next(iter(slots)) if len(slots) == 1 or not gone else None
+        self._of_part: dict[int, tuple[BVHTree, list[int]]] = {}
         if self.only is None:
             outer = _outside(bm, gone) or gone
-            self._tree = _tree_of(outer)
-            self._slots = [face.material_index for face in outer]
+            layer = bm.faces.layers.int[_PART.format("face")]
+            parts: dict[int, list[Any]] = {}
+            for face in outer:
+                parts.setdefault(face[layer], []).append(face)
+            self._all = _with_slots(outer)
+            self._of_part = {part: _with_slots(own) for part, own in parts.items()}
 
-    def of(self, triangles: np.ndarray, old: Sequence[Any], places: np.ndarray) -> list[int]:
-        """Slots of new triangles: those of what is nearest to their corners; old vertices have that of most faces there.
-
-        Where they differ the last one counts: so the border runs along edges, without teeth.
-        """
+    def of(self, triangles: np.ndarray, parts: np.ndarray, places: np.ndarray) -> list[int]:
+        """Slots of new triangles (t, 3), each of the part `parts[t]` if that is known: that of the nearest face of this part."""
         if self.only is not None:
             return [self.only] * len(triangles)
-        slot = np.zeros(len(places), np.int64)
-        for index in np.unique(triangles).tolist():
-            if index < len(old):
-                slot[index] = Counter(face.material_index for face in old[index].link_faces).most_common(1)[
-                    0
-                ][0]
-            else:
-                slot[index] = self._slots[self._tree.find_nearest(places[index].tolist())[2]]
-        for _ in range(_ROUNDS):
-            slot = _settled(slot, triangles, len(old))
-        return slot[triangles].max(axis=1).tolist()
+        middles = places[triangles].mean(axis=1).tolist()
+        return [self._nearest(part, middle) for part, middle in zip(parts.tolist(), middles, strict=True)]
+
+    def _nearest(self, part: int, middle: list[float]) -> int:
+        tree, slots = self._of_part.get(part, self._all)
+        return slots[tree.find_nearest(middle)[2]]
 
 
-def _settled(slot: np.ndarray, triangles: np.ndarray, first: int) -> np.ndarray:
-    """Give each vertex from `first` on the slot that most of its neighbours have, where these are clearly more."""
-    votes = np.zeros((len(slot), int(slot.max()) + 1))
-    for a, b in ((0, 1), (1, 2), (2, 0)):
-        np.add.at(votes, (triangles[:, a], slot[triangles[:, b]]), 1.0)
-    every = np.arange(len(slot))
-    most = votes.argmax(axis=1)
-    change = (every >= first) & (votes[every, most] > votes[every, slot] + 3)
-    return np.where(change, most, slot)
+def _with_slots(faces: Sequence[Any]) -> tuple[BVHTree, list[int]]:
+    """Faces to be searched, and their material slots."""
+    return _tree_of(faces), [face.material_index for face in faces]
 
 
 def _outside(bm: Any, faces: Sequence[Any]) -> list[Any]:

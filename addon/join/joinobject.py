@@ -68,6 +68,11 @@ class Target:
         """Names of those that follow a drawing."""
         return [ob.name for ob in self.objects if frames.is_linked(ob)]
 
+    @property
+    def has_several_materials(self) -> bool:
+        """Whether not all faces are of one material."""
+        return len({material for source in self.sources for material in _materials(source.mesh)}) > 1
+
     def _source(self, ob: bpy.types.Object, matrix: Matrix, transaction: Transaction) -> Source:
         mesh = transaction.remember(bpy.data.meshes, ob.data.copy())
         for slot_index, slot in enumerate(ob.material_slots):
@@ -178,6 +183,13 @@ def _arrays(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     mesh.polygons.foreach_get("loop_start", offsets[:-1])
     offsets[-1] = len(corners)
     return points.reshape(-1, 3).astype(float), corners, offsets
+
+
+def _materials(mesh: bpy.types.Mesh) -> list[bpy.types.Material | None]:
+    """Materials that its faces have."""
+    slots = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("material_index", slots)
+    return [mesh.materials[k] if k < len(mesh.materials) else None for k in np.unique(slots).tolist()]
 
 
 def _volume(mesh: bpy.types.Mesh) -> float:

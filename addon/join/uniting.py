@@ -54,6 +54,8 @@ class United:
     """(k,) its number there."""
     collars: np.ndarray
     """(t, 3) new triangles."""
+    collar_part: np.ndarray
+    """(t,) the part on whose side of the line between parts each lies, -1 where that was not asked for."""
     rims: list[np.ndarray]
     """Closed loops of vertices between what stays and the collars, as the faces that stay run."""
     report: dict[str, Any]
@@ -65,9 +67,10 @@ def unite(
     blend: float,
     edge_length: float | None,
     strict: bool,
+    border: bool,
     progress: api.Progress | None = None,
 ) -> United:
-    """Join the parts.
+    """Join the parts. border : the lines between them are to run along edges.
 
     Raises
     ------
@@ -88,18 +91,21 @@ def unite(
                 blend=blend,
                 edge_length=edge_length,
                 strict=strict,
+                border=border,
                 progress=progress,
             )
     except gridmesh.GridMeshError as error:
         raise JoinError(_named(str(error), parts), error.kind) from error
     stays = made.source_part >= 0
+    new = ~stays[: len(made.triangles)]
     return United(
         vertices=made.vertices,
         vertex_part=made.vertex_part,
         source_vertex=made.source_vertex,
         face_part=made.source_part[stays],
         source_face=made.source_face[stays],
-        collars=made.triangles[~stays[: len(made.triangles)]],
+        collars=made.triangles[new],
+        collar_part=made.near_part[: len(new)][new],
         rims=[np.asarray(rim) for rims in made.collars for rim in rims],
         report=dict(made.report),
     )
@@ -167,6 +173,10 @@ def warnings_of(report: dict[str, Any]) -> list[str]:
     if report["self_intersections"]:
         found.append(
             "The joints meet the parts or themselves; blend less, move a part, or switch Strict on to refuse that"
+        )
+    if report["creased"]:
+        found.append(
+            f"{counted(report['creased'], 'joint')} with a crease, since there is no room for a transition; blend less, or give the parts shorter edges there"
         )
     if report["exact"]:
         found.append(

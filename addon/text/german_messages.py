@@ -525,6 +525,9 @@ _JOINS = {
     "Select two closed meshes or more in Object Mode, one of them active": (
         "Zwei oder mehr geschlossene Meshes im Objektmodus auswählen, eines davon aktiv"
     ),
+    "{} with a crease, since there is no room for a transition; blend less, or give the parts shorter edges there": (
+        "{0} mit einer Kante, weil für einen Übergang kein Platz ist; schmaler verbinden oder den Teilen dort kürzere Kanten geben"
+    ),
     "{} with thin faces, as the surfaces cut each other; faces are too large there: subdivide the parts": (
         "{0} mit dünnen Flächen, wie sich die Oberflächen schneiden; die Flächen dort sind zu groß: die Teile unterteilen"
     ),

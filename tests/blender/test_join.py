@@ -76,15 +76,30 @@ def test_two_become_one_closed_body_and_keep_their_faces(blend, capfd):
     assert " quads and " in told
 
 
-def test_cubes_of_six_faces_are_joined_as_a_boolean_does(capfd):
-    """They leave a blend no room; it used to take most of them away."""
+def test_cubes_of_six_faces_keep_the_crease(capfd):
+    """They leave a blend no room; it used to take most of them away, or to leave the slivers of a Boolean."""
     bpy.ops.mesh.primitive_cube_add(size=2)
     first = bpy.context.object
     bpy.ops.mesh.primitive_cube_add(size=2, location=(0.9, 0.7, 0.5), rotation=(0.3, 0.4, 0.5))
     whole = join(first, bpy.context.object)
     check_sound(whole)
     assert 11 < volume(whole) < 16
-    assert "1 joint with thin faces, as the surfaces cut each other" in capfd.readouterr().out
+    assert "1 joint with a crease, since there is no room for a transition" in capfd.readouterr().out
+
+
+def test_the_border_of_two_materials_has_no_teeth():
+    body, head = ball("Body", material="Red"), ball("Head", 1.1, 0.7, material="Blue")
+    whole = join(body, head)
+    check_sound(whole)
+    mesh = whole.data
+    bm = bmesh.new()
+    bm.from_mesh(mesh)
+    line = [edge for edge in bm.edges if len({face.material_index for face in edge.link_faces}) == 2]
+    assert len(line) > 12
+    for vertex in {vertex for edge in line for vertex in edge.verts}:
+        first, second = (edge.other_vert(vertex).co - vertex.co for edge in line if vertex in edge.verts)
+        assert first.angle(second) > np.radians(140)
+    bm.free()
 
 
 def test_wide_blends_take_more_away():

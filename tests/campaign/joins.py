@@ -139,6 +139,18 @@ def close(directed):
     return len(np.unique(codes)) == len(codes) and np.array_equal(np.sort(codes), np.sort(turned))
 
 
+def pieces(triangles):
+    """How many pieces triangles make that hang together by vertices."""
+    root = np.arange(triangles.max() + 1)
+    while True:
+        least = root[triangles].min(axis=1)
+        lower = root.copy()
+        np.minimum.at(lower, triangles.ravel(), np.repeat(least, 3))
+        if np.array_equal(lower, root):
+            return len(np.unique(root[triangles]))
+        root = lower
+
+
 def fanned(joined):
     """All faces as triangles, and the face of each."""
     rows = []

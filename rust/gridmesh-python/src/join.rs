@@ -23,11 +23,14 @@ use crate::{arrays, reports};
 /// blend : float
 ///     So many edge lengths to each side of the lines where surfaces meet, along the surface, are taken away and closed
 ///     by one patch, smooth to both sides. 0 keeps the lines as creases, with even edges along them. 0 to 1000. Fewer
-///     where that would meet something or take most of a part away; see "exact" in the report.
+///     where that would meet something or take most of a part away; see "creased" and "exact" in the report.
 /// edge_length : float, optional
 ///     The edge length that `blend` counts in. None: of each part its own mean near the line.
 /// strict : bool
 ///     Refuse joints that meet themselves or the parts; otherwise the report counts that.
+/// border : bool
+///     Let the lines where surfaces of two parts meet run along edges of the collars, for borders of colours without teeth. `near_part` then
+///     tells of new triangles, too, to which part they belong. Vertices next to a line are moved onto it, by half an edge at most.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
 ///
@@ -63,8 +66,8 @@ use crate::{arrays, reports};
 /// (True, 1, 1)
 #[pyfunction]
 #[pyo3(
-    signature = (parts, *, blend = None, edge_length = None, strict = None, progress = None),
-    text_signature = "(parts, *, blend=2.0, edge_length=None, strict=False, progress=None)"
+    signature = (parts, *, blend = None, edge_length = None, strict = None, border = None, progress = None),
+    text_signature = "(parts, *, blend=2.0, edge_length=None, strict=False, border=False, progress=None)"
 )]
 pub fn join(
     py: Python<'_>,
@@ -72,6 +75,7 @@ pub fn join(
     blend: Option<&Bound<'_, PyAny>>,
     edge_length: Option<&Bound<'_, PyAny>>,
     strict: Option<&Bound<'_, PyAny>>,
+    border: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Joined> {
     let mut options = JoinOptions::default();
@@ -84,6 +88,9 @@ pub fn join(
     }
     if let Some(value) = strict {
         options.strict = Argument { name: "strict", value, allowed: "True or False" }.bool()?;
+    }
+    if let Some(value) = border {
+        options.border = Argument { name: "border", value, allowed: "True or False" }.bool()?;
     }
     let given = parts.try_iter()?.map(|part| read(&part?)).collect::<PyResult<Vec<_>>>()?;
     let parts = given
@@ -138,6 +145,9 @@ fn read(part: &Bound<'_, PyAny>) -> PyResult<(Vec<DVec3>, Vec<u32>, Vec<u32>)> {
 ///     The part that each face comes from; -1 for those of collars.
 /// source_face : (f,) int32
 ///     Its number in that part; -1 for those of collars.
+/// near_part : (f,) int32
+///     The part that each face belongs to; with `border` for those of collars that on whose side of the line between parts they
+///     lie, else -1 for these.
 /// vertex_part : (v,) int32
 ///     The part that each vertex comes from; -1 for new ones.
 /// source_vertex : (v,) int32
@@ -147,8 +157,9 @@ fn read(part: &Bound<'_, PyAny>) -> PyResult<(Vec<DVec3>, Vec<u32>, Vec<u32>)> {
 /// report : dict
 ///     Plain numbers: "watertight", "components", "genus", "alone" (parts that meet no other), "swallowed" (parts within
 ///     others), "turned" (parts given inside out), "curves" (closed lines in which surfaces meet), "collars" (patches), "tubes" and
-///     "fills" (of those, lattices between two rims and in one), "exact" (of those, triangles of the exact union as they are, where any
-///     other patch would meet something or take most of a part away), "collar_triangles", "collar_vertices" and "collar_irregular" (new
+///     "fills" (of those, lattices between two rims and in one), "creased" (of those, with the line as a crease, where any blend
+///     would meet something or take most of a part away), "exact" (of those, triangles of the exact union as they are, where that did
+///     not help either), "collar_triangles", "collar_vertices" and "collar_irregular" (new
 ///     ones, and those with a valence other than six), "irregular" (of all vertices; corners of quads count one and a half
 ///     triangles), "min_angle" (of new triangles, radians), "self_intersections" (pairs of triangles, at least one of them new and not of the exact union),
 ///     "volume", "exact_volume" (of the exact union), and "seconds", a dict of times per stage.
@@ -168,6 +179,8 @@ pub struct Joined {
     source_part: Py<PyArray1<i32>>,
     #[pyo3(get)]
     source_face: Py<PyArray1<i32>>,
+    #[pyo3(get)]
+    near_part: Py<PyArray1<i32>>,
     #[pyo3(get)]
     vertex_part: Py<PyArray1<i32>>,
     #[pyo3(get)]
@@ -198,6 +211,7 @@ impl Joined {
             offsets: arrays::indices(py, inner.offsets.iter().copied()),
             source_part: arrays::row(py, inner.source_part.clone()),
             source_face: arrays::row(py, inner.source_face.clone()),
+            near_part: arrays::row(py, inner.near_part.clone()),
             vertex_part: arrays::row(py, inner.vertex_part.clone()),
             source_vertex: arrays::row(py, inner.source_vertex.clone()),
             collars: collars.unbind(),
@@ -234,6 +248,7 @@ impl Joined {
         let sources = (
             this.source_part.clone_ref(py),
             this.source_face.clone_ref(py),
+            this.near_part.clone_ref(py),
             this.vertex_part.clone_ref(py),
             this.source_vertex.clone_ref(py),
         );
@@ -264,6 +279,7 @@ pub fn _joined(
         PyReadonlyArray1<'_, i32>,
         PyReadonlyArray1<'_, i32>,
         PyReadonlyArray1<'_, i32>,
+        PyReadonlyArray1<'_, i32>,
     ),
     collars: Vec<Vec<PyReadonlyArray1<'_, i32>>>,
     report: Py<PyDict>,
@@ -290,8 +306,9 @@ pub fn _joined(
         offsets: row(&faces.3),
         source_part: row(&sources.0),
         source_face: row(&sources.1),
-        vertex_part: row(&sources.2),
-        source_vertex: row(&sources.3),
+        near_part: row(&sources.2),
+        vertex_part: row(&sources.3),
+        source_vertex: row(&sources.4),
         collars: loops.unbind(),
         report,
     })
@@ -310,6 +327,7 @@ fn report(py: Python<'_>, report: &JoinReport) -> PyResult<Py<PyDict>> {
     dict.set_item("collars", report.collars)?;
     dict.set_item("tubes", report.tubes)?;
     dict.set_item("fills", report.fills)?;
+    dict.set_item("creased", report.creased)?;
     dict.set_item("exact", report.exact)?;
     dict.set_item("collar_triangles", report.collar_triangles)?;
     dict.set_item("collar_vertices", report.collar_vertices)?;

@@ -7,6 +7,7 @@
 //! where no other patch will do. `assemble` puts all together and proves it closed.
 
 mod assemble;
+mod border;
 mod collar;
 mod options;
 mod parts;
@@ -43,8 +44,8 @@ const NARROWED: usize = 2;
 /// Where two surfaces meet, all faces within `blend` edge lengths of the line, to both sides along the surface, make room for one
 /// patch, smooth to both sides: a lattice tube between two rims, a grid patch in one, otherwise the union's own surface with
 /// even triangles, faired. With `blend` 0 the line stays as a crease, with even edges along it. Where the parts' faces are so large
-/// that a patch would meet something or take most of a part away, the blend becomes narrower, and in the end the union's own
-/// triangles stay.
+/// that a patch would meet something or take most of a part away, the blend becomes narrower; if that does not help the line
+/// stays as a crease, and in the end the union's own triangles stay.
 ///
 /// The result is closed and manifold and has the topology of the exact union; this is checked. Elsewhere all vertices and faces are
 /// those of the parts, bit for bit, quads and polygons too (a part given inside out is turned). Parts that meet no other stay
@@ -132,10 +133,11 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
     let mut most = vec![1.0; curves.count];
     let mut rounds = if options.blend > 0.0 { NARROWED } else { 0 };
     let mut from = 0.4;
-    let (site, strips, closed) = loop {
+    let (site, strips, mut closed) = loop {
         let to = 0.5 * (from + 0.9);
         let (site, strips, closed) = stage.closed(&most, progress.part(from, to))?;
-        let tight = strips.iter().zip(&closed).filter(|(_, patch)| patch.kind == Kind::Exact);
+        let tight =
+            strips.iter().zip(&closed).filter(|(_, patch)| [Kind::Crease, Kind::Exact].contains(&patch.kind));
         let tight = tight.flat_map(|(strip, _)| &strip.curves).collect::<Vec<_>>();
         if tight.is_empty() || rounds == 0 {
             break (site, strips, closed);
@@ -144,13 +146,28 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
         (rounds, from) = (rounds - 1, to);
     };
     clock.stage("patches");
+    let sides =
+        if options.border { border(&site, &strips, &mut closed, progress.part(0.9, 0.9))? } else { vec![] };
+    clock.stage("border");
     let patches = strips.into_iter().map(|strip| strip.rims).zip(closed).collect::<Vec<_>>();
     let last = progress.part(0.9, 1.0);
-    let mut made = Joined::new(&site, &patches, report, last)?;
+    let mut made = Joined::new(&site, &patches, &sides, report, last)?;
     clock.stage("assemble");
     made.report.seconds = clock.seconds;
     progress.report(1.0)?;
     Ok(made)
+}
+
+/// Lets the line between the parts run along edges of all patches; the part of each of their triangles.
+fn border(
+    site: &Site<'_>,
+    strips: &[Strip],
+    patches: &mut [Patch],
+    progress: Progress<'_>,
+) -> Result<Vec<i32>> {
+    let each =
+        strips.iter().zip(patches).map(|(strip, patch)| border::straighten(site, strip, patch, progress));
+    Ok(each.collect::<Result<Vec<_>>>()?.concat())
 }
 
 /// What the collars are made from.

@@ -374,6 +374,8 @@ class Joined:
     @property
     def source_face(self) -> npt.NDArray[np.int32]: ...
     @property
+    def near_part(self) -> npt.NDArray[np.int32]: ...
+    @property
     def vertex_part(self) -> npt.NDArray[np.int32]: ...
     @property
     def source_vertex(self) -> npt.NDArray[np.int32]: ...
@@ -393,6 +395,7 @@ def join(
     blend: float = 2.0,
     edge_length: float | None = None,
     strict: bool = False,
+    border: bool = False,
     progress: _Progress | None = None,
 ) -> Joined: ...
 def map_sketches(

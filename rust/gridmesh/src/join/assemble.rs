@@ -27,6 +27,9 @@ pub struct Joined {
     pub source_part: Vec<i32>,
     /// Its number there, -1 for new ones.
     pub source_face: Vec<i32>,
+    /// The part that each face belongs to; for new ones that on whose side of the line between parts it lies if
+    /// [`JoinOptions::border`](super::JoinOptions::border) is set, else -1.
+    pub near_part: Vec<i32>,
     /// The part that each vertex comes from, -1 for new ones.
     pub vertex_part: Vec<i32>,
     /// Its number there, -1 for new ones.
@@ -43,13 +46,15 @@ impl Joined {
         &self.corners[self.offsets[f] as usize..self.offsets[f + 1] as usize]
     }
 
-    /// Puts the mesh together and proves it closed, with the topology of the exact union.
+    /// Puts the mesh together and proves it closed, with the topology of the exact union. `sides`: the part of each new
+    /// triangle, or nothing.
     ///
     /// # Errors
     /// [`Error::JoinFailed`], [`Error::Cancelled`]; [`Error::JoinIntersects`] if `strict`.
     pub(super) fn new(
         site: &Site<'_>,
         patches: &[(Vec<usize>, Patch)],
+        sides: &[i32],
         mut report: JoinReport,
         progress: Progress<'_>,
     ) -> Result<Joined> {
@@ -64,6 +69,7 @@ impl Joined {
             offsets: vec![0],
             source_part: vec![],
             source_face: vec![],
+            near_part: vec![],
             vertex_part: vec![],
             source_vertex: vec![],
             collars: vec![],
@@ -95,6 +101,11 @@ impl Joined {
             return Err(Error::JoinFailed { reason: "the patches do not fit together", at: at.into() });
         }
         made.add_faces(parts, &name, kept(), &new);
+        made.near_part = made.source_part.clone();
+        // New triangles come one after the other.
+        if let (false, Some(first)) = (sides.is_empty(), made.source_part.iter().position(|&part| part < 0)) {
+            made.near_part[first..first + sides.len()].copy_from_slice(sides);
+        }
         let at = |v: u32| made.vertices[v as usize];
         // The union's own triangles meet what the parts' did, and each other by what rounding does to the lines.
         let (mut boxes, mut fresh, mut exact, mut start) = (vec![], vec![], vec![], 0);
@@ -122,6 +133,7 @@ impl Joined {
         report.collars = patches.len();
         report.tubes = of(Kind::Tube);
         report.fills = of(Kind::Fill);
+        report.creased = of(Kind::Crease);
         report.exact = of(Kind::Exact);
         report.collar_triangles = new.len();
         report.collar_vertices = made.vertices.len() - first_new;

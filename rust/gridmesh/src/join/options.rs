@@ -12,11 +12,14 @@ pub struct JoinOptions {
     pub edge_length: Option<f64>,
     /// Refuse joints that meet themselves or the parts, instead of counting that.
     pub strict: bool,
+    /// Let the line where surfaces of two parts meet run along edges of the patches, for borders of colours without teeth, and tell
+    /// for each new triangle on which part's side of it it lies.
+    pub border: bool,
 }
 
 impl Default for JoinOptions {
     fn default() -> Self {
-        JoinOptions { blend: 2.0, edge_length: None, strict: false }
+        JoinOptions { blend: 2.0, edge_length: None, strict: false, border: false }
     }
 }
 
@@ -59,6 +62,8 @@ pub struct JoinReport {
     pub tubes: usize,
     /// Of those, patches in one rim.
     pub fills: usize,
+    /// Of those, patches with the line as a crease, since any blend would meet something, or take most of a part away.
+    pub creased: usize,
     /// Of those, triangles of the exact union as they are: any other patch would meet something, or take most of a part away.
     pub exact: usize,
     /// New triangles.

@@ -36,7 +36,7 @@ const ROUNDS: usize = 3;
 /// Times that a strip is made anew with shorter edges where it meets something.
 const FINER: usize = 3;
 
-/// So much of the smallest part's volume may be gained or lost by a patch; it would not be a blend otherwise.
+/// So much of the volume of all parts but the largest may be gained or lost by a patch; it would not be a blend otherwise.
 const CHANGED: f64 = 0.3;
 
 /// A strip that wants more even triangles than so many, and so many times its own, stays as it is.
@@ -55,6 +55,8 @@ pub(super) enum Kind {
     Fill,
     /// The union's own surface, triangulated anew.
     Strip,
+    /// The same with the line as a crease, though a blend was asked for.
+    Crease,
     /// The union's own triangles.
     Exact,
 }
@@ -147,9 +149,17 @@ impl Place<'_> {
             best = Some(it);
         }
         if strip.sound
-            && let Some(taken) = take(self.site, strip)
+            && let Some(taken) = take(self.site, strip, !blend)
         {
-            best = best.into_iter().chain(self.even(&taken, progress.part(0.5, 0.9))?).reduce(better);
+            let kind = Kind::Strip;
+            best = best.into_iter().chain(self.even(&taken, kind, progress.part(0.5, 0.8))?).reduce(better);
+            if blend
+                && !best.as_ref().is_some_and(Try::is_sound)
+                && let Some(creased) = take(self.site, strip, true)
+            {
+                let creased = self.even(&creased, Kind::Crease, progress.part(0.8, 0.9))?;
+                best = best.into_iter().chain(creased).reduce(better);
+            }
             if !best.as_ref().is_some_and(Try::is_sound) {
                 // What meets there does so in the parts.
                 let own = self.tried(&taken.local, &[], Kind::Exact);
@@ -231,10 +241,10 @@ impl Place<'_> {
 
     /// The strip with even triangles, faired unless the line is to stay; with shorter edges where that would meet something. `None` if
     /// there would be too many.
-    fn even(&self, taken: &Taken, progress: Progress<'_>) -> Result<Option<Try>> {
+    fn even(&self, taken: &Taken, kind: Kind, progress: Progress<'_>) -> Result<Option<Try>> {
         let (mut given, beyond) = (taken.local.clone(), &taken.beyond);
         let ground = Ground::of(&given);
-        let crease = self.site.options.blend == 0.0;
+        let crease = kind == Kind::Crease || self.site.options.blend == 0.0;
         let many = MANY.0 + MANY.1 * given.triangles.len() as f64;
         let mut best: Option<Try> = None;
         for level in 0..=FINER {
@@ -250,10 +260,10 @@ impl Place<'_> {
             }
             let made = if crease {
                 let bad = tangled(&local, self.near(), part.part(0.4, 1.0))?;
-                self.tried(&local, &bad, Kind::Strip)
+                self.tried(&local, &bad, kind)
             } else {
                 regularize(&mut local, Some(&ground), part.part(0.4, 0.6))?;
-                self.smoothed(local, beyond, Kind::Strip, part.part(0.6, 1.0))?
+                self.smoothed(local, beyond, kind, part.part(0.6, 1.0))?
             };
             let (places, far) = (made.places.clone(), made.far);
             let hopeless = best.as_ref().is_some_and(|best| 2 * made.meetings > best.meetings);
@@ -283,8 +293,10 @@ impl Place<'_> {
         let new = triangles.iter().map(|t| six(t.map(at))).sum::<f64>();
         let old = self.strip.triangles.iter().map(|t| six(own(t))).sum::<f64>();
         let of = self.strip.triangles.iter().map(|&t| union.part(parts, t as usize)).collect::<BTreeSet<_>>();
-        let least = of.into_iter().map(|part| parts.volumes[part]).fold(f64::INFINITY, f64::min);
-        (new - old).abs() > 6.0 * CHANGED * least
+        let volumes = of.into_iter().map(|part| parts.volumes[part]).collect::<Vec<_>>();
+        let smaller = volumes.iter().sum::<f64>() - volumes.iter().copied().fold(0.0, f64::max);
+        let own = if volumes.len() > 1 { smaller } else { volumes.iter().sum() };
+        (new - old).abs() > 6.0 * CHANGED * own
     }
 
     /// Fairs, as far as nothing meets by it.

@@ -29,8 +29,8 @@ pub(super) struct Taken {
     pub beyond: Beyond,
 }
 
-/// Takes a strip out; `None` if its border is not that of its rims.
-pub(super) fn take(site: &Site<'_>, strip: &Strip) -> Option<Taken> {
+/// Takes a strip out, with the line as a hard one if there is to be a crease; `None` if its border is not that of its rims.
+pub(super) fn take(site: &Site<'_>, strip: &Strip, crease: bool) -> Option<Taken> {
     let union = site.union;
     let border = strip.rims.iter().flat_map(|&k| site.outside.rims[k].iter().copied()).collect::<Vec<_>>();
     let place: FxHashMap<u32, u32> = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
@@ -57,7 +57,7 @@ pub(super) fn take(site: &Site<'_>, strip: &Strip) -> Option<Taken> {
     }
     let mut local = Local::new(positions, triangles, sides, border.len());
     let beyond = surroundings(site, strip, &border, &place, &mut local);
-    if site.options.blend == 0.0 {
+    if crease {
         let seams = site.seams.iter().filter_map(|(ends, _)| {
             let [a, b] = ends.map(|v| number.get(&v).copied());
             Some(edge(a?, b?))

@@ -34,6 +34,12 @@ impl Facets {
         let found = near.find(alike).or_else(|| self.0.nearest_neighbor(p.to_array()));
         found.map_or(p, |face| face.0.place(p))
     }
+
+    /// The distance of the nearest one.
+    pub fn distance(&self, p: DVec3) -> f64 {
+        let found = self.0.nearest_neighbor(p.to_array());
+        found.map_or(f64::INFINITY, |face| face.0.closest(p).0)
+    }
 }
 
 impl Lines {

@@ -29,7 +29,8 @@ pub(crate) fn polish(local: &mut Local) {
     }
 }
 
-fn improve(local: &mut Local, v: u32) -> bool {
+/// Moves one vertex; true if that was of use.
+pub(crate) fn improve(local: &mut Local, v: u32) -> bool {
     let own = |p: DVec3, t: u32| {
         local.triangles[t as usize].map(|u| if u == v { p } else { local.positions[u as usize] })
     };
