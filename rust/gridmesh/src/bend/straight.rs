@@ -70,6 +70,9 @@ impl Solver<'_> {
                     }
                 }
             }
+            if more.iter().all(|&off| off == 0.0) {
+                break;
+            }
             robin.solve(&mut more, 1)?;
             v.iter_mut().zip(&more).for_each(|(v, more)| *v += more);
             u = self.scale(&v)?;
