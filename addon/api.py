@@ -55,6 +55,13 @@ class Body:
     corner: list[np.ndarray]
     """Turning angle of the drawn corner at each vertex of the silhouette; 0 elsewhere."""
     report: dict[str, Any]
+    smooth_rim: bool = False
+    """Whether the rim was placed for a subdivision that no crease along it stops; see `smooths_rim`."""
+
+
+def smooths_rim(body_options: dict[str, Any] | None) -> bool:
+    """Whether options of `gridmesh.inflate` place the rim of quads for a smooth subdivision: not that of a peak, an edge."""
+    return bool(body_options and body_options.get("subdivided")) and body_options.get("profile") != "peak"
 
 
 @dataclass(frozen=True)
@@ -140,6 +147,7 @@ def build(
                 silhouette=list(surface.silhouette),
                 corner=list(surface.corner),
                 report=dict(surface.report),
+                smooth_rim=smooths_rim(body_options),
             )
         )
     return bodies, failures

@@ -268,7 +268,8 @@ def _paint(mesh: bpy.types.Mesh, body: Body) -> None:
 def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
     """Mark the edges along the rim sharp where front and back meet at more than `angle`, and no others.
 
-    Of quads they are creased, too, and the corners of the drawing: a Subdivision Surface modifier keeps both.
+    Of quads they are creased, too, and the corners of the drawing: a Subdivision Surface modifier keeps both. A rim that
+    was placed for it is not: it would not come to lie on the drawing.
     """
     edges = np.empty(len(mesh.edges) * 2, np.int32)
     mesh.edges.foreach_get("vertices", edges)
@@ -283,7 +284,7 @@ def mark_creases(mesh: bpy.types.Mesh, body: Body, angle: float) -> None:
         for loop, turn in zip(body.silhouette, body.corner, strict=True):
             corners[loop] = np.asarray(turn) != 0
         _put(mesh, "crease_vert", "POINT", corners)
-        _put(mesh, "crease_edge", "EDGE", sharp.astype(np.float32))
+        _put(mesh, "crease_edge", "EDGE", (sharp & (not body.smooth_rim)).astype(np.float32))
 
 
 def _put(mesh: bpy.types.Mesh, name: str, domain: str, values: np.ndarray) -> None:

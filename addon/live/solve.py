@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..api import Body, faces_of, native, reason_of
+from ..api import Body, faces_of, native, reason_of, smooths_rim
 from ..bodies.outlines import Plane, Sketch, project
 
 ALGORITHM = 4
@@ -95,6 +95,7 @@ def solve(
         silhouette=list(surface.silhouette),
         corner=list(surface.corner),
         report={**patch.report, **surface.report},
+        smooth_rim=smooths_rim(body_options),
     )
     return body, Lattice(sketch.plane, patch.edge_length, patch.angle, np.array(patch.origin), patch)
 

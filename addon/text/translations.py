@@ -256,6 +256,11 @@ GERMAN = {
     "Beside the front: each side can be painted by itself": (
         "Neben der Vorderseite: jede Seite lässt sich für sich bemalen"
     ),
+    "Fit for Subdivision": "Für Unterteilung passend",
+    "Lay the rim of quads so far outside that it lies on the drawing when a Subdivision Surface modifier smooths the body": (
+        "Den Rand von Vierecken so weit nach außen legen, dass er auf der Zeichnung liegt, wenn ein Subdivision-Surface-Modifikator "
+        "den Körper glättet"
+    ),
     "On Top of Each Other": "Aufeinander",
     "Side by Side": "Nebeneinander",
     "UV Layout": "UV-Anordnung",

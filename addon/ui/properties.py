@@ -293,6 +293,12 @@ class ShapeOptions:
         default="APART",
     )
 
+    use_subdivision: BoolProperty(
+        name="Fit for Subdivision",
+        description="Lay the rim of quads so far outside that it lies on the drawing when a Subdivision Surface modifier smooths the body",
+        default=False,
+    )
+
     def body_options(self) -> dict[str, Any] | None:
         """Keyword arguments of `gridmesh.inflate`; None for a flat sheet."""
         if self.shape == "SHEET":
@@ -300,6 +306,8 @@ class ShapeOptions:
         options: dict[str, Any] = {"profile": self.profile.lower(), "corner_angle": self.corner_angle}
         if self.uv_layout == "SHARED":
             options["uv"] = "shared"
+        if self.use_subdivision:
+            options["subdivided"] = True
         if self.use_sides:
             options |= {"front": self.depth_front, "back": self.depth_back}
         else:
@@ -324,6 +332,8 @@ class ShapeOptions:
         else:
             column.prop(self, "depth")
         layout.prop(self, "uv_layout")
+        if self.cells == "QUADS":
+            layout.prop(self, "use_subdivision")
 
 
 class CurveOption(ShapeOptions):

@@ -48,6 +48,27 @@ def measured(patch: gridmesh.Patch) -> dict[str, float]:
     }
 
 
+def drawn_in(patch: gridmesh.Patch, body: gridmesh.Surface) -> np.ndarray:
+    """How far the vertices of the rim lie from the drawing when the body is subdivided (Catmull-Clark), in edges; no corners."""
+    quads, at = body.quads, body.vertices
+    beside, across, faces = np.zeros_like(at), np.zeros_like(at), np.bincount(quads.ravel())[:, None]
+    for k in range(4):
+        # Each edge is met twice.
+        np.add.at(beside, quads[:, k], (at[quads[:, k - 1]] + at[quads[:, (k + 1) % 4]]) / 2)
+        np.add.at(across, quads[:, k], at[quads[:, k - 2]])
+    limit = (faces**2 * at + 4 * beside + across) / (faces * (faces + 5))
+    off = []
+    for loop, corner in zip(patch.loops, patch.corner, strict=True):
+        drawn = patch.vertices[loop]
+        tangent = np.roll(drawn, -1, axis=0) - np.roll(drawn, 1, axis=0)
+        tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+        way = limit[loop, :2] - drawn
+        across_line = way[:, 0] * tangent[:, 1] - way[:, 1] * tangent[:, 0]
+        off.append(np.abs(across_line[corner == 0]))
+    ends = edges(quads)
+    return np.concatenate(off) / np.median(np.linalg.norm(at[ends[:, 0]] - at[ends[:, 1]], axis=1))
+
+
 def drawings(folder: Path, sets: list[str], every: int):
     """Set, name, outline and holes of the chosen drawings."""
     for path in sorted(folder.glob("*.jsonl")):
@@ -89,6 +110,10 @@ def main() -> None:
             row["bodytime"] = time.perf_counter() - begun
             row["embedded"] = body.report["embedded"]
             valences = np.bincount(edges(body.quads).ravel())
+            fit = gridmesh.inflate(patch, subdivided=True)
+            for key, of in (("rim", body), ("fit", fit)):
+                off = drawn_in(patch, of)
+                row[key], row[key + "_within"] = np.median(off), (off < 0.02).mean()
             row["valid"] = body.report["watertight"] and set(valences.tolist()) <= {3, 4, 5}
         row["time"] = sum(patch.report["seconds"].values())
         found.setdefault(group, []).append(row | {"name": name})
@@ -118,6 +143,8 @@ def main() -> None:
             f" {(of['bend'] > 0).mean():6.2f} {1000 * np.median(of['time']):6.1f}"
             + (
                 f" body {1000 * np.median(of['bodytime']):5.1f} ms, valid {of['valid'].mean():.3f}, embedded {of['embedded'].mean():.3f}"
+                f", subdivided rim off by {np.median(of['rim']):.3f} edges ({100 * np.median(of['rim_within']):.0f} % below a fiftieth),"
+                f" fit for it {np.median(of['fit']):.3f} ({100 * np.median(of['fit_within']):.0f} %)"
                 if args.body
                 else ""
             )

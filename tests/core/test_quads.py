@@ -105,6 +105,53 @@ def test_the_number_of_poles_hardly_grows_with_the_quads():
     assert many <= few * 4 / 3
 
 
+@pytest.mark.parametrize(
+    ("name", "most"),
+    # A quarter more than QuadriFlow leaves on the same bodies, and four.
+    [("letter", 36), ("frog", 49), ("brazil", 26), ("camel", 69), ("octopus", 34), ("whale", 24)],
+)
+def test_drawings_whose_arms_would_cross_when_they_are_bent_need_few_poles(name, most):
+    patch = gridmesh.mesh_sketch(DRAWINGS[name]["points"], quads=1000)
+    assert patch.report["poles"] <= most
+
+
+@pytest.mark.parametrize("name", ["whale", "guitar", "octopus"])
+def test_a_rim_for_subdivision_has_its_limit_on_the_drawing(name):
+    patch = gridmesh.mesh_sketch(DRAWINGS[name]["points"], quads=1000)
+    plain, fit = gridmesh.inflate(patch), gridmesh.inflate(patch, subdivided=True)
+    assert np.array_equal(plain.quads, fit.quads)
+    assert fit.report["embedded"]
+    n = sum(map(len, patch.loops))
+    assert np.array_equal(plain.vertices[n:], fit.vertices[n:])
+    assert not fit.vertices[:n, 2].any()
+    corner = np.concatenate(patch.corner) != 0
+    assert np.array_equal(plain.vertices[:n][corner], fit.vertices[:n][corner])
+    edge = patch.edge_length
+    before, after = (
+        np.linalg.norm(limits(b)[:n] - plain.vertices[:n], axis=1)[~corner] for b in (plain, fit)
+    )
+    assert np.median(before) > 0.01 * edge
+    assert np.median(after) < 1e-6 * edge
+    assert (after < 0.02 * edge).mean() > 0.75
+    assert after.max() < before.max()
+
+
+def limits(body):
+    """Where the vertices of a body of quads come to lie under the rules of Catmull and Clark."""
+    quads, at = body.quads, body.vertices
+    beside, across, faces = np.zeros_like(at), np.zeros_like(at), np.bincount(quads.ravel())[:, None]
+    for k in range(4):
+        # Each edge is met twice.
+        np.add.at(beside, quads[:, k], (at[quads[:, k - 1]] + at[quads[:, (k + 1) % 4]]) / 2)
+        np.add.at(across, quads[:, k], at[quads[:, k - 2]])
+    return (faces**2 * at + 4 * beside + across) / (faces * (faces + 5))
+
+
+def test_triangles_are_not_moved_for_subdivision():
+    patch = gridmesh.mesh_sketch(DRAWINGS["whale"]["points"], triangles=800)
+    assert np.array_equal(gridmesh.inflate(patch).vertices, gridmesh.inflate(patch, subdivided=True).vertices)
+
+
 def test_start_and_direction_and_threads_do_not_matter():
     points = random_blob(7)
     patch = gridmesh.mesh_sketch(points, quads=600)

@@ -99,13 +99,17 @@ pub fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 ///     Drawn corners that turn by more than this (radians) stay sharp.
 /// uv : {"apart", "shared"}
 ///     Where the back lies in the texture: beside the front, as seen from behind, or where the front is.
+/// subdivided : bool
+///     For quads that a subdivision surface (Catmull-Clark) will smooth: the rim lies a little outside the drawing, so
+///     that the smoothed surface's rim lies on it. Vertices at corners of the drawing (`Surface.corner`) stay and are to
+///     be creased, with `profile="peak"` the whole rim. Nothing else changes.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
 ///
 /// Returns
 /// -------
 /// Surface
-///     Watertight; the silhouette has the patch's positions bit for bit, at z = 0. Where front and back have
+///     Watertight; the silhouette has the patch's positions bit for bit, at z = 0, unless `subdivided`. Where front and back have
 ///     equal depths they are exact mirror images. Self-intersections are possible and are counted in
 ///     its report. The same input gives the same bytes.
 ///
@@ -131,7 +135,7 @@ pub fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 #[pyfunction]
 #[pyo3(
     signature = (patch, *, progress = None, **options),
-    text_signature = "(patch, *, depth=1.0, profile='round', curve=None, front=None, back=None, corner_angle=0.6981317007977318, uv='apart', progress=None)"
+    text_signature = "(patch, *, depth=1.0, profile='round', curve=None, front=None, back=None, corner_angle=0.6981317007977318, uv='apart', subdivided=False, progress=None)"
 )]
 pub fn inflate(
     py: Python<'_>,

@@ -164,6 +164,7 @@ pub fn set_inflate(options: &mut InflateOptions, name: &str, value: &Bound<'_, P
             let words = [("apart", UvLayout::Apart), ("shared", UvLayout::Shared)];
             options.uv = argument("'apart' or 'shared'").word(&words)?;
         }
+        "subdivided" => options.subdivided = argument("True or False").bool()?,
         "front" => options.front = argument(side).optional(depths)?,
         "back" => options.back = argument(side).optional(depths)?,
         "corner_angle" => options.corner_angle = argument("a number of radians from 0 to pi").float()?,

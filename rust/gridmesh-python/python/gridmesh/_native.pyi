@@ -225,6 +225,7 @@ def inflate(
     back: _Side = None,
     corner_angle: float = 0.6981317007977318,
     uv: Literal["apart", "shared"] = "apart",
+    subdivided: bool = False,
     progress: _Progress | None = None,
 ) -> Surface: ...
 

@@ -22,6 +22,12 @@ const MISFIT: f64 = 2.0;
 const STARTS: usize = 8;
 /// Pull of the directions, per edge length of contour: how hard the drawing is bent.
 const STRENGTH: f64 = 3.0;
+/// The same for quads, and the price of a change of direction while they are sought, in contours of so many edges and fewer;
+/// in longer ones it grows with them, as misfits do, or there would be more changes the finer the mesh is. Twice the
+/// strength leaves more hand-drawn outlines to straight lattices at 1000 quads, half of it more changes at 10,000.
+const STRENGTH_OF_QUADS: f64 = 4.2;
+const TURN_OF_QUADS: f64 = 3.0;
+pub(crate) const EDGES_OF_QUADS: f64 = 200.0;
 /// So many times the bends that are asked for are sized, and judged again.
 const SIZED: usize = 2;
 /// Log scales below which the outline should not be, relative to a straight lattice: where it is narrowest, and elsewhere.
@@ -31,8 +37,9 @@ const FLOOR: f64 = -0.4;
 const HELD: (f64, usize, usize) = (0.7, 2, 3);
 /// Weight of the sizes that are asked for, and steps for these.
 const ASKED: (f64, usize) = (4.0, 12);
-/// The same of the wish for finer narrow parts on a lattice of squares.
-const QUAD_SIZE: (f64, usize) = (0.1, 3);
+/// The same of the wish for finer narrow parts on a lattice of squares: with a third of it the bend leaves limbs so coarse that
+/// they lose their corners.
+const QUAD_SIZE: (f64, usize) = (0.3, 3);
 /// The largest log of the edge length that 99 % of the edges do not reach, over the median.
 const UNEVEN: f64 = 0.65;
 /// Price of narrow parts that are coarser than on a straight lattice, in turns for a factor of e.
@@ -60,17 +67,23 @@ pub(crate) fn candidates(
     let operators = Operators::new(&ground.carrier, &ground.widths, &tangents, ground.shape, progress)?;
     // What is solved after this is reported as one part.
     let solver = operators.solver(progress.part(0.1, 0.2))?;
-    let beta = STRENGTH * bend;
+    let (strength, turn) = match ground.shape {
+        CellShape::Triangle => (STRENGTH, TURN),
+        CellShape::Quad => {
+            let length: f64 = ground.carrier.lengths().iter().sum();
+            (STRENGTH_OF_QUADS, TURN_OF_QUADS * (length / EDGES_OF_QUADS).max(1.0))
+        }
+    };
+    let beta = strength * bend;
     let robin = operators.robin(beta, progress)?;
     progress.report(0.1)?;
     // On a mirror axis the lattice can only lie in two ways.
     let n = if ground.is_symmetric { 2 } else { STARTS };
     let step = ground.shape.step();
     let starts: Vec<f64> = (0..n).map(|k| step * k as f64 / n as f64).collect();
-    let mut found = operators.rotations(&starts, (beta, &robin), TURN, progress.part(0.1, 0.2))?;
-    let cost = |r: &Rotation| r.turns as f64 + MISFIT * r.misfit;
+    let mut found = operators.rotations(&starts, (beta, &robin), turn, progress.part(0.1, 0.2))?;
     found.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
-    let wide = if ground.shape == CellShape::Quad { count } else { SIZED * count };
+    let wide = if ground.shape == CellShape::Quad { STARTS } else { SIZED * count };
     let mut chosen: Vec<Rotation> = Vec::new();
     for candidate in found {
         if chosen.len() == wide {
@@ -86,47 +99,86 @@ pub(crate) fn candidates(
     let narrowest = narrowest(&ground.carrier, &ground.widths);
     let floor = |&narrow: &bool| if narrow { NARROW_FLOOR } else { FLOOR };
     let floors: Vec<f64> = narrowest.iter().map(floor).collect();
-    let sized: Vec<Result<(f64, Rotation)>> = chosen
+    let sized = |rotation: &Rotation| -> Result<Rotation> {
+        let v = match &wish {
+            Some(wish) => solver.sized(rotation, (beta, &robin), wished, wish)?,
+            None => solver.floored(&ground.carrier, rotation, (beta, &robin), HELD, &floors)?,
+        };
+        Ok(operators.judged(v, turn))
+    };
+    let mirrored = ground.is_symmetric.then(|| Mirrored::new(&ground.carrier));
+    let made = |v: Vec<f64>| bent(ground, &solver, v, mirrored.as_ref(), &narrowest);
+    let straightened = |v: &[f64]| -> Result<Option<Bent>> {
+        let straight = solver.straightened(&ground.carrier, v, (beta, &robin), turn, ground.shape)?;
+        Ok(match made(straight)? {
+            Some(bent) if bent.share == 1.0 => Some(bent),
+            // Better bent as a whole than straight and bent less.
+            less => most(made(v.to_vec())?, less),
+        })
+    };
+    if ground.shape == CellShape::Quad {
+        let priced = |rotation: &Rotation| -> Result<Option<(f64, Bent)>> {
+            let found = straightened(&sized(rotation)?.v)?;
+            let cost_of = |bent: &Bent| cost(&operators.judged(bent.image.v.clone(), turn)) + bent.price;
+            Ok(found.map(|bent| (cost_of(&bent), bent)))
+        };
+        for bent in cheapest(&chosen, count, priced)? {
+            if is_enough(bent, f64::INFINITY)? {
+                break;
+            }
+        }
+        return Ok(());
+    }
+    let expected: Vec<Result<(f64, Rotation)>> = chosen
         .par_iter()
         .map(|rotation| {
-            let v = match &wish {
-                Some(wish) => solver.sized(rotation, (beta, &robin), wished, wish)?,
-                None => solver.floored(&ground.carrier, rotation, (beta, &robin), HELD, &floors)?,
-            };
-            let rotation = operators.judged(v, TURN);
+            let rotation = sized(rotation)?;
             let mut u = solver.scale(&rotation.v)?;
             keep_area(&ground.carrier, &mut u);
             let price = if ground.is_asked() { 0.0 } else { price_of_size(ground, &u, &narrowest) };
             Ok((cost(&rotation) + price, rotation))
         })
         .collect();
-    let mut sized = sized.into_iter().collect::<Result<Vec<(f64, Rotation)>>>()?;
-    if ground.shape == CellShape::Triangle {
-        sized.sort_by(|a, b| a.0.total_cmp(&b.0));
-        sized.truncate(count);
-    }
-    let mirrored = ground.is_symmetric.then(|| Mirrored::new(&ground.carrier));
-    let expected: Vec<f64> = sized.iter().map(|(cost, _)| *cost).collect();
-    for (k, (_, rotation)) in sized.into_iter().enumerate() {
-        let next = expected.get(k + 1).copied().unwrap_or(f64::INFINITY);
-        let made = |v: Vec<f64>| bent(ground, &solver, v, mirrored.as_ref(), &narrowest);
-        let found = if ground.shape == CellShape::Triangle {
-            let straight = solver.straightened(&ground.carrier, &rotation.v, (beta, &robin), TURN)?;
-            match made(straight)? {
-                Some(bent) if bent.share == 1.0 => Some(bent),
-                // Better bent as a whole than straight and bent less.
-                less => most(made(rotation.v)?, less),
-            }
-        } else {
-            made(rotation.v)?
-        };
-        if let Some(bent) = found
+    let mut expected = expected.into_iter().collect::<Result<Vec<(f64, Rotation)>>>()?;
+    expected.sort_by(|a, b| a.0.total_cmp(&b.0));
+    expected.truncate(count);
+    for (k, (_, rotation)) in expected.iter().enumerate() {
+        let next = expected.get(k + 1).map_or(f64::INFINITY, |(cost, _)| *cost);
+        if let Some(bent) = straightened(&rotation.v)?
             && is_enough(bent, next)?
         {
             break;
         }
     }
     Ok(())
+}
+
+/// What a rotation is expected to cost, in turns, its sizes apart.
+fn cost(rotation: &Rotation) -> f64 {
+    rotation.turns as f64 + MISFIT * rotation.misfit
+}
+
+/// The bends that cost least, at most `count`, best first. Rotations are bent in the order of their costs, `count` at a time,
+/// until so many bends cost no more than any of the rest can: where the drawing would overlap itself another
+/// rotation may not have to be scaled down.
+fn cheapest(
+    chosen: &[Rotation],
+    count: usize,
+    bent: impl Fn(&Rotation) -> Result<Option<(f64, Bent)>> + Sync,
+) -> Result<Vec<Bent>> {
+    let mut best: Vec<(f64, Bent)> = Vec::new();
+    for some in chosen.chunks(count) {
+        if best.len() == count && best.iter().all(|(price, _)| *price <= cost(&some[0])) {
+            break;
+        }
+        let found: Vec<Result<Option<(f64, Bent)>>> = some.par_iter().map(&bent).collect();
+        for found in found {
+            best.extend(found?);
+        }
+        best.sort_by(|a, b| a.0.total_cmp(&b.0));
+        best.truncate(count);
+    }
+    Ok(best.into_iter().map(|(_, bent)| bent).collect())
 }
 
 /// The one that is bent more, the first of equals.

@@ -13,6 +13,7 @@ use super::carrier::Carrier;
 use super::conformal::{Solver, keep_area};
 use crate::error::Result;
 use crate::geometry::laplace::Factor;
+use crate::options::CellShape;
 
 /// Rounds of measuring the bent sides and turning them back.
 const ROUNDS: usize = 2;
@@ -24,6 +25,8 @@ const SIGMA: f64 = 6.0;
 /// irregular vertices (median), with these limits 12, with an eighth as the share 14.
 const SHORTEST: (f64, f64) = (30.0, 100.0);
 const SHARE: f64 = 0.2;
+/// The same for quads, whose pairs of turns along a side are two poles each on both sheets.
+const SHORTEST_OF_QUADS: f64 = 8.0;
 /// A side that stays in a strip of this width, in edges, is straight enough: a path on one row follows it.
 const ASIDE: f64 = 1.0;
 /// So near to the ends of a side the outline turns to the next one, in edges: what is off there does not count.
@@ -44,6 +47,7 @@ impl Solver<'_> {
         rotation: &[f64],
         (beta, robin): (f64, &Factor),
         price: f64,
+        shape: CellShape,
     ) -> Result<Vec<f64>> {
         let mut v = rotation.to_vec();
         let mut before = self.scale(&v)?;
@@ -56,14 +60,18 @@ impl Solver<'_> {
             for ((rim, directions), contour) in carrier.rims.iter().zip(&found).zip(self.operators.contours())
             {
                 let at = &positions[rim.start..rim.start + rim.len()];
+                let is_short = |side: f64| is_short(shape, side, rim.length);
                 for (start, count) in sides(&directions.steps, contour.2) {
                     let heading = self.operators.step() * f64::from(directions.steps[start]);
                     let points: Vec<DVec2> = (0..count).map(|j| at[(start + j) % at.len()]).collect();
-                    for (j, off) in off_course(&points, heading, rim.length).into_iter().enumerate() {
+                    for (j, off) in off_course(&points, heading, is_short).into_iter().enumerate() {
                         let i = rim.start + (start + j) % at.len();
                         more[i] = -beta * self.operators.pulls()[i] * off;
                     }
                 }
+            }
+            if more.iter().all(|&off| off == 0.0) {
+                break;
             }
             robin.solve(&mut more, 1)?;
             v.iter_mut().zip(&more).for_each(|(v, more)| *v += more);
@@ -90,11 +98,19 @@ fn sides(steps: &[i32], total: i32) -> Vec<(usize, usize)> {
     (0..starts.len()).map(|k| (starts[k], next(k) - starts[k])).collect()
 }
 
+/// Whether a side stays as it is because it is short, in a contour of some length.
+fn is_short(shape: CellShape, side: f64, contour: f64) -> bool {
+    match shape {
+        CellShape::Triangle => side < SHORTEST.0 || side < SHORTEST.1 && side > SHARE * contour,
+        CellShape::Quad => side < SHORTEST_OF_QUADS,
+    }
+}
+
 /// By how much the chords of a side are off its heading, smoothed, at its vertices; nothing for a side that is
-/// straight enough, or short. `contour` is the length of its contour.
+/// straight enough, or short.
 ///
 /// Near the ends the chords are mirrored, so that smoothing keeps what they add up to.
-fn off_course(points: &[DVec2], heading: f64, contour: f64) -> Vec<f64> {
+fn off_course(points: &[DVec2], heading: f64, is_short: impl Fn(f64) -> bool) -> Vec<f64> {
     let mut arcs = vec![0.0];
     for (k, ends) in points.windows(2).enumerate() {
         arcs.push(arcs[k] + ends[0].distance(ends[1]));
@@ -106,8 +122,7 @@ fn off_course(points: &[DVec2], heading: f64, contour: f64) -> Vec<f64> {
         || points.iter().zip(&arcs).filter(|&(_, &s)| !is_end(s)).map(|(p, _)| direction.perp_dot(*p));
     let (low, high) =
         inner().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-    let is_short = whole < SHORTEST.0 || whole < SHORTEST.1 && whole > SHARE * contour;
-    if is_short || high - low < ASIDE {
+    if is_short(whole) || high - low < ASIDE {
         return vec![0.0; points.len()];
     }
     // Middle, length and how far off.
@@ -163,13 +178,13 @@ mod tests {
                 .map(|k| DVec2::from_angle(angle).rotate(DVec2::new(1.5 * f64::from(k), beside(k))))
                 .collect()
         };
-        const CONTOUR: f64 = 400.0;
-        let askew = off_course(&line(TAU / 6.0 + 0.05, 0.0), TAU / 6.0, CONTOUR);
+        let is_short = |side: f64| is_short(CellShape::Triangle, side, 400.0);
+        let askew = off_course(&line(TAU / 6.0 + 0.05, 0.0), TAU / 6.0, is_short);
         assert!(askew[30..50].iter().all(|off| (off - 0.05).abs() < 1e-9));
-        let jittering = off_course(&line(0.0, 0.2), 0.0, CONTOUR);
+        let jittering = off_course(&line(0.0, 0.2), 0.0, is_short);
         assert!(jittering.iter().all(|off| off.abs() < 0.01), "{jittering:?}");
-        assert!(off_course(&line(0.1, 0.0)[..6], 0.0, CONTOUR).iter().all(|&off| off == 0.0));
-        let within_a_row = off_course(&line(0.008, 0.0), 0.0, CONTOUR);
+        assert!(off_course(&line(0.1, 0.0)[..6], 0.0, is_short).iter().all(|&off| off == 0.0));
+        let within_a_row = off_course(&line(0.008, 0.0), 0.0, is_short);
         assert!(within_a_row.iter().all(|&off| off == 0.0), "{within_a_row:?}");
     }
 }

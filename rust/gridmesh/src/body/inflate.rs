@@ -7,6 +7,7 @@ mod front;
 mod height;
 mod inlets;
 mod lengthen;
+mod limit;
 mod options;
 mod polish;
 mod section;
@@ -24,6 +25,7 @@ use crate::error::{Error, Result};
 use crate::geometry::embed::count_self_intersections;
 use crate::geometry::laplace::Pattern;
 use crate::geometry::topology::Topology;
+use crate::options::CellShape;
 use crate::patch::Patch;
 use crate::progress::{Clock, Progress, Rising};
 use field::Field;
@@ -42,7 +44,8 @@ use twins::Twins;
 /// vertices slide along it until its triangles are even and nearly isotropic.
 ///
 /// Guaranteed:
-/// * the silhouette's x and y are the patch's bit for bit, its z is zero;
+/// * the silhouette's x and y are the patch's bit for bit (unless [`InflateOptions::subdivided`] moves it), its z is
+///   zero;
 /// * front and back have the same x and y, and if their depths agree are exact mirror images;
 /// * the body of a patch that is its own mirror image is one too, up to rounding;
 /// * all vertices lie inside the drawing; every triangle is positive in projection, so that the
@@ -134,9 +137,7 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
     }
     clock.stage("spread");
 
-    let positions = (0..patch.vertices.len())
-        .map(|v| if v < first { patch.vertices[v] } else { front.flat[v] + middle })
-        .collect::<Vec<_>>();
+    let positions = in_plane(patch, &front, middle, options);
     let lift = |data: &[f64], sign: f64, v: usize| {
         let scale = field.linear(data, front.place[v - first]);
         positions[v].extend(sign * scale / depth * front.height[v])
@@ -165,4 +166,14 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
     surface.report.seconds = clock.seconds;
     progress.report(1.0)?;
     Ok(surface)
+}
+
+/// Where the vertices of the front lie in the plane.
+fn in_plane(patch: &Patch, front: &Front, middle: DVec2, options: &InflateOptions) -> Vec<DVec2> {
+    let place = |v: usize| if v < front.first { patch.vertices[v] } else { front.flat[v] + middle };
+    let mut positions: Vec<DVec2> = (0..patch.vertices.len()).map(place).collect();
+    if options.subdivided && patch.cells() == CellShape::Quad {
+        limit::fit_rim(patch, &mut positions, options.profile == Profile::Peak);
+    }
+    positions
 }

@@ -177,7 +177,8 @@ impl Job<'_> {
             }
         };
         let along = symmetry.is_some().then_some(0.0);
-        let options = SketchOptions { edge_length: None, triangles: None, angle: along, ..self.of_bent() };
+        let options =
+            SketchOptions { edge_length: None, triangles: None, angle: along, ..self.of_bent(&bent) };
         let job = self.in_bent_plane(&bent, &options, symmetry);
         let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick(0)).first() else {
             return Ok(None);
@@ -189,11 +190,17 @@ impl Job<'_> {
         Ok(Some((bent, lattice, outline)))
     }
 
-    /// The options in a bent plane: distances count less there, since the vertices come back to the drawing.
-    pub(super) fn of_bent(&self) -> SketchOptions {
+    /// The options in a bent plane: distances count less there, since the vertices come back to the drawing. Those of quads count
+    /// less the more edges the outline has: along a long side they add up to more than turns are worth. Halves, so that
+    /// a drawing that is changed a little keeps its path.
+    pub(super) fn of_bent(&self, bent: &Bent) -> SketchOptions {
         let share = match self.options.cells {
             CellShape::Triangle => BENT_SHARE,
-            CellShape::Quad => 1.0,
+            CellShape::Quad => {
+                let length: f64 = bent.contours().iter().map(ClosedCurve::length).sum();
+                let halvings = libm::log2(length / choose::EDGES_OF_QUADS).round().max(0.0);
+                libm::exp2(-halvings)
+            }
         };
         SketchOptions { closeness: share * self.options.closeness, ..self.options.clone() }
     }
@@ -237,7 +244,7 @@ impl Job<'_> {
             triangles: None,
             angle: Some(lattice.angle),
             origin: Some(lattice.origin),
-            ..self.of_bent()
+            ..self.of_bent(&bent)
         };
         let job = self.in_bent_plane(&bent, &options, None);
         let angle = lattice.angle;

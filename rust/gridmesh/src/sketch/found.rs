@@ -16,6 +16,10 @@ const SLIGHT: f64 = 0.1;
 /// What a fault of one costs, in turns, where a bent lattice is compared with a straight one.
 const TURNS_OF_FAULT: f64 = 12.0;
 
+/// Of many corners that quads cut off each counts less: together no more than so many. A rugged coast has dozens of corners
+/// finer than its quads, and which of them are lost on a lattice is chance; counted each they would decide on it alone.
+const MOST_CORNERS: f64 = 4.0;
+
 /// Where a patch on a bent lattice has corners below this angle, 20 degrees, others are placed too.
 const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
@@ -74,7 +78,11 @@ impl Found {
     /// Cost, faults, starved triangles, long edges and lost corners in turns.
     pub(crate) fn score(&self) -> f64 {
         let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
-        let corners = TURNS_OF_CORNER * self.placed.worn_corners as f64;
+        let worn = self.placed.worn_corners as f64;
+        let corners = match self.placed.patch.cells() {
+            CellShape::Triangle => TURNS_OF_CORNER * worn,
+            CellShape::Quad => TURNS_OF_CORNER * MOST_CORNERS * worn / (MOST_CORNERS + worn),
+        };
         let shape = TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved();
         self.outline.cost + price + shape + TURNS_OF_LENGTH * self.overlong() + corners
     }

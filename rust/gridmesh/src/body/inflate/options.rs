@@ -38,6 +38,10 @@ pub struct InflateOptions {
     pub corner_angle: f64,
     /// Where the back lies in the texture.
     pub uv: UvLayout,
+    /// Of quads that will be subdivided by the rules of Catmull and Clark: the rim lies a little outside the
+    /// drawing, so that the limit surface passes through the drawing where the rim's vertices were. Corners stay, and are
+    /// to be creased; so is the whole rim of [`Profile::Peak`]. Triangles are left as they are.
+    pub subdivided: bool,
 }
 
 impl Default for InflateOptions {
@@ -50,6 +54,7 @@ impl Default for InflateOptions {
             curve: None,
             corner_angle: 40f64.to_radians(),
             uv: UvLayout::Apart,
+            subdivided: false,
         }
     }
 }
