@@ -171,7 +171,12 @@ OPS: Mapping[str, Mapping[str, Param]] = {
         ),
         "smooth": Param("number", "how far along the outline pixels are smoothed (1)", least=0, most=10),
         "min_area": Param("number", "islands and holes of fewer pixels are left out (16)", least=0, most=1e9),
-        "margin": Param("number", "pixels that the outline is moved outward (1)", least=0, most=1000),
+        "margin": Param(
+            "number",
+            "pixels that the outline is moved outward (1; of a body, where it is opaque, 0)",
+            least=0,
+            most=1000,
+        ),
         "holes": Param("switch", "holes of the picture stay open (true)"),
         "bones": Param("file", "JSON file of bones that get weights, for .json and .tscn"),
         **BODY,

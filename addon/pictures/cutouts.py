@@ -20,8 +20,11 @@ FINER = (1.0, 0.7, 0.5, 0.35, 0.25)
 _SQUARE = 0.75
 """How far whole pixels may reach over the outline of what they cover, at most."""
 
-CUT_OFF = 0.5
-"""Parts of which this many pixels stay outside are meshed finer."""
+CUT_OFF = 0.4
+"""Parts of whose outlines this many pixels stay outside, beyond the slack, are meshed finer: middles of pixels lie deeper inside."""
+
+EMPTY = 0.03
+"""Likewise parts whose mesh is larger than the outline by more than this share."""
 
 _TRACING = 0.3
 """Part of the time that tracing takes; the rest is meshing."""
@@ -42,6 +45,8 @@ class Options:
     smooth: float = 1.0
     min_area: float = 16.0
     margin: float = 0.0
+    cover: bool = False
+    """Without a margin too, edges of the mesh cut nothing off."""
     holes: bool = True
     triangles: int = 1000
     """Of one side, shared by the parts according to their area."""
@@ -194,7 +199,7 @@ def _surfaces(
     if body is not None and "corner_angle" in body:
         options = {**options, "corner_angle": body["corner_angle"]}
 
-    slack = None if chosen.margin <= 0 else max(0.0, chosen.margin - _SQUARE)
+    slack = max(0.0, chosen.margin - _SQUARE) if chosen.margin > 0 or chosen.cover else None
 
     def surface(at: int, outline: np.ndarray, holes: list[np.ndarray]) -> Any:
         part = part_of(progress, at / len(parts), (at + 1) / len(parts))
@@ -223,11 +228,18 @@ def _patch(
     patch = gridmesh.cover_sketch(
         outline, holes, slack=slack, progress=part_of(progress, 0.0, 0.7), **options
     )
-    if patch.report["outside"] <= CUT_OFF:
+    drawn = _area(outline) + sum(map(_area, holes))
+
+    def lacks(one: Any) -> tuple[float, float]:
+        """What is cut off, then the share that is empty; each only from where it shows."""
+        empty = sum(_area(one.vertices[loop]) for loop in one.loops) / drawn - 1
+        return max(one.report["outside"], CUT_OFF), max(empty, EMPTY)
+
+    if lacks(patch) == (CUT_OFF, EMPTY):
         return patch
     finer = {**options, "edge_length": FINER[1] * options["edge_length"]}
     other = gridmesh.cover_sketch(outline, holes, slack=slack, progress=part_of(progress, 0.7, 1.0), **finer)
-    return min(patch, other, key=lambda one: one.report["outside"])
+    return min(patch, other, key=lacks)
 
 
 def _filled(traced: list[tuple[np.ndarray, list[np.ndarray]]]) -> list[tuple[np.ndarray, list[np.ndarray]]]:

@@ -110,6 +110,14 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
         soft_max=20.0,
         max=1000.0,
     )
+    body_margin: FloatProperty(
+        name="Margin",
+        description="How far the outline is moved outward, in pixels; the margin of a body is opaque",
+        default=0.0,
+        min=0.0,
+        soft_max=20.0,
+        max=1000.0,
+    )
     use_holes: BoolProperty(
         name="Holes",
         description="Leave holes open; without, closed lines are filled",
@@ -203,7 +211,7 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
         column.prop(self, "use_threshold")
         if self.use_threshold:
             column.prop(self, "threshold")
-        column.prop(self, "margin")
+        column.prop(self, "margin" if self.body_options() is None else "body_margin")
         column.prop(self, "smooth")
         column.prop(self, "min_area")
         column.prop(self, "use_holes")
@@ -241,16 +249,18 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
     def _options(self, transparent: bool) -> Options:
         paper = self.background == "PAPER" or (self.background == "AUTO" and not transparent)
         given = self.threshold if self.use_threshold else None
+        body = self.body_options()
         return Options(
             paper=paper,
             threshold=given if given is not None or paper else 0.5,
             smooth=self.smooth,
             min_area=self.min_area,
-            margin=self.margin,
+            margin=self.margin if body is None else self.body_margin,
+            cover=body is not None,
             holes=self.use_holes,
             triangles=self.triangles,
             quads=self.quads if self.cells == "QUADS" else None,
-            body=self.body_options(),
+            body=body,
         )
 
     def _place(

@@ -64,6 +64,9 @@ GERMAN = {
     "How far along the outline is looked to remove what pixels put in; 0 keeps it as it is": (
         "Wie weit am Umriss entlang geschaut wird, um zu entfernen, was von den Pixeln kommt; 0 lässt ihn, wie er ist"
     ),
+    "How far the outline is moved outward, in pixels; the margin of a body is opaque": (
+        "Wie weit der Umriss nach außen rückt, in Pixeln; der Rand eines Körpers ist undurchsichtig"
+    ),
     "How far the outline is moved outward, in pixels; from 1 on the mesh covers pixels whole, but for the finest tips": (
         "Wie weit der Umriss nach außen rückt, in Pixeln; ab 1 bedeckt das Mesh ganze Pixel, bis auf die feinsten Spitzen"
     ),

@@ -114,7 +114,7 @@ def test_a_sprite_lies_exactly_over_the_picture_of_an_empty(tmp_path):
 
 def test_a_body_is_closed_and_front_and_back_have_the_picture(tmp_path):
     empty(picture(tmp_path, drawing(disk(20, (40, 30)))))
-    ob = run(shape="BODY", triangles=300, margin=0.0)
+    ob = run(shape="BODY", triangles=300)
     co, uv, at = arrays(ob.data)
     edges = np.sort(np.stack([at.reshape(-1, 3), np.roll(at.reshape(-1, 3), -1, axis=1)], axis=2), axis=2)
     _, counts = np.unique(edges.reshape(-1, 2), axis=0, return_counts=True)
@@ -124,6 +124,51 @@ def test_a_body_is_closed_and_front_and_back_have_the_picture(tmp_path):
     assert co[at, :2] / pixel == pytest.approx(uv * SIZE - np.array(SIZE) / 2, abs=1e-3)
     volume = np.einsum("ij,ij->i", co[at[0::3]], np.cross(co[at[1::3]], co[at[2::3]])).sum() / 6
     assert volume > 0
+
+
+def test_the_margin_of_a_body_is_its_own(tmp_path):
+    """It is opaque: by default there is none, and the silhouette is that of the picture."""
+    source = empty(picture(tmp_path, drawing(disk(20, (40, 30)))))
+    for options, radius in (({}, 20), ({"margin": 5.0}, 20), ({"body_margin": 3.0}, 23)):
+        source.hide_set(False)
+        select(source)
+        _, uv, _ = arrays(run(shape="BODY", triangles=300, **options).data)
+        away = np.hypot(*(uv * SIZE - [40, 30]).T)
+        assert radius - 0.05 < away.max() < radius + 0.5, options
+
+
+def test_all_are_selected_scaled_updated_and_the_update_is_undone(tmp_path):
+    for at, name in ((40, "one.png"), (50, "two.png")):
+        picture(tmp_path, drawing(disk(14, (at, 30))), name)
+    files = [{"name": "one.png"}, {"name": "two.png"}]
+    run(directory=str(tmp_path), files=files, shape="SHEET", triangles=200)
+    bpy.ops.object.select_all(action="SELECT")
+    made = [ob.name for ob in bpy.context.selected_objects]
+    assert len(made) == 2
+    bpy.ops.ed.undo_push(message="made")
+    for name in made:
+        bpy.data.objects[name].scale *= 2.5
+    places = [tuple(bpy.data.objects[name].location) for name in made]
+    other = bpy.data.images.new("other", *SIZE, alpha=True)
+    for name in ("one.png", "two.png"):
+        write(other, drawing(disk(9, (45, 35))), tmp_path / name)
+    bpy.ops.ed.undo_push(message="scaled")
+    counts = [len(bpy.data.objects[name].data.polygons) for name in made]
+    assert bpy.ops.object.gridmesh_update_image() == {"FINISHED"}
+    bpy.ops.ed.undo_push(message="updated")
+    for name, place in zip(made, places, strict=True):
+        ob = bpy.data.objects[name]
+        _, uv, _ = arrays(ob.data)
+        assert np.hypot(*(uv * SIZE - [45, 35]).T).max() == pytest.approx(10, abs=0.7)
+        assert tuple(ob.scale) == (2.5, 2.5, 2.5)
+        assert tuple(ob.location) == place
+    bpy.ops.ed.undo()
+    assert [len(bpy.data.objects[name].data.polygons) for name in made] == counts
+    for name in made:
+        ob = bpy.data.objects[name]
+        _, uv, _ = arrays(ob.data)
+        assert np.hypot(*(uv * SIZE - [45, 35]).T).max() > 12
+        assert tuple(ob.scale) == (2.5, 2.5, 2.5)
 
 
 def test_an_image_plane_keeps_its_place(tmp_path):

@@ -128,3 +128,28 @@ def test_hostile_meshes_and_bones():
         is_partition(gridmesh.bone_weights(flat, triangles, bones))
         is_partition(gridmesh.bone_weights(points, triangles, bones))
     assert gridmesh.bone_weights(np.zeros((0, 2)), np.zeros((0, 3), int), one).shape == (0, 1)
+
+
+def test_where_the_ends_of_a_chain_pull_the_bone_between_does_too():
+    """A ring closed by what lies between the first and the last bone: the mean of turns by 0 and 120 degrees shrank that to half, and folded it."""
+    turns = np.linspace(0, 2 * np.pi, 200, endpoint=False)
+    circle = np.column_stack([np.cos(turns), np.sin(turns)])
+    patch = gridmesh.mesh_sketch(10 * circle, [6 * circle[::-1]], triangles=500)
+    chain = np.array([[-8, 0], [-4, 6.9], [4, 6.9], [8, 0]])
+    bones = np.stack([chain[:-1], chain[1:]], axis=1)
+    weights = gridmesh.bone_weights(patch.vertices, patch.triangles, bones)
+    is_partition(weights)
+    low = patch.vertices[:, 1] < -6
+    even = low & (np.abs(patch.vertices[:, 0]) < 1)
+    assert weights[even, 1].min() > 0.35
+    assert np.abs(weights[even, 0] - weights[even, 2]).max() < 0.35
+    for turn in (-0.5, 0.5, 1.0):
+        knee = bent(chain[2:3], np.ones((1, 1)), [turn], [chain[1]])[0]
+        points = patch.vertices
+        last = bent(points, np.ones((len(points), 1)), [2 * turn], [chain[2]]) + knee - chain[2]
+        moved = bent(points, weights[:, :2], [0, turn], [chain[0], chain[1]]) + weights[:, 2:] * last
+        assert folded(moved, patch.triangles) == 0, turn
+    # Bones that do not touch have none between them.
+    apart = np.array([[[-8, 0], [-5, 5]], [[-2, 8], [2, 8]], [[5, 5], [8, 0]]])
+    weights = gridmesh.bone_weights(patch.vertices, patch.triangles, apart)
+    assert weights[even, 1].max() < 0.1

@@ -4,6 +4,8 @@ import gridmesh
 import numpy as np
 import pytest
 from checks import distance_to_curve
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from rasters import coverage, placed, sampled
 from sketches import DRAWINGS
 
@@ -113,3 +115,68 @@ def lengths_of(cutout):
 def test_no_edge_is_shorter_than_a_third_of_the_mean(name, body):
     lengths = lengths_of(sprite(alpha_of(name), margin=1.0, body=body))
     assert lengths.min() >= lengths.mean() / 3
+
+
+def bar(start, end, width):
+    """A straight limb with round ends."""
+    start, end = np.array(start, float), np.array(end, float)
+    along = (end - start) / np.hypot(*(end - start))
+    turns = np.arctan2(along[1], along[0]) + np.linspace(-np.pi / 2, np.pi / 2, 12)
+    cap = width / 2 * np.column_stack([np.cos(turns), np.sin(turns)])
+    return np.vstack([end + cap, start - cap])
+
+
+def is_whole(alpha, cutout):
+    """No opaque pixel has its middle outside."""
+    size = len(alpha)
+    return not ((alpha >= 0.5) & (covered_by(cutout, size) < 0.5)).any()
+
+
+@pytest.mark.parametrize("gap", [2.2, 3.0, 4.5])
+@pytest.mark.parametrize("turn", [0.0, 0.5, 1.2])
+def test_both_walls_of_an_inlet_are_covered(gap, turn):
+    """What one wall left outside was measured from the other, across the inlet, and a vertex of that was moved to it."""
+    c, s = np.cos(turn), np.sin(turn)
+    bent = [
+        [-20, -14],
+        [20, -14],
+        [20, 16],
+        [gap / 2, 16],
+        [gap / 2 + 0.6, 2],
+        [-0.6 - gap / 2, -2],
+        [-gap / 2, 18],
+        [-20, 18],
+    ]
+    alpha = coverage([np.array(bent) @ [[c, s], [-s, c]] + 32], 64, 64)
+    cutout = sprite(alpha, margin=1.0)
+    assert is_whole(alpha, cutout)
+    assert (areas(cutout) > 0).all()
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6))
+def test_figures_with_thin_limbs_are_covered_whole(seed):
+    random = np.random.default_rng(seed)
+    turns = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    contours = [np.column_stack([np.cos(turns), np.sin(turns)]) * random.uniform(7, 11) + 32]
+    for _ in range(random.integers(2, 7)):
+        way = random.uniform(0, 2 * np.pi)
+        end = 32 + random.uniform(16, 27) * np.array([np.cos(way), np.sin(way)])
+        knee = 32 + 14 * np.array([np.cos(way + 0.3), np.sin(way + 0.3)])
+        width = random.uniform(1.5, 6)
+        contours += [bar([32, 32], knee, width), bar(knee, end, width)]
+    alpha = np.max([coverage([contour], 64, 64) for contour in contours], axis=0)
+    for body in (None, {}):
+        cutout = sprite(alpha, margin=1.0, body=body)
+        assert is_whole(alpha, cutout)
+        lengths = lengths_of(cutout)
+        assert lengths.min() >= lengths.mean() / 3
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_body_without_a_margin_has_the_silhouette_of_its_picture(name):
+    alpha = alpha_of(name)
+    cutout = sprite(alpha, margin=0.0, cover=True, body={})
+    inside, opaque = covered_by(cutout, 96) >= 0.5, alpha >= 0.5
+    assert (inside & opaque).sum() > 0.97 * (inside | opaque).sum()
+    assert (opaque & ~inside).sum() <= 0.002 * opaque.sum()

@@ -7,6 +7,8 @@ import gridmesh
 import numpy as np
 import pytest
 from checks import check_patch, distance_to_curve
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from rasters import corners, coverage, dense, likeness, placed, sampled
 from sketches import DRAWINGS, SHAPES
 
@@ -322,3 +324,67 @@ def test_a_margin_leaves_no_slits():
     assert holes == []
     assert len(gridmesh.mesh_sketch(outline, triangles=200).triangles) < 230
     assert area(outline) > 60 * 60
+
+
+def around(shape, turn, at):
+    c, s = np.cos(turn), np.sin(turn)
+    return shape @ [[c, s], [-s, c]] + at
+
+
+def triangle(degrees, length=40.0):
+    """An isosceles triangle with its tip first."""
+    half = length * np.tan(np.radians(degrees / 2))
+    return np.array([[length / 2, 0], [-length / 2, half], [-length / 2, -half]])
+
+
+def limb(degrees, radius, length=40.0):
+    """Straight sides that meet at an angle, and the round end that they touch."""
+    half = np.radians(degrees / 2)
+    turns = np.linspace(half - np.pi / 2, np.pi / 2 - half, 41)
+    end = radius * np.column_stack([np.cos(turns), np.sin(turns)])
+    back = length * np.array([-np.cos(half), np.sin(half)])
+    return np.vstack([end[0] + back * [1, -1], end, end[-1] + back]) + [length / 2, 0]
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(10, 90), st.floats(0, 2 * np.pi), st.floats(-0.5, 0.5), st.floats(-0.5, 0.5))
+def test_tips_come_back_at_any_angle_and_place(degrees, turn, x, y):
+    drawn = around(triangle(degrees), turn, [60 + x, 60 + y])
+    picture = np.rint(255 * coverage([drawn], 120, 120)).astype(np.uint8)
+    # Without a least area too: what the level leaves of a tip beyond a place where it is narrow is no island.
+    [(outline, holes)] = gridmesh.trace_image(picture, min_area=0)
+    assert holes == []
+    assert np.hypot(*(outline - drawn[0]).T).min() < 0.7
+    away = distance_to_curve(dense(outline, 1.0), drawn)
+    assert np.quantile(away, 0.95) < 0.35
+    assert away.max() < 0.7
+
+
+@pytest.mark.parametrize("turn", [0.2, 1.1, 2.6])
+def test_tips_of_what_is_not_covered_come_back_too(turn):
+    wedge = around(triangle(14), turn, [60.3, 59.8])
+    picture = np.rint(255 * (1 - coverage([wedge], 120, 120))).astype(np.uint8)
+    traced = gridmesh.trace_image(picture, min_area=0)
+    [(_, [hole])] = traced
+    assert np.hypot(*(hole - wedge[0]).T).min() < 0.7
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(0.1, 40), st.floats(1, 4), st.floats(0, 2 * np.pi), st.floats(-0.5, 0.5))
+def test_round_ends_stay_round(degrees, radius, turn, x):
+    drawn = around(limb(degrees, radius), turn, [60 + x, 60.2])
+    picture = np.rint(255 * coverage([drawn], 120, 120)).astype(np.uint8)
+    [(outline, _)] = gridmesh.trace_image(picture, min_area=0)
+    end = around(np.array([[20 + radius, 0.0]]), turn, [60 + x, 60.2])[0]
+    axis = np.array([np.cos(turn), np.sin(turn)])
+    assert ((outline - end) @ axis).max() < 0.7
+
+
+def test_thin_blurred_tips_are_not_longer_than_they_are():
+    drawn = around(limb(20, 0.6), 0.4, [60.2, 60.1])
+    alpha = coverage([drawn], 120, 120)
+    for _ in range(2):
+        alpha = (alpha + np.roll(alpha, 1, 0) + np.roll(alpha, 1, 1) + np.roll(alpha, (1, 1), (0, 1))) / 4
+    traced = gridmesh.trace_image(np.rint(255 * alpha).astype(np.uint8))
+    end = around(np.array([[20.6, 0.0]]), 0.4, [61.2, 59.1])[0]
+    assert max(((outline - end) @ [np.cos(0.4), np.sin(0.4)]).max() for outline, _ in traced) < 1.0

@@ -26,6 +26,7 @@ import time
 from pathlib import Path
 
 import bpy
+import gridmesh
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -77,6 +78,9 @@ def measure(pixels: np.ndarray, triangles: int, body: bool) -> dict[str, float]:
     loops = [cutout.vertices[loop, :2] for loop in cutout.silhouette]
     inside = sampled(loops, width, height, 8)[::-1].reshape(height, 8, width, 8).mean(axis=(1, 3))
     alpha = pixels[..., 3]
+    outlines = gridmesh.trace_image(pixels, threshold=0.5, margin=1.0, min_area=0.0)
+    drawn = [contour for outline, holes in outlines for contour in [outline, *holes]]
+    around = sampled(drawn, width, height, 8)[::-1].reshape(height, 8, width, 8).mean(axis=(1, 3))
     edges = np.sort(np.concatenate([cutout.faces[:, [a, a - 1]] for a in range(3)]), axis=1)
     edges, counts = np.unique(edges, axis=0, return_counts=True)
     ends = cutout.vertices[edges]
@@ -88,6 +92,7 @@ def measure(pixels: np.ndarray, triangles: int, body: bool) -> dict[str, float]:
         "cut": int(((alpha >= 0.5) & (inside < 0.5)).sum()),
         "opaque_cut": float(np.maximum((alpha >= 0.5) - inside, 0).sum() / (alpha >= 0.5).sum()),
         "empty": float(inside[alpha < 0.02].sum() / inside.sum()),
+        "margin": float(around[alpha < 0.02].sum() / around.sum()),
         "shortest": float(lengths.min() / lengths.mean()),
         "closed": bool((counts == 2).all()),
     }
@@ -131,9 +136,12 @@ def tell(what: str, results: dict[str, dict[str, float]], refused: dict[str, str
     print(
         f"  opaque area outside: mean {100 * columns['opaque_cut'].mean():.3f} %, most {100 * columns['opaque_cut'].max():.2f} %"
     )
-    print(
-        f"  empty area: mean {100 * columns['empty'].mean():.2f} %, most {100 * columns['empty'].max():.2f} %"
-    )
+    for what, key in (("empty area", "empty"), ("that of the outline with its margin", "margin")):
+        share = 100 * columns[key]
+        print(
+            f"  {what}: mean {share.mean():.2f} %, most {share.max():.2f} %, over 3 % in {(share > 3).sum()}"
+        )
+    print(f"  the mesh's own: most {100 * (columns['empty'] - columns['margin']).max():.2f} %")
     short = columns["shortest"]
     print(f"  shortest edge over the mean: least {short.min():.3f}, below a third in {(short < 1 / 3).sum()}")
     print(f"  closed: {columns['closed'].sum():.0f}; triangles: median {np.median(columns['triangles']):.0f}")

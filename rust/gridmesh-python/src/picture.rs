@@ -54,7 +54,7 @@ const PAPER: &str = "an (h, w) array of brightness or an (h, w, 3) or (h, w, 4) 
 ///     Largest first: an (n, 2) float64 array, counter-clockwise, and a list of clockwise ones, in pixels, x to the
 ///     right, y up, the origin at the lower left corner of the picture. `mesh_sketch` takes each pair: no contour
 ///     meets itself or another one. Points lie within half a pixel of the level line, corners where the sides
-///     meet that lead to them, at most two pixels from it. An anti-aliased edge is found where it was drawn. Empty
+///     meet that lead to them, and so do tips finer than a pixel, as far as the coverage says that they go. An anti-aliased edge is found where it was drawn. Empty
 ///     where nothing is covered. Attributes: `dropped` (islands left out), `filled` (holes left out),
 ///     `threshold` (the one used).
 ///

@@ -1,15 +1,17 @@
 //! Patches that cover what was drawn: outlines moved outward where the edges of a mesh cut them off.
 //!
 //! [`cover_sketch`] meshes an outline a few times, each time moved outward where the mesh of before left it outside (`outside`), then
-//! moves ends of short edges apart (`short`) and single vertices to tips (`tips`).
+//! moves ends of short edges apart (`short`), single vertices to tips (`tips`), and others back into inlets (`tight`).
 
+mod boundary;
 mod outside;
 mod short;
+mod tight;
 mod tips;
 
 use glam::DVec2;
 
-use crate::cover::outside::LoopEdges;
+use crate::cover::outside::{Followers, LoopEdges, loop_of};
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::union::{nearest_source, outer_outline};
@@ -73,20 +75,22 @@ pub fn cover_sketch(
     };
     let fine: Vec<Vec<DVec2>> =
         contours.iter().map(|contour| dense(contour, edge_length / POINTS_OF_EDGE)).collect();
-    let (mut best, mut least) = widened(first, &fine, slack, options, &part)?;
+    let Followed { sketch: mut best, followers, mut least } = widened(first, &fine, slack, options, &part)?;
     let patch = &mut best.patch;
     // Boundary vertices may move where no more is cut off by that than could stay outside anyway.
     let most = least.max(ENOUGH * edge_length);
     let may = |patch: &Patch, vertex: usize| {
         let k = patch.loops.iter().rposition(|contour| contour.start as usize <= vertex).unwrap_or(0);
-        let edges = LoopEdges::new(patch, k);
-        fine[k].iter().all(|&point| edges.outside(point, slack) <= most)
+        let edges = loop_of(patch, k);
+        let mut near = followers[k].points_near(vertex - patch.loops[k].start as usize);
+        near.all(|at| followers[k].beyond(edges, at, fine[k][at]) - slack <= most)
     };
     short::lengthened(patch, may, progress.part(1.0, 1.0))?;
-    least = largest(&needs(&fine, patch, slack));
+    least = largest(&needs(&fine, patch, &followers, slack));
     if least > ENOUGH * edge_length {
-        least = tips::moved(patch, &fine, slack);
+        least = tips::moved(patch, &fine, &followers, slack);
     }
+    tight::pulled(patch, &fine, &followers, slack, progress.part(1.0, 1.0))?;
     best.report.min_angle = min_angle(patch);
     for (contour, own) in
         best.patch.loops.iter_mut().zip(std::iter::once(outline).chain(holes.iter().map(Vec::as_slice)))
@@ -100,14 +104,29 @@ pub fn cover_sketch(
     Ok(Covering { sketch: best, outside: least })
 }
 
-/// The best of a few patches of wider and wider outlines, and how far the drawing reaches beyond it.
+/// A patch with what follows the points of each contour.
+struct Followed {
+    sketch: Sketch,
+    followers: Vec<Followers>,
+    /// How far the drawing reaches beyond it.
+    least: f64,
+}
+
+impl Followed {
+    /// For a patch made of contours `meshed` that have the points of those of the drawing, moved.
+    fn followers<'m>(patch: &Patch, meshed: impl Iterator<Item = &'m Vec<DVec2>>) -> Vec<Followers> {
+        meshed.enumerate().map(|(k, contour)| Followers::new(patch, k, contour)).collect()
+    }
+}
+
+/// The best of a few patches of wider and wider outlines.
 fn widened<'p>(
     first: Sketch,
     fine: &[Vec<DVec2>],
     slack: f64,
     options: &SketchOptions,
     part: &impl Fn(usize) -> Progress<'p>,
-) -> Result<(Sketch, f64)> {
+) -> Result<Followed> {
     let reach = first.patch.lattice.edge_length;
     let kept = first.kept.clone();
     let options = SketchOptions {
@@ -123,9 +142,9 @@ fn widened<'p>(
         ..options.clone()
     };
     let mut moved: Vec<Vec<f64>> = fine.iter().map(|contour| vec![0.0; contour.len()]).collect();
-    let mut needs = needs(fine, &first.patch, slack);
-    let mut least = largest(&needs);
-    let mut best = first;
+    let followers = Followed::followers(&first.patch, fine.iter());
+    let mut needs = needs(fine, &first.patch, &followers, slack);
+    let mut best = Followed { sketch: first, followers, least: largest(&needs) };
     for round in 1..=ROUNDS {
         if largest(&needs) <= ENOUGH * reach {
             break;
@@ -145,20 +164,21 @@ fn widened<'p>(
             // Wider, it meets itself or is too thin elsewhere: the best so far serves.
             Err(_) => break,
         };
-        needs = self::needs(fine, &sketch.patch, slack);
+        let followers = Followed::followers(&sketch.patch, std::iter::once(&outer).chain(&wider));
+        needs = self::needs(fine, &sketch.patch, &followers, slack);
         let most = largest(&needs);
-        if most < least {
-            (least, best) = (most, sketch);
+        if most < best.least {
+            best = Followed { sketch, followers, least: most };
         }
     }
-    Ok((best, least))
+    Ok(best)
 }
 
 /// For each contour how far its points lie outside the patch, less the slack; 0 inside.
-fn needs(fine: &[Vec<DVec2>], patch: &Patch, slack: f64) -> Vec<Vec<f64>> {
+fn needs(fine: &[Vec<DVec2>], patch: &Patch, followers: &[Followers], slack: f64) -> Vec<Vec<f64>> {
     let of = |k: usize| {
-        let edges = LoopEdges::new(patch, k);
-        fine[k].iter().map(|&point| edges.outside(point, slack)).collect()
+        let edges = LoopEdges::new(patch, k, &followers[k]);
+        fine[k].iter().enumerate().map(|(at, &point)| edges.outside(at, point, slack)).collect()
     };
     (0..fine.len()).map(of).collect()
 }

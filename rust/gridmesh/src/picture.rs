@@ -2,7 +2,7 @@
 //!
 //! [`trace_image`] conducts: crossings of the level between neighbouring pixels form closed chains
 //! (`levels`, marching squares), each crossing is moved to where the coverage of its column puts the edge
-//! (`heights`), corners are where lines through both sides meet (`corners`), the rest is smoothed within
+//! (`heights`), tips finer than a pixel (`tips`) and corners are where lines through both sides meet (`corners`), the rest is smoothed within
 //! what pixels can tell apart (`smooth`), points that add nothing are dropped (`simplify`), and lines that
 //! came to cross go back to their crossings (`apart`). `margin` moves outlines outward, [`paper`] reads
 //! drawings on paper, [`decode`] files.
@@ -19,6 +19,7 @@ pub mod paper;
 mod simplify;
 mod smooth;
 mod threshold;
+mod tips;
 
 use rayon::prelude::*;
 
@@ -26,6 +27,8 @@ pub use crate::drawing::combine::Part;
 use crate::error::{Error, Result, told};
 pub use crate::picture::field::{MAX_PIXELS, Picture};
 use crate::picture::islands::Island;
+use crate::picture::levels::Crossing;
+use crate::picture::tips::Tip;
 use crate::progress::{Progress, Rising};
 
 /// Where the outline runs between nothing (0) and full coverage (1).
@@ -36,6 +39,9 @@ pub enum Threshold {
     /// At the value that parts the pixels best into two groups (Otsu 1979).
     Auto,
 }
+
+/// Thresholds this near to a half follow the edges that were drawn.
+const HALF: f64 = 0.05;
 
 /// Options of [`trace_image`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +80,7 @@ pub struct Traced {
 ///
 /// Coordinates are pixels, x to the right, y up, the origin at the lower left corner of the picture; outside it
 /// nothing is covered. Points lie within half a pixel of the level line of the pixels' centres, corners where
-/// the two sides meet that lead to them, at most two pixels from it. An edge that was drawn with
+/// the two sides meet that lead to them, and so do tips finer than a pixel, as far as the coverage says that they go. An edge that was drawn with
 /// anti-aliasing is found where it was drawn. No contour meets itself or another one, so each part can be
 /// meshed. With a margin of 1 or more every pixel of the parts (each whole square of at least the threshold)
 /// lies inside; the outline is moved a little more where that needs it. Gaps that a margin leaves narrower than
@@ -141,7 +147,7 @@ fn refine(
     let contours: Vec<_> = islands.iter().flat_map(|island| &island.contours).collect();
     let total = contours.iter().map(|contour| contour.len()).sum::<usize>().max(1) as f64;
     let (rising, done) = (Rising::new(progress.part(0.0, 0.7)), std::sync::atomic::AtomicUsize::new(0));
-    let mut lines = contours
+    let refined = contours
         .par_iter()
         .map(|contour| {
             let before = done.fetch_add(contour.len(), std::sync::atomic::Ordering::Relaxed);
@@ -150,23 +156,60 @@ fn refine(
                 if rising.report(so_far / total) { Ok(()) } else { Err(Error::Cancelled) }
             };
             report(0.0)?;
-            let raw = levels::points(picture, threshold, contour);
-            if smoothing == 0.0 {
-                return Ok(apart::Line::raw(raw));
-            }
-            let samples = heights::samples(picture, threshold, contour, &raw);
-            let noise = heights::noise(picture, contour);
-            let samples = corners::restore(samples, noise, report)?;
-            let samples = smooth::smooth(samples, smoothing, noise, report)?;
-            let kept = simplify::simplify(samples);
-            Ok(apart::Line::new(raw, kept))
+            line(picture, threshold, contour, smoothing, report)
         })
         .collect::<Result<Vec<_>>>()?;
+    let (lines, tips): (Vec<_>, Vec<_>) = refined.into_iter().unzip();
+    let tips = tips.concat();
+    // Pieces of a tip beyond a narrow place are in it.
+    let is_piece = |island: &Island, k: usize, line: &apart::Line| {
+        let is_bare = k > 0 || island.contours.len() == 1;
+        is_bare
+            && island.contours[k].len() <= tips::PIECE
+            && tips.iter().any(|tip| tip.holds(line.crossings()))
+    };
+    let mut counts = vec![0; islands.len()];
+    let mut lines: Vec<apart::Line> = islands
+        .iter()
+        .enumerate()
+        .flat_map(|(at, island)| (0..island.contours.len()).map(move |k| (at, island, k)))
+        .zip(lines)
+        .filter(|((_, island, k), line)| !is_piece(island, *k, line))
+        .map(|((at, _, _), line)| {
+            counts[at] += 1;
+            line
+        })
+        .collect();
     apart::separate(&mut lines, progress.part(0.7, 1.0))?;
     let mut points = lines.into_iter().map(apart::Line::into_points);
-    let part = |island: &Island| Part {
+    let part = |count: usize| Part {
         outline: points.next().unwrap_or_default(),
-        holes: points.by_ref().take(island.contours.len() - 1).collect(),
+        holes: points.by_ref().take(count - 1).collect(),
     };
-    Ok(islands.iter().map(part).collect())
+    Ok(counts.into_iter().filter(|&count| count > 0).map(part).collect())
+}
+
+/// The exact, smooth line of a contour, and the tips that it has.
+fn line(
+    picture: &Picture,
+    threshold: f64,
+    contour: &[Crossing],
+    smoothing: f64,
+    report: impl Fn(f64) -> Result<()> + Copy,
+) -> Result<(apart::Line, Vec<Tip>)> {
+    let raw = levels::points(picture, threshold, contour);
+    if smoothing == 0.0 {
+        return Ok((apart::Line::raw(raw), Vec::new()));
+    }
+    let samples = heights::samples(picture, threshold, contour, &raw);
+    let noise = heights::noise(picture, contour);
+    // Pixels that are covered or not tell nothing of what is finer, and another level none of how much is covered.
+    let evidence = (noise <= 1.0 && (threshold - 0.5).abs() <= HALF).then_some(picture);
+    let (samples, tips) = match evidence {
+        Some(picture) => tips::restore(picture, samples, report)?,
+        None => (samples, Vec::new()),
+    };
+    let samples = corners::restore(samples, noise, evidence, report)?;
+    let samples = smooth::smooth(samples, smoothing, noise, report)?;
+    Ok((apart::Line::new(raw, simplify::simplify(samples)), tips))
 }

@@ -2,51 +2,160 @@
 
 use glam::DVec2;
 
-use crate::geometry::segments::{SegmentGrid, nearest_on_segment};
+use crate::drawing::union::nearest_source;
+use crate::geometry::segments::nearest_on_segment;
 use crate::patch::Patch;
 
+/// Edges to each side of the one that follows a point, from which its distance is taken: an end may have been moved past it.
+const BESIDE: usize = 1;
+
+/// How far from its contour a vertex may be that lies on it, in edge lengths: coordinates of unions are rounded.
+const ON: f64 = 1e-3;
+
+/// Which edge of a loop follows each point of its contour.
+#[derive(Clone, Debug)]
+pub(super) struct Followers {
+    edge: Vec<Option<u32>>,
+    /// By edge, the points that it follows.
+    points: Vec<Vec<u32>>,
+}
+
+impl Followers {
+    /// For a loop whose vertices lie on `meshed`, the contour or a wider one, point for point.
+    pub(super) fn new(patch: &Patch, k: usize, meshed: &[DVec2]) -> Self {
+        let places = places(loop_of(patch, k), meshed, patch.lattice.edge_length);
+        let (n, count) = (places.len(), meshed.len());
+        let mut edge = vec![None; count];
+        for i in 0..n {
+            let (from, to) = (places[i], places[(i + 1) % n]);
+            let span = (to - from).rem_euclid(count as f64);
+            // Back by a little, where rounding puts two vertices the wrong way round: no point follows.
+            if span > 0.5 * count as f64 && n > 3 {
+                continue;
+            }
+            let (first, last) = (from.ceil() as usize, (from + span).floor() as usize);
+            (first..=last).for_each(|at| edge[at % count] = Some(i as u32));
+        }
+        let mut points = vec![Vec::new(); n];
+        for (at, edge) in edge.iter().enumerate() {
+            if let Some(edge) = edge {
+                points[*edge as usize].push(at as u32);
+            }
+        }
+        Self { edge, points }
+    }
+
+    /// The edge that follows a point; none where what the contour encloses twice was merged.
+    pub(super) fn edge(&self, at: usize) -> Option<usize> {
+        self.edge[at].map(|edge| edge as usize)
+    }
+
+    /// The points whose distance from the loop its vertex `i` may change.
+    pub(super) fn points_near(&self, i: usize) -> impl Iterator<Item = usize> + '_ {
+        let n = self.points.len();
+        let edges = (i + 2 * n - BESIDE - 1..=i + 2 * n + BESIDE).map(move |edge| &self.points[edge % n]);
+        edges.flatten().map(|&at| at as usize)
+    }
+
+    /// How far a point of the contour is outside the edges of a loop that follow it; inside negative.
+    pub(super) fn beyond(&self, points: &[DVec2], at: usize, point: DVec2) -> f64 {
+        let n = points.len();
+        let Some(edge) = self.edge(at) else { return 0.0 };
+        let mut nearest = (f64::INFINITY, false);
+        for i in edge + n - BESIDE..=edge + n + BESIDE {
+            let (a, b) = (points[i % n], points[(i + 1) % n]);
+            let (share, squared) = nearest_on_segment(point, a, b);
+            if squared < nearest.0 {
+                // At an end both edges there decide: outside of either at a turn to the left, of both at one to the right.
+                let is_right = |a: DVec2, b: DVec2| (b - a).perp_dot(point - a) < 0.0;
+                let here = is_right(a, b);
+                let next = if share >= 1.0 { Some(((i + 1) % n, (i + 2) % n, b - a)) } else { None };
+                let before = if share <= 0.0 { Some(((i + n - 1) % n, i % n, b - a)) } else { None };
+                let outside = match (next, before) {
+                    (Some((c, d, along)), _) => {
+                        let (c, d) = (points[c], points[d]);
+                        let left = along.perp_dot(d - c) > 0.0;
+                        if left { here || is_right(c, d) } else { here && is_right(c, d) }
+                    }
+                    (None, Some((c, d, along))) => {
+                        let (c, d) = (points[c], points[d]);
+                        let left = (d - c).perp_dot(along) > 0.0;
+                        if left { here || is_right(c, d) } else { here && is_right(c, d) }
+                    }
+                    (None, None) => here,
+                };
+                nearest = (squared, outside);
+            }
+        }
+        if nearest.1 { nearest.0.sqrt() } else { -nearest.0.sqrt() }
+    }
+}
+
+/// Places of the vertices of a loop on the contour that they lie on, in order: segment and share.
+fn places(vertices: &[DVec2], meshed: &[DVec2], edge_length: f64) -> Vec<f64> {
+    let n = meshed.len();
+    let on = (ON * edge_length).powi(2);
+    let mut start = 0;
+    let mut place = |&vertex: &DVec2| {
+        // Where the search begins the next vertex is a few segments ahead.
+        let ahead = (0..n).map(|k| (start + k) % n).find_map(|i| {
+            let (share, squared) = nearest_on_segment(vertex, meshed[i], meshed[(i + 1) % n]);
+            (squared <= on).then_some((i, share))
+        });
+        let (segment, share) = ahead.unwrap_or_else(|| {
+            let (segment, share) = nearest_source(meshed, vertex);
+            (segment as usize, share)
+        });
+        start = segment;
+        segment as f64 + share
+    };
+    vertices.iter().map(&mut place).collect()
+}
+
 /// The edges of one loop of a patch.
-pub(super) struct LoopEdges {
-    edges: Vec<[DVec2; 2]>,
-    /// For distances.
-    grid: SegmentGrid,
+pub(super) struct LoopEdges<'a> {
+    points: &'a [DVec2],
+    followers: &'a Followers,
     /// Edges by the rows of equal height that they reach into.
     rows: Vec<Vec<u32>>,
     low: f64,
     height: f64,
-    /// A length to begin the search of the nearest edge with.
-    step: f64,
     is_hole: bool,
 }
 
-impl LoopEdges {
+impl<'a> LoopEdges<'a> {
     /// Those of the loop `k`.
-    pub(super) fn new(patch: &Patch, k: usize) -> Self {
-        let loop_ = &patch.loops[k];
-        let points = &patch.vertices[loop_.start as usize..][..loop_.len()];
+    pub(super) fn new(patch: &'a Patch, k: usize, followers: &'a Followers) -> Self {
+        let points = loop_of(patch, k);
         let n = points.len();
-        let edges: Vec<[DVec2; 2]> = (0..n).map(|i| [points[i], points[(i + 1) % n]]).collect();
         let low = points.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         let high = points.iter().map(|p| p.y).fold(-f64::INFINITY, f64::max);
         let height = ((high - low) / n as f64).max(f64::MIN_POSITIVE);
         let mut rows = vec![Vec::new(); n + 1];
-        for (i, [a, b]) in edges.iter().enumerate() {
+        for i in 0..n {
+            let (a, b) = (points[i], points[(i + 1) % n]);
             let row = |y: f64| (((y - low) / height) as usize).min(n);
             for row in &mut rows[row(a.y.min(b.y))..=row(a.y.max(b.y))] {
                 row.push(i as u32);
             }
         }
-        let grid = SegmentGrid::new(&edges);
-        Self { edges, grid, rows, low, height, step: patch.lattice.edge_length, is_hole: k > 0 }
+        Self { points, followers, rows, low, height, is_hole: k > 0 }
     }
 
-    /// The distance of a point from the patch less the slack; 0 inside. Beyond four edge lengths only that it is that far.
-    pub(super) fn outside(&self, point: DVec2, slack: f64) -> f64 {
+    /// The distance of the contour's point `at` from the edges that follow the contour there, less the slack; 0 inside.
+    ///
+    /// Not from any edge: across a narrow inlet another part of the loop may be nearer, which has its own points to cover.
+    pub(super) fn outside(&self, at: usize, point: DVec2, slack: f64) -> f64 {
         // The loop of a hole has the mesh around it.
         if self.encloses(point) != self.is_hole {
             return 0.0;
         }
-        (self.distance(point) - slack).max(0.0)
+        (self.distance(at, point) - slack).max(0.0)
+    }
+
+    fn edge(&self, i: usize) -> [DVec2; 2] {
+        let n = self.points.len();
+        [self.points[i % n], self.points[(i + 1) % n]]
     }
 
     /// Even-odd.
@@ -56,29 +165,104 @@ impl LoopEdges {
             return false;
         }
         let crossed = self.rows[row as usize].iter().filter(|&&i| {
-            let [a, b] = self.edges[i as usize];
+            let [a, b] = self.edge(i as usize);
             (a.y <= point.y) != (b.y <= point.y)
                 && a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x) > point.x
         });
         crossed.count() % 2 == 1
     }
 
-    fn distance(&self, point: DVec2) -> f64 {
-        let mut reach = 0.25 * self.step;
-        loop {
-            let mut least = f64::INFINITY;
-            self.grid.near(point - reach, point + reach, |i| {
-                let [a, b] = self.edges[i];
-                least = least.min(nearest_on_segment(point, a, b).1);
-            });
-            let distance = least.sqrt();
-            if distance <= reach {
-                return distance;
+    fn distance(&self, at: usize, point: DVec2) -> f64 {
+        let n = self.points.len();
+        let edges = match self.followers.edge(at) {
+            Some(edge) => edge + n - BESIDE..=edge + n + BESIDE,
+            None => 0..=n - 1,
+        };
+        let squared = edges.map(|i| {
+            let [a, b] = self.edge(i);
+            nearest_on_segment(point, a, b).1
+        });
+        squared.fold(f64::INFINITY, f64::min).sqrt()
+    }
+}
+
+pub(super) fn loop_of(patch: &Patch, k: usize) -> &[DVec2] {
+    let loop_ = &patch.loops[k];
+    &patch.vertices[loop_.start as usize..][..loop_.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::SketchOptions;
+    use crate::progress::Progress;
+    use crate::sketch::mesh_sketch;
+
+    /// A block with an inlet of this width from above, points a half apart.
+    fn inlet(width: f64) -> Vec<DVec2> {
+        let half = 0.5 * width;
+        let corners = [
+            (-8.0, 0.0),
+            (8.0, 0.0),
+            (8.0, 12.0),
+            (half, 12.0),
+            (half, 4.0),
+            (-half, 4.0),
+            (-half, 12.0),
+            (-8.0, 12.0),
+        ]
+        .map(DVec2::from);
+        let mut points = Vec::new();
+        for (k, &a) in corners.iter().enumerate() {
+            let b = corners[(k + 1) % corners.len()];
+            let count = (2.0 * a.distance(b)).ceil();
+            points.extend((0..count as usize).map(|i| a.lerp(b, i as f64 / count)));
+        }
+        points
+    }
+
+    #[test]
+    fn each_wall_of_an_inlet_is_measured_from_its_own_edges() {
+        let contour = inlet(1.0);
+        let options = SketchOptions { triangles: Some(400), ..SketchOptions::default() };
+        let mut patch = mesh_sketch(&contour, &[], &options, Progress::NONE).unwrap().patch;
+        let followers = Followers::new(&patch, 0, &contour);
+        assert!((0..contour.len()).all(|at| followers.edge(at).is_some()));
+        let n = patch.loops[0].len();
+        for i in 0..n {
+            assert!(followers.points_near(i).count() < contour.len() / 3);
+        }
+        // The right wall moves away from the inlet by two: the left one is as far from its edges as before.
+        for vertex in 0..n {
+            let point = &mut patch.vertices[vertex];
+            if point.x > 0.4 && point.x < 0.6 && point.y > 5.0 {
+                point.x += 2.0;
             }
-            if reach >= 4.0 * self.step {
-                return reach;
+        }
+        let edges = LoopEdges::new(&patch, 0, &followers);
+        for (at, &point) in contour.iter().enumerate() {
+            let expected = match point {
+                DVec2 { x, y } if x == 0.5 && y > 7.0 && y < 11.0 => 2.0,
+                DVec2 { x, y } if x == -0.5 && y > 7.0 => 0.0,
+                _ => continue,
+            };
+            assert!((edges.outside(at, point, 0.0) - expected).abs() < 0.2, "{point}");
+            assert!((followers.beyond(loop_of(&patch, 0), at, point) - expected).abs() < 0.2, "{point}");
+        }
+    }
+
+    #[test]
+    fn points_inside_are_less_than_nothing_beyond() {
+        let contour = inlet(4.0);
+        let options = SketchOptions { triangles: Some(400), ..SketchOptions::default() };
+        let patch = mesh_sketch(&contour, &[], &options, Progress::NONE).unwrap().patch;
+        let followers = Followers::new(&patch, 0, &contour);
+        for (at, &point) in contour.iter().enumerate() {
+            let inwards = if point.x.abs() == 8.0 { DVec2::new(-point.x.signum(), 0.0) } else { continue };
+            if point.y > 2.0 && point.y < 10.0 {
+                let beyond = |by: f64| followers.beyond(loop_of(&patch, 0), at, point + by * inwards);
+                assert!((beyond(0.2) + 0.2).abs() < 0.1 && (beyond(-0.2) - 0.2).abs() < 0.1, "{point}");
             }
-            reach *= 2.0;
         }
     }
 }

@@ -1,7 +1,10 @@
 //! Weights of the vertices of a flat mesh for the bones that are to bend it.
 
+mod ways;
+
 use glam::DVec2;
 
+use self::ways::Ways;
 use super::cholesky::Pattern;
 use super::disjoint::Disjoint;
 use super::march::{Around, march};
@@ -26,6 +29,9 @@ impl Default for WeightOptions {
 /// Bones whose distances differ by less than this share of the limb's half width are equally near.
 const EQUALLY_NEAR: f64 = 0.1;
 
+/// So many of the strongest bones at a vertex are looked at for bones between them.
+const SHARING: usize = 6;
+
 /// Weights below this are dropped.
 const LEAST: f64 = 1e-4;
 
@@ -34,7 +40,8 @@ const LEAST: f64 = 1e-4;
 /// Rows sum to 1 up to rounding, have no negative numbers, and at most `most` that are not 0. Distances are measured within the mesh, so that a
 /// bone has no hold on a limb that is near in the plane but far in the drawing. Away from joints the
 /// nearest bone has nearly all of the weight; at joints it passes from bone to bone over `reach` times half the
-/// width of the limb, which is the distance to the bone and to the rim together. Parts of the mesh that no bone
+/// width of the limb, which is the distance to the bone and to the rim together. Where bones pull that do not touch each other, those
+/// between them in the chain do so, too. Parts of the mesh that no bone
 /// meets follow the bone that is nearest to them as a whole. O(b n log n) in practice.
 ///
 /// # Errors
@@ -79,7 +86,7 @@ pub fn bone_weights(
     let mut weights = wanted;
     settle(vertices, triangles, &transfer, &mut weights, b)?;
     progress.report(1.0)?;
-    Ok(strongest(&weights, n, b, options.most))
+    Ok(strongest(&weights, n, &Ways::new(bones), options.most))
 }
 
 fn check(
@@ -273,20 +280,30 @@ fn settle(
 }
 
 /// By vertex, the strongest alone, summing to 1.
-fn strongest(weights: &[f64], n: usize, bones: usize, most: usize) -> Vec<f64> {
+fn strongest(weights: &[f64], n: usize, ways: &Ways, most: usize) -> Vec<f64> {
+    let bones = ways.count;
     let mut kept = vec![0.0; n * bones];
     let mut order: Vec<usize> = Vec::with_capacity(bones);
+    let mut here = vec![0.0; bones];
     for v in 0..n {
-        order.clear();
-        order.extend(0..bones);
-        order.sort_by(|&j, &k| weights[k * n + v].total_cmp(&weights[j * n + v]));
+        (0..bones).for_each(|k| here[k] = weights[k * n + v]);
+        sort(&mut order, &here);
+        ways.passed_on(&mut here, &order[..SHARING.min(bones)]);
+        sort(&mut order, &here);
         order.truncate(most);
-        let strongest = weights[order[0] * n + v];
-        order.retain(|&k| weights[k * n + v] >= LEAST.min(strongest));
-        let sum: f64 = order.iter().map(|&k| weights[k * n + v]).sum();
+        let strongest = here[order[0]];
+        order.retain(|&k| here[k] >= LEAST.min(strongest));
+        let sum: f64 = order.iter().map(|&k| here[k]).sum();
         for &k in &order {
-            kept[v * bones + k] = weights[k * n + v] / sum;
+            kept[v * bones + k] = here[k] / sum;
         }
     }
     kept
+}
+
+/// The bones from the strongest to the weakest.
+fn sort(order: &mut Vec<usize>, weights: &[f64]) {
+    order.clear();
+    order.extend(0..weights.len());
+    order.sort_by(|&j, &k| weights[k].total_cmp(&weights[j]));
 }

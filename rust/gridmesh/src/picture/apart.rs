@@ -38,6 +38,11 @@ impl Line {
         Self { back: vec![false; raw.len()], raw, points: kept.clone(), kept }
     }
 
+    /// Its crossings.
+    pub fn crossings(&self) -> &[DVec2] {
+        &self.raw
+    }
+
     /// The points.
     pub fn into_points(self) -> Vec<DVec2> {
         self.points.into_iter().map(|(_, point)| point).collect()

@@ -4,8 +4,10 @@ use glam::DVec2;
 
 use crate::error::Result;
 use crate::geometry::segments::nearest_on_segment;
+use crate::picture::field::Picture;
 use crate::picture::heights::Sample;
 use crate::picture::smooth::Parabola;
+use crate::picture::tips::Wedge;
 
 /// Half the gap between the sides, and their lengths, in pixels: the longest that is straight counts.
 const SIDES: [(f64, f64); 8] =
@@ -16,6 +18,9 @@ const TURN: f64 = 0.5;
 
 /// and by at most this much, which leaves 11 degrees between the sides.
 const SHARPEST: f64 = 2.95;
+
+/// Corners that turn by more than this are sharp.
+const SHARP: f64 = 1.6;
 
 /// How far the samples of a side may be from its line, in pixels.
 const STRAIGHT: f64 = 0.12;
@@ -47,6 +52,8 @@ struct Line<'a> {
     /// Arc length at each, and of all.
     arc: &'a [f64],
     noise: f64,
+    /// What sharp corners are to be covered by.
+    evidence: Option<&'a Picture>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -57,14 +64,21 @@ struct Corner {
 }
 
 /// Replaces the samples around each corner by the corner; where samples are noisy,
-/// what is straight to the pixel, and long sides.
-pub fn restore(samples: Vec<Sample>, noise: f64, report: impl Fn(f64) -> Result<()>) -> Result<Vec<Sample>> {
+/// what is straight to the pixel, and long sides. Corners that there are stay.
+///
+/// Sharp corners have to be covered in `evidence`, if there is one: the round end of a thin limb has none.
+pub fn restore(
+    samples: Vec<Sample>,
+    noise: f64,
+    evidence: Option<&Picture>,
+    report: impl Fn(f64) -> Result<()>,
+) -> Result<Vec<Sample>> {
     let n = samples.len();
     if n < 8 {
         return Ok(samples);
     }
     let arc = arcs(&samples);
-    let line = Line { samples: &samples, arc: &arc, noise };
+    let line = Line { samples: &samples, arc: &arc, noise, evidence };
     let mut sides: Vec<(f64, (f64, f64))> = SIDES.map(|side| (1.0, side)).to_vec();
     if noise > 1.0 {
         sides.extend(SIDES.into_iter().filter(|&(_, length)| length >= LONG).map(|side| (noise, side)));
@@ -126,9 +140,9 @@ fn around(n: usize, i: usize, near: impl Fn(usize) -> bool) -> Vec<usize> {
 
 /// The corner near a sample, if lines fit both sides and it is not rounded.
 fn corner(line: &Line<'_>, i: usize, (gap, length): (f64, f64)) -> Option<Corner> {
-    let &Line { samples, arc, noise } = line;
+    let &Line { samples, arc, noise, evidence } = line;
     let n = samples.len();
-    if arc[n] < 3.0 * (gap + length) {
+    if samples[i].corner || arc[n] < 3.0 * (gap + length) {
         return None;
     }
     let offset = |j: usize, ahead: bool| {
@@ -138,7 +152,7 @@ fn corner(line: &Line<'_>, i: usize, (gap, length): (f64, f64)) -> Option<Corner
     let side = |ahead: bool| -> Vec<DVec2> {
         (1..n)
             .map(|k| if ahead { (i + k) % n } else { (i + n - k) % n })
-            .take_while(|&j| offset(j, ahead) <= gap + length)
+            .take_while(|&j| offset(j, ahead) <= gap + length && !samples[j].corner)
             .filter(|&j| offset(j, ahead) >= gap)
             .map(|j| samples[j].at)
             .collect()
@@ -166,8 +180,8 @@ fn corner(line: &Line<'_>, i: usize, (gap, length): (f64, f64)) -> Option<Corner
         (0..n)
             .map(|k| if ahead { (i + k) % n } else { (i + n - k) % n })
             .take_while(|&j| offset(j, ahead) < gap)
-            .filter(|&j| samples[j].at.distance(at) > rounded)
-            .all(|j| direction.perp_dot(samples[j].at - at).abs() <= BESIDE * noise)
+            .filter(|&j| samples[j].at.distance(at) > rounded || samples[j].corner)
+            .all(|j| !samples[j].corner && direction.perp_dot(samples[j].at - at).abs() <= BESIDE * noise)
     };
     let corner = follows(true, after.1) && follows(false, before.1);
     // A tight curve: a parabola follows it, too.
@@ -184,7 +198,18 @@ fn corner(line: &Line<'_>, i: usize, (gap, length): (f64, f64)) -> Option<Corner
         .collect();
     let curved = Parabola::fit(stretch.iter().copied())
         .is_some_and(|parabola| stretch.iter().all(|&(s, point)| parabola.off(s, point) <= CURVED * noise));
-    (corner && !curved).then_some(Corner { at, turn, gap })
+    if !corner || curved {
+        return None;
+    }
+    if let Some(picture) = evidence
+        && turn.abs() >= SHARP
+    {
+        let wedge = Wedge { at, sides: [before.1, after.1], is_convex: turn > 0.0 };
+        if !wedge.is_covered(picture, samples[i].at.distance(at) + gap) {
+            return None;
+        }
+    }
+    Some(Corner { at, turn, gap })
 }
 
 /// The line of least squares through points, if they are straight: their mean, and the direction from first to last.
