@@ -96,13 +96,18 @@ pub(crate) struct Corner {
 impl Corner {
     /// The corner with the sides `a` and, counter-clockwise, `b`, in a surface with this unit normal.
     pub fn new(ideal: Ideal, a: DVec3, b: DVec3, normal: DVec3) -> Self {
+        Self::crossed(ideal, [a, b, a.cross(b)], normal)
+    }
+
+    /// The same where the product of the two sides is known: `[a, b, a x b]`.
+    #[inline]
+    pub fn crossed(ideal: Ideal, [a, b, cross]: [DVec3; 3], normal: DVec3) -> Self {
         let sides = ideal.sides([a, b, b - a].map(DVec3::length_squared));
         let (lengthening, curvature) = match ideal {
             Ideal::Equilateral | Ideal::Own => (-2.0 * (a + b), 4.0),
             Ideal::Next => (-2.0 * a, 2.0),
             Ideal::Last => (-2.0 * b, 2.0),
         };
-        let cross = a.cross(b);
         let mut area = cross.length();
         let mut facing = cross / area;
         if cross.dot(normal) <= 0.0 {
@@ -120,11 +125,13 @@ impl Corner {
     }
 
     /// Squared sides over area, against the ideal's: one at best.
+    #[inline]
     pub fn badness(&self) -> f64 {
         self.sides / self.area / self.best
     }
 
     /// A positive definite model of `weight * sides / area` in the plane of two axes.
+    #[inline]
     pub fn model(&self, weight: f64, [e, f]: [DVec3; 2]) -> Quadratic {
         let in_plane = |v: DVec3| DVec2::new(v.dot(e), v.dot(f));
         let (ds, da) = (in_plane(self.lengthening), in_plane(self.widening));

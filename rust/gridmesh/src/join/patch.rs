@@ -262,8 +262,15 @@ impl Place<'_> {
                 let bad = tangled(&local, self.near(), part.part(0.4, 1.0))?;
                 self.tried(&local, &bad, kind)
             } else {
+                let plain = local.clone();
                 regularize(&mut local, Some(&ground), part.part(0.4, 0.6))?;
-                self.smoothed(local, beyond, kind, part.part(0.6, 1.0))?
+                let made = self.smoothed(local, beyond, kind, part.part(0.6, 0.8))?;
+                if made.is_sound() {
+                    made
+                } else {
+                    // More regular is not always as near to where nothing meets.
+                    better(made, self.smoothed(plain, beyond, kind, part.part(0.8, 1.0))?)
+                }
             };
             let (places, far) = (made.places.clone(), made.far);
             let hopeless = best.as_ref().is_some_and(|best| 2 * made.meetings > best.meetings);

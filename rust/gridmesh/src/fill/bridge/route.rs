@@ -68,6 +68,21 @@ struct Layers<'a> {
     middles: Vec<[i64; 2 * ACROSS as usize + 1]>,
 }
 
+/// The ways on from the vertices of a layer, by their cells.
+struct Moves {
+    /// For each cell and way the cell in the next layer.
+    to: [[u8; 3]; CELLS],
+    /// Corners in each cell's vertex.
+    corners: [i64; CELLS],
+    /// Costs off the target, of the next layer's cells.
+    off: [f64; CELLS],
+    /// What triangles at a vertex without corners cost, by how the path came and how it goes on.
+    turns: [[f64; 3]; 3],
+}
+
+/// There is no such way.
+const NOWHERE: u8 = u8::MAX;
+
 /// The path along ring 0, which is the only one of its length.
 pub(super) fn straight(wishes: &Wishes<'_>) -> Path {
     let layers = Layers::new(wishes);
@@ -88,11 +103,14 @@ pub(super) fn route(wishes: &Wishes<'_>, most: f64, progress: Progress<'_>) -> R
     let n = wishes.targets.len();
     let layers = Layers::new(wishes);
     progress.report(0.0)?;
-    let Some(start) = layers.start(most) else { return Ok(None) };
+    // Further than once around, for the start.
+    let more = (n / 3).clamp(3, 30);
+    let moves = (0..n + more).map(|layer| layers.moves(layer)).collect::<Vec<_>>();
+    let Some(start) = layers.start(&moves, most) else { return Ok(None) };
     progress.report(0.5)?;
-    let mut open = vec![NEVER; STATES];
+    let mut open = [NEVER; STATES];
     open[start] = 0.0;
-    let (last, came) = layers.run(open, 0, n, most);
+    let (last, came) = layers.run(open, &moves[..n], most);
     if last[start] >= NEVER {
         return Ok(None);
     }
@@ -154,42 +172,75 @@ impl<'a> Layers<'a> {
         target.along * along * along + target.across * across * across
     }
 
-    /// Costs of all states `steps` layers after `layer`, and for each layer and state the one before.
-    fn run(&self, open: Vec<f64>, layer: usize, steps: usize, most: f64) -> (Vec<f64>, Vec<Vec<u16>>) {
-        let rings = self.wishes.rings;
-        let (mut here, mut came) = (open, Vec::with_capacity(steps));
-        for layer in layer..layer + steps {
-            let mut there = vec![NEVER; STATES];
-            let mut from = vec![0u16; STATES];
-            let mut offs = [f64::NAN; CELLS];
+    /// The ways on from all vertices of a layer.
+    fn moves(&self, layer: usize) -> Moves {
+        let Wishes { rings, least, most, .. } = *self.wishes;
+        let mut moves = Moves {
+            to: [[NOWHERE; 3]; CELLS],
+            corners: [0; CELLS],
+            off: [NEVER; CELLS],
+            turns: [[NEVER; 3]; 3],
+        };
+        for entered in [LEVEL, RISING, FALLING] {
+            for left in [LEVEL, RISING, FALLING] {
+                moves.turns[entered][left] = self.turn(layer, 0, entered, left).unwrap_or(NEVER);
+            }
+        }
+        let next = (layer + 1) % self.len();
+        for cell in 0..CELLS {
+            let row = (cell / WIDTH) as i64 - ACROSS;
+            if (least..=most).contains(&(self.rings[next] + row)) {
+                let node = self.node(layer + 1, 3 * cell);
+                moves.off[cell] = self.off(layer + 1, node, rings.around(node));
+            }
+            if !(least..=most).contains(&(self.rings[layer % self.len()] + row)) {
+                continue;
+            }
+            let node = self.node(layer, 3 * cell);
+            let place = rings.place(node);
+            moves.corners[cell] = place.corners;
+            let mut go = |way: usize, next: Node| {
+                moves.to[cell][way] = self.cell(layer + 1, next).map_or(NOWHERE, |to| to as u8);
+            };
+            go(LEVEL, Node { at: node.at + 1, ..node });
+            go(RISING, place.up(node)[1]);
+            // From a corner down is the ray itself, which would be entered from no side.
+            if node.ring > rings.first && place.corners == 0 {
+                go(FALLING, place.down(node));
+            }
+        }
+        moves
+    }
+
+    /// Costs of all states after so many layers, and for each layer and state the one before.
+    fn run(&self, open: [f64; STATES], moves: &[Moves], most: f64) -> ([f64; STATES], Vec<[u8; STATES]>) {
+        let (mut here, mut came) = (open, Vec::with_capacity(moves.len()));
+        for (layer, moves) in moves.iter().enumerate() {
+            let mut there = [NEVER; STATES];
+            let mut from = [0u8; STATES];
             for cell in 0..CELLS {
-                if here[3 * cell..3 * cell + 3].iter().all(|&cost| cost >= most) {
-                    continue;
-                }
-                let node = self.node(layer, 3 * cell);
-                let place = rings.place(node);
                 for way in [LEVEL, RISING, FALLING] {
-                    let next = match way {
-                        LEVEL => Node { at: node.at + 1, ..node },
-                        RISING => place.up(node)[1],
-                        // From a corner down is the ray itself, which would be entered from no side.
-                        _ if node.ring > rings.first && place.corners == 0 => place.down(node),
-                        _ => continue,
-                    };
-                    let Some(to) = self.cell(layer + 1, next) else { continue };
-                    if offs[to].is_nan() {
-                        offs[to] = self.off(layer + 1, next, rings.around(next));
+                    let to = moves.to[cell][way];
+                    if to == NOWHERE {
+                        continue;
                     }
+                    let (off, slot) = (moves.off[to as usize], 3 * to as usize + way);
                     for entered in [LEVEL, RISING, FALLING] {
                         let so_far = here[3 * cell + entered];
                         if so_far >= most {
                             continue;
                         }
-                        let Some(turn) = self.turn(layer, place.corners, entered, way) else { continue };
-                        let cost = so_far + turn + offs[to];
-                        if cost < there[3 * to + way] {
-                            there[3 * to + way] = cost;
-                            from[3 * to + way] = (3 * cell + entered) as u16;
+                        let turn = match moves.corners[cell] {
+                            0 => moves.turns[entered][way],
+                            corners => self.turn(layer, corners, entered, way).unwrap_or(NEVER),
+                        };
+                        if turn >= NEVER {
+                            continue;
+                        }
+                        let cost = so_far + turn + off;
+                        if cost < there[slot] {
+                            there[slot] = cost;
+                            from[slot] = (3 * cell + entered) as u8;
                         }
                     }
                 }
@@ -223,23 +274,21 @@ impl<'a> Layers<'a> {
     }
 
     /// The state in which a path that need not close is after a round.
-    fn start(&self, most: f64) -> Option<usize> {
-        let n = self.len();
-        let more = (n / 3).clamp(3, 30);
-        let mut open = vec![NEVER; STATES];
+    fn start(&self, moves: &[Moves], most: f64) -> Option<usize> {
+        let mut open = [NEVER; STATES];
         for cell in 0..CELLS {
             let node = self.node(0, 3 * cell);
             if self.cell(0, node).is_some() {
                 open[3 * cell] = self.off(0, node, self.wishes.rings.around(node));
             }
         }
-        let (last, came) = self.run(open, 0, n + more, 2.0 * most.min(0.4 * NEVER));
+        let (last, came) = self.run(open, moves, 2.0 * most.min(0.4 * NEVER));
         let best = (0..STATES).min_by(|&a, &b| last[a].total_cmp(&last[b]))?;
         if last[best] >= NEVER {
             return None;
         }
         let mut state = best;
-        for layer in (n + 1..=n + more).rev() {
+        for layer in (self.len() + 1..=moves.len()).rev() {
             state = came[layer - 1][state] as usize;
         }
         Some(state)

@@ -24,9 +24,6 @@ use crate::fill::surface::patchwork::Patchwork;
 use crate::options::CellShape;
 use crate::progress::{Clock, Progress};
 
-/// Sweeps within the surface at most.
-const SWEEPS: usize = 10;
-
 /// Steps towards the wanted curvature.
 const CURVED: usize = 2;
 
@@ -216,20 +213,22 @@ impl<'a> Span<'a> {
             let height = if even { height } else { (libm::pow(grow, height) - 1.0) / (grow - 1.0) };
             flat[m + n + v] = DVec2::new(around, height);
         }
-        let inner = flat[m + n..].iter().map(|p| loft.at(p.x, p.y).point).collect::<Vec<_>>();
+        let mut spots = flat[m + n..].iter().map(|p| loft.at(p.x, p.y)).collect::<Vec<_>>();
         let at = |v: u32| {
             let v = v as usize;
-            loop_.get(v).map_or_else(|| inner[v - m - n], |&name| self.vertices[name as usize])
+            loop_.get(v).map_or_else(|| spots[v - m - n].point, |&name| self.vertices[name as usize])
         };
         let halves = tube.quads.iter().flat_map(|quad| cut(quad.map(number), at));
         let triangles = halves.chain(tube.triangles.iter().map(|t| t.map(number))).collect::<Vec<_>>();
         let rings = if self.options.smooth == Smooth::Curvature { 2 } else { 1 };
-        let mut work = Patchwork::new(&loop_, inner.len(), &triangles, self.rim, rings)?;
+        let mut work = Patchwork::new(&loop_, spots.len(), &triangles, self.rim, rings)?;
         work.later = vec![first];
         let work = work.of_quads(tube.quads.len());
         let mut positions = work_positions(&work, &loop_, self.vertices);
-        positions[m + n..work.end].copy_from_slice(&inner);
-        settle(&work, loft, &mut flat, &mut positions, SWEEPS, progress)?;
+        for (position, spot) in positions[m + n..work.end].iter_mut().zip(&spots) {
+            *position = spot.point;
+        }
+        settle(&work, loft, &mut flat, &mut spots, &mut positions, progress)?;
         let mut shape = Shape {
             work,
             loop_,

@@ -1,9 +1,8 @@
 //! The triangles between two closed paths around a lattice of rings.
 
-use rustc_hash::FxHashMap;
-
 use super::rings::{Node, Rings};
 use crate::error::{Error, Result};
+use crate::geometry::topology::NONE;
 
 /// A closed path, and how much further around the axis its vertices are than where the loop's are.
 pub(super) struct Bound<'a> {
@@ -77,28 +76,36 @@ pub(super) fn tube(rings: &Rings, lower: &Bound<'_>, upper: &Bound<'_>) -> Resul
     let (bottom, top) = (Profile::new(rings, lower), Profile::new(rings, upper));
     let (lower, upper) = (lower.nodes, upper.nodes);
     let (m, n) = (lower.len(), upper.len());
-    let mut number: FxHashMap<Node, u32> = FxHashMap::default();
+    let least = lower.iter().map(|node| node.ring).min().unwrap_or(0);
+    let most = upper.iter().map(|node| node.ring).max().unwrap_or(0);
+    // Of each ring from the lowest on.
+    let mut number = (least..=most).map(|ring| vec![NONE; rings.len(ring) as usize]).collect::<Vec<_>>();
     for (k, &node) in lower.iter().chain(upper).enumerate() {
-        if number.insert(rings.reduced(node), k as u32).is_some() {
+        let node = rings.reduced(node);
+        let ring = usize::try_from(node.ring - least).ok().and_then(|ring| number.get_mut(ring));
+        let Some(own) = ring.and_then(|ring| ring.get_mut(node.at as usize)) else {
+            return Err(Error::Internal { reason: "a path of a tube leaves it" });
+        };
+        if std::mem::replace(own, k as u32) != NONE {
             return Err(Error::Internal { reason: "two paths of a tube meet" });
         }
     }
-    let least = lower.iter().map(|node| node.ring).min().unwrap_or(0);
-    let most = upper.iter().map(|node| node.ring).max().unwrap_or(0);
     let mut tube = Tube::default();
     for ring in least..most {
         let (under, over) = (Below::new(rings, lower, ring), Below::new(rings, upper, ring));
         let mut enter = |corners: [Node; 3]| {
             let ids = corners.map(|node| {
                 let node = rings.reduced(node);
-                *number.entry(node).or_insert_with(|| {
+                let own = &mut number[(node.ring - least) as usize][node.at as usize];
+                if *own == NONE {
                     let around = rings.around(node);
                     let ([low, before], [high, after]) = (bottom.at(around), top.at(around));
                     let height = ((node.ring as f64 - low) / (high - low).max(1.0)).clamp(0.01, 0.99);
+                    *own = (m + n + tube.around.len()) as u32;
                     tube.around.push(around - before - height * (after - before));
                     tube.height.push(height);
-                    (m + n + tube.around.len() - 1) as u32
-                })
+                }
+                *own
             });
             tube.triangles.push(ids);
         };
@@ -216,25 +223,46 @@ pub(super) fn is_tube(tube: &Tube, m: usize, n: usize) -> bool {
     if facets.len() + m + n != 2 * end {
         return false;
     }
-    let mut sides = Vec::with_capacity(3 * facets.len());
-    let mut used = vec![false; end];
-    for t in &facets {
-        for k in 0..3 {
-            sides.push([t[k], t[(k + 1) % 3]]);
-            used[t[k] as usize] = true;
-        }
-    }
-    sides.sort_unstable();
-    if sides.windows(2).any(|pair| pair[0] == pair[1]) || used.contains(&false) {
+    // The ends of all directed sides, by where they start.
+    let mut start = vec![0u32; end + 1];
+    facets.iter().flatten().for_each(|&v| start[v as usize + 1] += 1);
+    if start[1..].contains(&0) {
         return false;
     }
-    let has = |side: &[u32; 2]| sides.binary_search(side).is_ok();
-    let open = sides.iter().filter(|[a, b]| !has(&[*b, *a])).collect::<Vec<_>>();
+    for v in 0..end {
+        start[v + 1] += start[v];
+    }
+    let mut next = start.clone();
+    let mut ends = vec![0u32; 3 * facets.len()];
+    for t in &facets {
+        for k in 0..3 {
+            let slot = &mut next[t[k] as usize];
+            ends[*slot as usize] = t[(k + 1) % 3];
+            *slot += 1;
+        }
+    }
+    let range = |v: u32| start[v as usize] as usize..start[v as usize + 1] as usize;
+    for v in 0..end as u32 {
+        ends[range(v)].sort_unstable();
+    }
+    let from = |v: u32| &ends[range(v)];
     let (m, n) = (m as u32, n as u32);
-    let on_loop = |[a, b]: [u32; 2]| {
+    let on_loop = |a: u32, b: u32| {
         if a < m { b == (a + 1) % m } else { a < m + n && b >= m && a == m + (b + 1 - m) % n }
     };
-    open.len() == (m + n) as usize && open.into_iter().all(|side| on_loop(*side))
+    let mut open = 0;
+    for a in 0..end as u32 {
+        if from(a).windows(2).any(|pair| pair[0] == pair[1]) {
+            return false;
+        }
+        for &b in from(a).iter().filter(|&&b| from(b).binary_search(&a).is_err()) {
+            if !on_loop(a, b) {
+                return false;
+            }
+            open += 1;
+        }
+    }
+    open == m + n
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::geometry::topology::NONE;
 use crate::path::placement::ROW_HEIGHT;
 
 /// What a triangle that is gone consists of.
-const GONE: [u32; 3] = [NONE; 3];
+pub(super) const GONE: [u32; 3] = [NONE; 3];
 
 /// Triangles rounder than this have a normal worth keeping.
 const ROUND: f64 = 0.05;
@@ -254,81 +254,6 @@ impl Local {
     pub fn apex(&self, t: u32, e: [u32; 2]) -> u32 {
         let own = self.triangles[t as usize];
         own.into_iter().find(|v| !e.contains(v)).unwrap_or(own[0])
-    }
-
-    /// The neighbours of a vertex inside, counter-clockwise; `None` at the border.
-    pub fn ring(&self, v: u32) -> Option<Vec<u32>> {
-        // Of each triangle the two other corners, in its order.
-        let pair = |&t: &u32| {
-            let own = self.triangles[t as usize];
-            let k = own.iter().position(|&u| u == v).unwrap_or(0);
-            [own[(k + 1) % 3], own[(k + 2) % 3]]
-        };
-        let pairs = self.fan(v).iter().map(pair).collect::<Vec<_>>();
-        let mut ring = vec![pairs.first()?[0]];
-        while ring.len() < pairs.len() {
-            let last = ring[ring.len() - 1];
-            ring.push(pairs.iter().find(|p| p[0] == last)?[1]);
-        }
-        let closed = pairs.contains(&[ring[ring.len() - 1], ring[0]]);
-        closed.then_some(ring)
-    }
-
-    /// Puts a second vertex beside one inside that takes over the triangles between neighbours that follow each other
-    /// counter-clockwise; `least`: no triangle gets a lower quality.
-    pub fn divide(&mut self, v: u32, side: &[u32], least: f64) -> bool {
-        let (Some(&first), Some(&last)) = (side.first(), side.last()) else { return false };
-        let fan = self.fan(v).to_vec();
-        let own = |t: u32| self.triangles[t as usize];
-        let taken = |t: u32| own(t).iter().all(|u| *u == v || side.contains(u));
-        let (over, rest): (Vec<u32>, Vec<u32>) = fan.iter().partition(|&&t| taken(t));
-        if over.len() + 1 != side.len() || rest.len() < 2 {
-            return false;
-        }
-        let at = |u: u32| self.positions[u as usize];
-        let p = at(v);
-        let middle = |triangles: &[u32]| {
-            let corners = triangles.iter().flat_map(|&t| own(t)).filter(|&u| u != v);
-            corners.map(at).sum::<DVec3>() / (2 * triangles.len()) as f64
-        };
-        let [here, there] = [&rest, &over].map(|t| p.midpoint(middle(t)));
-        let m = self.positions.len() as u32;
-        let placed = |t: [u32; 3]| {
-            t.map(|u| {
-                if u == v {
-                    here
-                } else if u == m {
-                    there
-                } else {
-                    at(u)
-                }
-            })
-        };
-        let renamed = |t: u32| own(t).map(|u| if u == v { m } else { u });
-        let added = [[v, first, m], [v, m, last]];
-        let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
-        let way = fan.iter().map(|&t| normal(self.corners(t))).sum::<DVec3>();
-        let all = rest.iter().map(|&t| own(t)).chain(over.iter().map(|&t| renamed(t))).chain(added);
-        let mut good = all.map(placed);
-        if !good.all(|t| quality(t) > least && normal(t).dot(way) > 0.0) {
-            return false;
-        }
-        let moved = over.iter().map(|&t| (t, renamed(t))).collect::<Vec<_>>();
-        self.positions[v as usize] = here;
-        self.positions.push(there);
-        self.sizes.push(self.sizes[v as usize]);
-        self.at.push(vec![]);
-        let part = self.sides[fan[0] as usize];
-        for (t, corners) in moved {
-            self.detach(t);
-            self.attach(t, corners);
-        }
-        for corners in added {
-            self.triangles.push(GONE);
-            self.sides.push(part);
-            self.attach(self.triangles.len() as u32 - 1, corners);
-        }
-        true
     }
 
     /// The triangles that flipping an edge would make, if it may be: in place of its two.

@@ -1,28 +1,46 @@
-//! Fewer irregular vertices: flips that move them about until they meet, and collapses and divisions that take them out in pairs.
-
-use glam::DVec3;
+//! Fewer irregular vertices: changes of connections at random, fewer and fewer of which may make things worse.
+//!
+//! Two vertices beside each other with five and seven triangles are the end of a row; a flip moves them along the row, a collapse or
+//! a division across it, without making more of them. Where two such pairs meet, or one comes to a vertex of the border that lacks what
+//! it has, they become one, or none.
+//!
+//! Source: Kirkpatrick, Gelatt and Vecchi, *Optimization by simulated annealing*, 1983; the moves are those of Li, Zhang, Kobayashi
+//! and Wonka, *Editing operations for irregular vertices in triangle meshes*, 2010.
 
 use super::local::{Local, quality};
+use super::net::{Net, Pair, normal};
 use super::remesh::{Ground, relax};
 use crate::error::Result;
 use crate::progress::Progress;
 
-/// Sweeps over all edges.
-const SWEEPS: usize = 24;
+/// Sweeps over all edges. With twice as many 4 % fewer irregular vertices are left, with half as many there are a tenth more.
+const SWEEPS: usize = 600;
 
-/// Sweeps between two projections to the surface.
-const PROJECTED: usize = 4;
+/// Sweeps between two over all vertices, with collapses and divisions.
+const CLIMBS: usize = 5;
 
-/// Collapses leave no edge longer than this, and take none longer than that, in wanted lengths.
+/// Sweeps between two moves of all vertices, and between two projections to the surface.
+const RELAXED: usize = 2;
+const PROJECTED: usize = 120;
+
+/// Sweeps between two looks at whether to go on.
+const ASKED: usize = 10;
+
+/// What may cost so much more is done in one of e cases at first; less each sweep, until after this share of them nothing may cost more.
+const HOT: f64 = 1.2;
+const COOL: f64 = 0.9;
+
+/// No triangle gets a lower quality.
+const LEAST: f64 = 0.4;
+
+/// Vertices are moved into neighbours nearer than this, in wanted lengths, and no edge gets longer than that. Where only edges of less
+/// than .9 go, narrow collars keep more irregular vertices and get thinner triangles.
+const SHORT: f64 = 1.3;
 const LONGEST: f64 = 1.8;
-const TAKEN: f64 = 1.4;
 
-/// Vertices are divided if their edges are longer than this on average.
+/// Vertices are divided if their edges are longer than this on average; longer than that also where it gains nothing.
 const ROOMY: f64 = 0.75;
-
-/// Flips and collapses leave no triangle with a lower quality, divisions, after which vertices move, none with a lower one than that.
-const LEAST: f64 = 0.5;
-const LEAST_DIVIDED: f64 = 0.3;
+const WIDE: f64 = 0.8;
 
 /// Random numbers, the same each time.
 struct Dice(u64);
@@ -35,128 +53,236 @@ impl Dice {
     }
 }
 
-/// Moves connections towards the wanted numbers of triangles at vertices and keeps the best state found. `ground`: the surface that
-/// vertices stay on; without it they move within the planes of their neighbours.
+/// Changes connections towards the wanted numbers of triangles at vertices. `ground`: the surface that vertices stay on; without it
+/// they move within the planes of their neighbours. Meshes with hard lines stay as they are.
 ///
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled).
 pub(crate) fn regularize(local: &mut Local, ground: Option<&Ground>, progress: Progress<'_>) -> Result<()> {
-    let mut best = (cost(local), local.clone());
-    let mut dice = Dice(1);
+    if !local.hard.is_empty() {
+        return Ok(());
+    }
+    let net = Net::new(local);
+    let before = cost(&net);
+    // They cannot all be taken out: flips leave the sum as it is.
+    let least = 2 * net.off.iter().sum::<i32>().abs();
+    let mut annealer = Annealer { net, dice: Dice(1), chance: Chance::new(HOT), ring: vec![] };
     for sweep in 0..SWEEPS {
-        progress.report(sweep as f64 / SWEEPS as f64)?;
-        if best.0 == 0 {
-            break;
+        if sweep % ASKED == 0 {
+            progress.report(sweep as f64 / SWEEPS as f64)?;
+            if cost(&annealer.net) <= least {
+                break;
+            }
         }
-        for e in local.edges() {
-            flip(local, e, &mut dice);
-            collapse(local, e);
+        let share = sweep as f64 / (COOL * SWEEPS as f64);
+        annealer.chance = Chance::new(HOT * (1.0 - share).max(0.0));
+        annealer.flips();
+        if sweep % CLIMBS == 0 {
+            annealer.climbs();
         }
-        for v in local.border as u32..local.positions.len() as u32 {
-            divide(local, v);
-        }
-        relax(local, ground.filter(|_| sweep % PROJECTED == PROJECTED - 1));
-        let own = cost(local);
-        if own < best.0 {
-            best = (own, local.clone());
+        if sweep % RELAXED == 0 {
+            annealer.net.relax(ground.filter(|_| sweep % PROJECTED == 0));
         }
     }
-    *local = best.1;
-    local.compact();
+    if cost(&annealer.net) < before {
+        annealer.net.write(local);
+    }
     relax(local, ground);
     Ok(())
 }
 
-/// The sum of the squared differences from what is wanted.
-fn cost(local: &Local) -> i64 {
-    (0..local.positions.len() as u32).filter(|&v| !local.fan(v).is_empty()).map(|v| off(local, v, 0)).sum()
-}
-
-fn off(local: &Local, v: u32, more: i64) -> i64 {
-    (local.fan(v).len() as i64 + more - local.wanted_at(v)).pow(2)
-}
-
-fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a)
-}
-
-/// Flips an edge if that costs less; if as much, every second time.
-fn flip(local: &mut Local, e: [u32; 2], dice: &mut Dice) {
-    let &[s, t] = local.beside(e).as_slice() else { return };
-    let apexes = [local.apex(s, e), local.apex(t, e)];
-    let before = e.into_iter().chain(apexes).map(|v| off(local, v, 0)).sum::<i64>();
-    if before == 0 {
-        return;
-    }
-    let after = e.into_iter().map(|v| off(local, v, -1)).chain(apexes.map(|v| off(local, v, 1))).sum::<i64>();
-    if after > before || after == before && dice.roll() < 0.5 {
-        return;
-    }
-    let Some((old, new)) = local.flipped(e) else { return };
-    let way = normal(local.corners(old[0])) + normal(local.corners(old[1]));
-    let good = |t: [u32; 3]| {
-        let corners = t.map(|v| local.positions[v as usize]);
-        quality(corners) > LEAST && normal(corners).dot(way) > 0.0
-    };
-    if new.into_iter().all(good) {
-        local.flip(old, new);
+/// So many triangles more or fewer than wanted: two next to each other with one are better than one with two.
+fn price(off: i32) -> i32 {
+    match off.abs() {
+        0 => 0,
+        1 => 2,
+        2 => 5,
+        more => more * more + 1,
     }
 }
 
-/// Collapses an edge if that costs less.
-fn collapse(local: &mut Local, e: [u32; 2]) {
-    let beside = local.beside(e);
-    if beside.len() != 2 || local.length(e) > TAKEN {
-        return;
+fn cost(net: &Net) -> i32 {
+    net.off.iter().map(|&off| price(off)).sum()
+}
+
+/// How likely it is that something is done that costs more.
+struct Chance {
+    heat: f64,
+    /// For each whole cost no less than that with any gain of quality.
+    most: [f64; 8],
+}
+
+impl Chance {
+    fn new(heat: f64) -> Chance {
+        let mut chance = Chance { heat, most: [1.0; 8] };
+        chance.most = std::array::from_fn(|more| chance.of(more as f64 - 1.0));
+        chance
     }
-    let apexes = [local.apex(beside[0], e), local.apex(beside[1], e)];
-    let before =
-        off(local, e[0], 0) + off(local, e[1], 0) + apexes.map(|v| off(local, v, 0)).iter().sum::<i64>();
-    let after = apexes.map(|v| off(local, v, -1)).iter().sum::<i64>();
-    for [gone, stays] in [[e[1], e[0]], e] {
-        let merged = off(local, stays, local.fan(gone).len() as i64 - 4);
-        if after + merged < before && (gone as usize) >= local.border && local.collapse(gone, stays, LONGEST)
-        {
-            return;
+
+    fn of(&self, more: f64) -> f64 {
+        if more <= 0.0 {
+            1.0
+        } else if self.heat > 0.0 {
+            libm::exp(-more / self.heat)
+        } else {
+            0.0
+        }
+    }
+
+    /// Whether it can be done, whatever it does to the quality.
+    fn can(&self, more: i32, roll: f64) -> bool {
+        more <= 0 || self.most.get(more as usize).is_some_and(|most| roll < *most)
+    }
+
+    fn takes(&self, more: f64, roll: f64) -> bool {
+        more <= 0.0 || roll < self.of(more)
+    }
+}
+
+/// One of several that cost the least, each as likely.
+struct Cheapest<T> {
+    found: Option<(i32, T)>,
+    ties: f64,
+}
+
+impl<T> Cheapest<T> {
+    fn new() -> Self {
+        Cheapest { found: None, ties: 1.0 }
+    }
+
+    fn offer(&mut self, more: i32, what: T, dice: &mut Dice) {
+        let least = self.found.as_ref().map_or(i32::MAX, |found| found.0);
+        if more == least {
+            self.ties += 1.0;
+        }
+        if more < least {
+            self.ties = 1.0;
+        }
+        if more < least || more == least && dice.roll() * self.ties < 1.0 {
+            self.found = Some((more, what));
         }
     }
 }
 
-/// Makes two vertices of one inside with too many triangles, if that costs less.
-fn divide(local: &mut Local, v: u32) {
-    let k = local.fan(v).len();
-    if k < 7 || !local.is_soft(v) || local.knots.contains(&v) {
-        return;
+struct Annealer {
+    net: Net,
+    dice: Dice,
+    chance: Chance,
+    /// Neighbours of the vertex in hand.
+    ring: Vec<[u32; 2]>,
+}
+
+impl Annealer {
+    fn off(&self, v: u32) -> i32 {
+        self.net.off[v as usize]
     }
-    let Some(ring) = local.ring(v) else { return };
-    let mean = ring.iter().map(|&u| local.length([u, v])).sum::<f64>() / k as f64;
-    if mean < ROOMY {
-        return;
+
+    fn price(&self, v: u32) -> i32 {
+        price(self.off(v))
     }
-    let mut best: Option<(i64, usize, usize)> = None;
-    for i in 0..k {
-        // The new vertex gets the neighbours from i to j, those two are shared.
-        for m in 3..=(k / 2) {
-            let j = (i + m) % k;
-            let [s, t] = [ring[i], ring[j]];
-            let own = [m + 2, k - m + 2].map(|n| (n as i64 - 6).pow(2)).iter().sum::<i64>();
-            let change = own + off(local, s, 1) + off(local, t, 1)
-                - off(local, v, 0)
-                - off(local, s, 0)
-                - off(local, t, 0);
-            if change < best.map_or(0, |b| b.0) {
-                best = Some((change, i, m));
+
+    /// Flips edges beside irregular vertices.
+    fn flips(&mut self) {
+        for t in 0..self.net.triangles.len() as u32 {
+            for k in 0..3 {
+                if let Some(pair) = self.net.pair(t, k) {
+                    self.flip(pair);
+                }
             }
         }
     }
-    if let Some((_, i, m)) = best {
-        let side = (0..=m).map(|d| ring[(i + d) % k]).collect::<Vec<_>>();
-        local.divide(v, &side, LEAST_DIVIDED);
+
+    fn flip(&mut self, it: Pair) {
+        let [a, b, c, d] = [it.a, it.b, it.c, it.d].map(|v| self.off(v));
+        if a | b | c | d == 0 {
+            return;
+        }
+        let after = price(a - 1) + price(b - 1) + price(c + 1) + price(d + 1);
+        let more = after - price(a) - price(b) - price(c) - price(d);
+        let roll = self.dice.roll();
+        if !self.chance.can(more, roll) {
+            return;
+        }
+        let net = &self.net;
+        let old = [net.corners([it.c, it.a, it.b]), net.corners([it.d, it.b, it.a])];
+        let new = [net.corners([it.c, it.a, it.d]), net.corners([it.d, it.b, it.c])];
+        let way = normal(old[0]) + normal(old[1]);
+        let [was, will] = [old, new].map(|both| quality(both[0]).min(quality(both[1])));
+        let good = will >= LEAST && new.into_iter().all(|t| normal(t).dot(way) > 0.0);
+        if good && self.chance.takes(f64::from(more) + was - will, roll) && net.may_flip(it) {
+            self.net.flip(it);
+        }
+    }
+
+    /// Takes vertices out and puts some in, where irregular ones are.
+    fn climbs(&mut self) {
+        let mut ring = std::mem::take(&mut self.ring);
+        for v in self.net.border as u32..self.net.positions.len() as u32 {
+            self.net.ring(v, &mut ring);
+            let regular = self.off(v) == 0 && ring.iter().all(|r| self.off(r[0]) == 0);
+            // A vertex where two fans meet stays.
+            if regular || ring.len() as i32 != self.net.count[v as usize] {
+                continue;
+            }
+            if !self.collapse(v, &ring) {
+                self.divide(v, &ring);
+            }
+        }
+        self.ring = ring;
+    }
+
+    /// Half of what gains nothing is left as it is.
+    fn takes(&mut self, more: i32, room: bool) -> bool {
+        let roll = self.dice.roll();
+        self.chance.takes(f64::from(more), roll) && (more < 0 || room && self.dice.roll() < 0.5)
+    }
+
+    /// Moves a vertex into a neighbour.
+    fn collapse(&mut self, v: u32, ring: &[[u32; 2]]) -> bool {
+        let k = ring.len();
+        let mut best = Cheapest::new();
+        for i in 0..k {
+            let [s, x, y] = [i, i + 1, i + k - 1].map(|i| ring[i % k][0]);
+            let after = price(self.off(s) + k as i32 - 4) + price(self.off(x) - 1) + price(self.off(y) - 1);
+            let before = self.price(v) + self.price(s) + self.price(x) + self.price(y);
+            best.offer(after - before, i, &mut self.dice);
+        }
+        let Some((more, i)) = best.found else { return false };
+        let length = self.net.length(v, ring[i][0]);
+        let taken =
+            length < SHORT && self.takes(more, true) && self.net.may_collapse(ring, i, LONGEST, LEAST);
+        if taken {
+            self.net.collapse(v, ring, i);
+        }
+        taken
+    }
+
+    /// Makes two vertices of one.
+    fn divide(&mut self, v: u32, ring: &[[u32; 2]]) {
+        let k = ring.len();
+        let mut best = Cheapest::new();
+        for i in 0..k {
+            // The new vertex gets the neighbours from i to i + m, those two are shared.
+            for m in 3..=(k / 2) {
+                let [s, t] = [i, i + m].map(|i| ring[i % k][0]);
+                let own = price(m as i32 - 4) + price((k - m) as i32 - 4);
+                let after = own + price(self.off(s) + 1) + price(self.off(t) + 1);
+                let before = self.price(v) + self.price(s) + self.price(t);
+                best.offer(after - before, (i, m), &mut self.dice);
+            }
+        }
+        let Some((more, (i, m))) = best.found else { return };
+        let mean = ring.iter().map(|r| self.net.length(v, r[0])).sum::<f64>() / k as f64;
+        if mean > ROOMY && self.takes(more, mean > WIDE) {
+            self.net.divide(v, ring, [i, m], LEAST);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use crate::geometry::metrics::check_mesh;
 
@@ -200,13 +326,13 @@ mod tests {
     #[test]
     fn a_shuffled_lattice_becomes_regular() {
         let mut local = shuffled(6, 60);
-        let before = cost(&local);
-        assert!(before > 40, "{before}");
+        let before = cost(&Net::new(&local));
+        assert!(before > 80, "{before}");
         regularize(&mut local, None, Progress::NONE).unwrap();
         let check = check_mesh(local.positions.len(), &local.triangles);
         assert_eq!((check.bad_edges, check.bad_vertices, check.euler, check.boundaries), (0, 0, 1, 1));
-        let after = cost(&local);
-        assert!(6 * after <= before, "{before} {after}");
+        let after = cost(&Net::new(&local));
+        assert!(10 * after <= before, "{before} {after}");
         let thin = (0..local.triangles.len() as u32).map(|t| quality(local.corners(t)));
         assert!(thin.fold(1.0, f64::min) > 0.3);
     }
@@ -223,10 +349,13 @@ mod tests {
         local.sizes.fill(1.0);
         local.wanted = vec![2, 2, 3, 2, 2, 2, 3, 2];
         let first = [local.positions.len(), local.triangles.len()];
-        divide(&mut local, 8);
+        let net = Net::new(&local);
+        let mut annealer = Annealer { net, dice: Dice(1), chance: Chance::new(0.0), ring: vec![] };
+        annealer.climbs();
+        assert_eq!(cost(&annealer.net), 0);
+        annealer.net.write(&mut local);
         assert_eq!([local.positions.len(), local.triangles.len()], [first[0] + 1, first[1] + 2]);
         assert_eq!([local.fan(8).len(), local.fan(9).len()], [6, 6]);
-        assert_eq!(cost(&local), 0);
         assert!((0..local.triangles.len() as u32).all(|t| normal(local.corners(t)).z > 0.0));
     }
 }
