@@ -80,9 +80,15 @@ pub(crate) fn worn(
 /// The angle of the corner at arc length `s`, however its vertex came there; zero if there is none.
 pub(crate) fn turning_at(contour: &ClosedCurve, corners: &[Corner], s: f64, h: f64) -> f64 {
     const SAME: f64 = 1e-6;
+    let length = contour.length();
     let gap = |corner: &Corner| {
-        let turns = (corner.arc * h - s) / contour.length();
-        (turns - turns.round()).abs() * contour.length()
+        let away = corner.arc * h - s;
+        // Most corners are far away: no need to divide.
+        if away.abs() > 2.0 * SAME * h && away.abs() < 0.5 * length {
+            return f64::INFINITY;
+        }
+        let turns = away / length;
+        (turns - turns.round()).abs() * length
     };
     corners.iter().find(|corner| gap(corner) <= SAME * h).map_or(0.0, |corner| corner.angle)
 }
