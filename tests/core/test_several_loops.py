@@ -197,13 +197,13 @@ def test_loops_that_are_unfit_are_named(changed, kind):
     assert caught.value.kind == kind
 
 
-@pytest.mark.parametrize("number", [5, 12])
-def test_where_a_smooth_patch_would_meet_itself_a_film_is_taken(number):
-    """Both had met themselves some dozen times."""
+@pytest.mark.parametrize(("number", "films"), [(5, 0), (12, 1)])
+def test_where_a_smooth_patch_would_meet_itself_a_film_is_taken(number, films):
+    """Both had met themselves some dozen times; the smooth patch of the first one no longer does."""
     vertices, faces, loops = several.case(1, number, 36, 66)
     fill = gridmesh.fill_hole(vertices, faces, loops, strict=True)
     assert not several.faults(vertices, faces, loops, fill)
-    assert (fill.report["self_intersections"], fill.report["repaired"]) == (0, 1)
+    assert (fill.report["self_intersections"], fill.report["repaired"]) == (0, films)
 
 
 @pytest.mark.parametrize("cells", ["triangles", "quads"])
