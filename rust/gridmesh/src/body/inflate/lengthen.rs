@@ -17,9 +17,6 @@ use crate::progress::Progress;
 /// up to which moves may not turn the triangles around a vertex further from the surface.
 const STAGES: [(f64, f64); 4] = [(0.36, LEVEL), (0.36, LEVEL), (0.345, 0.3), (0.336, -1.0)];
 
-/// The stage whose limit the sharpest corner of the whole may reach in the last one.
-const GIVEN: usize = 2;
-
 /// Lengths of moves tried, in lengths wanted.
 const REACHES: [f64; 4] = [1.0, 0.5, 0.2, 0.07];
 
@@ -27,8 +24,8 @@ const REACHES: [f64; 4] = [1.0, 0.5, 0.2, 0.07];
 /// corners of triangles allow.
 ///
 /// Stages are ever more lenient: in each a vertex is left where it is if a corner around it would become both sharper
-/// than the sharpest there and sharper than [`THIN`] or [`THIN_OF_QUADS`] says. In none but the last the sharpest corner of the whole
-/// becomes sharper, but for one that is better than their first; in the last, for edges below a third, it may reach 14 degrees (32 of quads). Every triangle stays positive in projection; where that
+/// than the sharpest there and sharper than [`THIN`] or [`THIN_OF_QUADS`] says. In none the sharpest corner of the whole
+/// becomes sharper, but for one that is better than their first. Every triangle stays positive in projection; where that
 /// holds a vertex fast, its neighbours make room. Near-linear.
 pub(crate) fn lengthen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
     let limits = match guide.patch.cells() {
@@ -40,9 +37,7 @@ pub(crate) fn lengthen(front: &mut Front, guide: &Guide<'_>, progress: Progress<
     let sharp =
         |v: usize| guide.around.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v));
     let thinnest = (front.first..front.flat.len()).map(sharp).fold(limits[0], f64::max);
-    for (stage, ((share, level), thin)) in STAGES.into_iter().zip(limits).enumerate() {
-        // An edge below a third of the mean is worse than a corner of 14 degrees.
-        let thinnest = if stage + 1 == STAGES.len() { thinnest.max(limits[GIVEN]) } else { thinnest };
+    for ((share, level), thin) in STAGES.into_iter().zip(limits) {
         let (wanted, thin) = (share * mean, thin.min(thinnest));
         visit_active(front.first..front.flat.len(), near, ROUNDS, progress, |v, round| {
             let limits = Limits { wanted, level, thin, turn: turn(round) };
