@@ -20,6 +20,7 @@ mod follow;
 mod grid;
 pub(crate) mod image;
 mod mirrored;
+mod price;
 mod sized;
 mod straight;
 mod tangents;
@@ -253,7 +254,7 @@ mod tests {
         let (carrier, widths) = (&ground.carrier, &ground.widths);
         let operators = Operators::new(carrier, widths, &tangents, ground.shape, Progress::NONE)?;
         let robin = operators.robin(beta, Progress::NONE)?;
-        let mut found = operators.rotations(&[start], (beta, &robin), 1.0, Progress::NONE)?;
+        let mut found = operators.rotations(&[start], (beta, &robin), (1.0, 1.0), Progress::NONE)?;
         let found = found.remove(0);
         Ok((found.v, found.turns))
     }
@@ -296,6 +297,45 @@ mod tests {
     }
 
     #[test]
+    fn dear_changes_at_first_leave_fewer_in_the_end() -> Result<()> {
+        let mut fewer = 0;
+        for phase in [0.0, 0.7, 1.4, 2.1] {
+            // Lobes with re-entrant curves between them: each may be followed, or bent flat.
+            let lobed: Vec<DVec2> = (0..400)
+                .map(|i| {
+                    let t = TAU * f64::from(i) / 400.0;
+                    (20.0 + 3.0 * (3.0 * t + phase).sin() + 2.0 * (5.0 * t).sin()) * DVec2::from_angle(t)
+                })
+                .collect();
+            let ground = ground(&lobed, &[])?;
+            let tangents = [Tangents::new(&ground.lines[0].points, &ground.lines[0].arcs)];
+            let operators =
+                Operators::new(&ground.carrier, &ground.widths, &tangents, ground.shape, Progress::NONE)?;
+            let robin = operators.robin(3.0, Progress::NONE)?;
+            let turns = |first: f64| -> Result<usize> {
+                let found = operators.rotations(&[0.0, 0.5], (3.0, &robin), (1.0, first), Progress::NONE)?;
+                Ok(found.iter().map(|rotation| rotation.turns).sum())
+            };
+            let (plain, dear) = (turns(1.0)?, turns(3.0)?);
+            assert!(dear <= plain, "{plain} {dear}");
+            fewer += usize::from(dear < plain);
+        }
+        assert!(fewer > 0);
+        Ok(())
+    }
+
+    #[test]
+    fn candidates_come_the_best_first_and_no_more_than_asked_for() -> Result<()> {
+        let ground = ground(&bar(0.3, 60.0, 14.0), &[])?;
+        for count in [1, 3] {
+            let found = choose::candidates(&ground, 1.0, count, Progress::NONE)?;
+            assert!(!found.is_empty() && found.len() <= count);
+            assert!(found.windows(2).all(|two| two[0].1 <= two[1].1));
+        }
+        Ok(())
+    }
+
+    #[test]
     fn turns_add_up_to_six_for_an_outline_and_for_a_hole() -> Result<()> {
         let hole: Vec<DVec2> = circle(5.0, DVec2::new(2.0, 1.0));
         let ground = ground(&circle(16.0, DVec2::ZERO), &[hole])?;
@@ -314,13 +354,9 @@ mod tests {
             })
             .collect();
         let ground = ground(&wavy, &[])?;
-        let mut bends = Vec::new();
-        choose::candidates(&ground, 1.0, 2, Progress::NONE, |bent, _| {
-            bends.push(bent);
-            Ok(false)
-        })?;
+        let bends = choose::candidates(&ground, 1.0, 2, Progress::NONE)?;
         assert!(!bends.is_empty());
-        for bent in bends {
+        for (bent, _) in bends {
             let carrier = &ground.carrier;
             let way = WayBack::new(carrier, &bent.image);
             for (p, q) in carrier.vertices.iter().zip(&bent.image.positions) {

@@ -16,6 +16,8 @@ use crate::progress::Progress;
 const FLOOR: f64 = 1e-9;
 /// Rounds of directions for the rotation and rotation for the directions.
 const ROUNDS: usize = 6;
+/// So many of the first rounds may have another price for a change of direction.
+const FIRST: usize = 3;
 
 /// The cotangent Laplacian of a carrier and what stands on its boundary; lengths in edges.
 pub struct Operators {
@@ -155,26 +157,28 @@ impl Operators {
 
     /// Rotations that turn tangents into lattice directions, each of least
     /// `1/2 |grad v|^2 + beta/2 |v - (step m - tangent)|^2` with `m` the directions of least cost for it,
-    /// in turns, from even rotations by `starts` on. `robin` is the factor for `beta`. One solve a
-    /// round for all.
+    /// in turns, from even rotations by `starts` on. `robin` is the factor for `beta`. `prices` are those of a change of
+    /// direction in the end and in the first rounds: where changes are dear at first, the rotation comes to suit
+    /// directions that change less often. One solve a round for all.
     pub fn rotations(
         &self,
         starts: &[f64],
         (beta, robin): (f64, &Factor),
-        price: f64,
+        prices: (f64, f64),
         progress: Progress<'_>,
     ) -> Result<Vec<Rotation>> {
         let n = self.topology.start.len() - 1;
         let mut found: Vec<(Vec<f64>, Vec<Directions>)> =
             starts.iter().map(|&start| (vec![start; n], Vec::new())).collect();
         let mut open: Vec<usize> = (0..starts.len()).collect();
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
+            let price = if round < FIRST { prices.1 } else { prices.0 };
             open.retain(|&k| {
                 let (v, directions) = &mut found[k];
                 let next = self.directions(v, price);
                 let moves = !next.iter().map(|d| &d.steps).eq(directions.iter().map(|d| &d.steps));
                 *directions = next;
-                moves
+                moves || (round < FIRST && prices.0 != prices.1)
             });
             let mut sides = vec![0.0; n * open.len()];
             for (&k, side) in open.iter().zip(sides.chunks_exact_mut(n)) {
@@ -195,7 +199,7 @@ impl Operators {
                 found[k].0.copy_from_slice(side);
             }
         }
-        Ok(found.into_iter().map(|(v, _)| self.judged(v, price)).collect())
+        Ok(found.into_iter().map(|(v, _)| self.judged(v, prices.0)).collect())
     }
 }
 

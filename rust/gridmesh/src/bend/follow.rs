@@ -208,7 +208,7 @@ mod tests {
             Ground::new(&contours, frame, None, false, CellShape::Triangle, Progress::NONE)?.map(Arc::new);
         let mut seen = 0;
         if let Some(ground) = ground {
-            choose::candidates(&ground, 1.0, 1, Progress::NONE, |bent, _| {
+            for (bent, _) in choose::candidates(&ground, 1.0, 1, Progress::NONE)? {
                 for (contours, near) in [(&contours, 1e-9), (&moved, 1e-4)] {
                     let again = bent.followed(contours);
                     let again = again.as_ref().map_or(&[][..], |bent| bent.contours());
@@ -219,8 +219,7 @@ mod tests {
                     }
                     seen += 1;
                 }
-                Ok(true)
-            })?;
+            }
         }
         assert_eq!(seen, 2);
         Ok(())

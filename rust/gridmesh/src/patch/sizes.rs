@@ -2,22 +2,26 @@
 
 use super::Patch;
 
-/// Share of the edges that are called the longest.
+/// Share of the edges that are called the longest, and of those that are called long.
 const LONGEST: f64 = 1.0 / 150.0;
+const LONG: f64 = 0.01;
 
-/// Mean length of the longest sides of faces over the median of all, 1 without any. Linear.
-pub(crate) fn longest_over_median(patch: &Patch) -> f64 {
+/// Mean length of the longest sides of faces, and the length above which one in a hundred is, over the median of all; 1
+/// without any. Linear.
+pub(crate) fn longest_over_median(patch: &Patch) -> (f64, f64) {
     let length = |[a, b]: [u32; 2]| patch.vertices[a as usize].distance_squared(patch.vertices[b as usize]);
     let mut squared: Vec<f64> = patch.sides().map(length).collect();
     let n = squared.len();
     let longest = ((n as f64 * LONGEST) as usize).max(1);
     if n < 2 * longest {
-        return 1.0;
+        return (1.0, 1.0);
     }
     let (_, &mut median, _) = squared.select_nth_unstable_by(n / 2, f64::total_cmp);
     let (_, _, beyond) = squared.select_nth_unstable_by(n - longest - 1, f64::total_cmp);
     let mean = beyond.iter().map(|l| l.sqrt()).sum::<f64>() / beyond.len() as f64;
-    mean / median.sqrt()
+    let (_, &mut long, _) =
+        squared.select_nth_unstable_by(n - 1 - (n as f64 * LONG) as usize, f64::total_cmp);
+    (mean / median.sqrt(), (long / median).sqrt())
 }
 
 #[cfg(test)]
@@ -56,10 +60,13 @@ mod tests {
 
     #[test]
     fn a_few_long_edges_show() {
-        assert!((longest_over_median(&strip(0.0)) - 1.0).abs() < 1e-9);
-        assert!(longest_over_median(&strip(20.0)) > 2.0);
-        assert!((longest_over_median(&squares(20, 1.0)) - 1.0).abs() < 1e-9);
-        assert!((longest_over_median(&squares(20, 3.0)) - 3.0).abs() < 1e-9);
-        assert_eq!(longest_over_median(&patch(vec![], vec![], vec![])), 1.0);
+        assert!((longest_over_median(&strip(0.0)).0 - 1.0).abs() < 1e-9);
+        assert!(longest_over_median(&strip(20.0)).0 > 2.0);
+        assert!((longest_over_median(&squares(20, 1.0)).0 - 1.0).abs() < 1e-9);
+        assert!((longest_over_median(&squares(20, 3.0)).0 - 3.0).abs() < 1e-9);
+        // The last row of squares has one side in forty, a single far vertex fewer than one in a hundred.
+        assert!((longest_over_median(&squares(20, 3.0)).1 - 3.0).abs() < 1e-9);
+        assert!((longest_over_median(&strip(20.0)).1 - 1.0).abs() < 1e-9);
+        assert_eq!(longest_over_median(&patch(vec![], vec![], vec![])), (1.0, 1.0));
     }
 }

@@ -20,8 +20,12 @@ use crate::sketch::job::{Asked, Effort, Job};
 /// Distances of a path on a bent lattice of triangles count so much of what they do on a straight one.
 const BENT_SHARE: f64 = 0.1;
 
-/// So many bends are traced.
-const TRACED: usize = 2;
+/// In outlines of triangles with so many edges and fewer; in longer ones less.
+const EDGES: f64 = 150.0;
+
+/// So many bends are traced at most, and so many for quads.
+const TRACED: usize = 3;
+const TRACED_OF_QUADS: usize = 2;
 
 /// Share of the bend that quads are tried with where no patch on the whole bend is good.
 const WEAKER: f64 = 0.75;
@@ -70,20 +74,30 @@ impl Job<'_> {
         best: &mut Option<Found>,
         progress: Progress<'_>,
     ) -> Result<bool> {
-        // The second bend is traced if the first was not expected to be better, or is not good when it is placed.
-        for pass in 0..TRACED {
+        let started = Instant::now();
+        let bend = strength * self.options.bend;
+        let count = if self.options.cells == CellShape::Quad { TRACED_OF_QUADS } else { TRACED };
+        let bends = unless_unsolved(choose::candidates(ground, bend, count, progress.part(0.0, 0.1)))?;
+        self.lap("bend", started);
+        let mut bends = bends.into_iter().peekable();
+        // The next bend is traced if the one before was not expected to be better, or is not good when it is placed.
+        while bends.peek().is_some() {
             let started = Instant::now();
-            let outlines = self.bent_outlines(strength, ground, asked, pass > 0, progress.part(0.0, 0.3));
-            let outlines = unless_unsolved(outlines)?;
-            let is_last = outlines.len() != 1 || self.options.cells == CellShape::Quad;
-            let mut outlines: Vec<(Bent, Lattice, Outline)> = outlines.into_iter().skip(pass).collect();
+            let mut outlines: Vec<(Bent, Lattice, Outline)> = Vec::new();
+            while let Some((mut bent, _)) = bends.next() {
+                bent.share *= strength;
+                let Some(traced) = self.bent_outline(asked, bent, progress.part(0.1, 0.3))? else { continue };
+                let cost = traced.0.price + traced.2.cost;
+                outlines.push(traced);
+                let next = bends.peek().map_or(f64::INFINITY, |next| next.1);
+                if self.options.cells == CellShape::Triangle && cost <= next {
+                    break;
+                }
+            }
             outlines.sort_by(|a, b| (a.0.price + a.2.cost).total_cmp(&(b.0.price + b.2.cost)));
             self.lap("bend", started);
             if self.best_placed(outlines, best, progress)? {
                 return Ok(true);
-            }
-            if is_last {
-                break;
             }
         }
         Ok(false)
@@ -133,28 +147,6 @@ impl Job<'_> {
         Ok(ground.map(Arc::new))
     }
 
-    /// The boundaries on the most promising lattices bent by a share of what is asked for: of triangles, unless all are
-    /// wanted, none after one that costs no more than the next bend promises.
-    fn bent_outlines(
-        &self,
-        strength: f64,
-        ground: &Arc<Ground>,
-        asked: Asked,
-        all: bool,
-        progress: Progress<'_>,
-    ) -> Result<Vec<(Bent, Lattice, Outline)>> {
-        let mut found = Vec::new();
-        let is_enough = |mut bent: Bent, next: f64| {
-            bent.share *= strength;
-            let Some(traced) = self.bent_outline(asked, bent, progress)? else { return Ok(false) };
-            let cost = traced.0.price + traced.2.cost;
-            found.push(traced);
-            Ok(!all && self.options.cells == CellShape::Triangle && cost <= next)
-        };
-        choose::candidates(ground, strength * self.options.bend, TRACED, progress, is_enough)?;
-        Ok(found)
-    }
-
     /// The boundary on the straight lattice of a bent plane, where there is one.
     fn bent_outline(
         &self,
@@ -190,19 +182,18 @@ impl Job<'_> {
         Ok(Some((bent, lattice, outline)))
     }
 
-    /// The options in a bent plane: distances count less there, since the vertices come back to the drawing. Those of quads count
-    /// less the more edges the outline has: along a long side they add up to more than turns are worth. Halves, so that
-    /// a drawing that is changed a little keeps its path.
+    /// The options in a bent plane: distances count less there, since the vertices come back to the drawing, and less the more
+    /// edges the outline has: along a long side they add up to more than turns are worth. Halves, so that a drawing
+    /// that is changed a little keeps its path.
     pub(super) fn of_bent(&self, bent: &Bent) -> SketchOptions {
-        let share = match self.options.cells {
-            CellShape::Triangle => BENT_SHARE,
-            CellShape::Quad => {
-                let length: f64 = bent.contours().iter().map(ClosedCurve::length).sum();
-                let halvings = libm::log2(length / choose::EDGES_OF_QUADS).round().max(0.0);
-                libm::exp2(-halvings)
-            }
+        let (share, edges) = match self.options.cells {
+            CellShape::Triangle => (BENT_SHARE, EDGES),
+            CellShape::Quad => (1.0, choose::EDGES),
         };
-        SketchOptions { closeness: share * self.options.closeness, ..self.options.clone() }
+        let length: f64 = bent.contours().iter().map(ClosedCurve::length).sum();
+        let halvings = libm::log2(length / edges).round().max(0.0);
+        let closeness = share * libm::exp2(-halvings) * self.options.closeness;
+        SketchOptions { closeness, ..self.options.clone() }
     }
 
     /// The same job for the bent drawing.

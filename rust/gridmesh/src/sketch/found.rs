@@ -26,7 +26,8 @@ const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 /// So many turns it outweighs that an angle is zero.
 const TURNS_OF_ANGLE: f64 = 16.0;
 
-/// A corner of the drawing that the mesh cuts off is worth so many turns: more than the lattices differ by.
+/// A corner of the drawing that the mesh cuts off is worth so many turns: more than the lattices differ by. Where a mesh of
+/// triangles cuts off many, so much again for each doubling of their number and one.
 const TURNS_OF_CORNER: f64 = 12.0;
 
 /// The longest edges may be so many times the median. Chosen looking at outlines of icons whose longest edges were 2.5 to
@@ -39,6 +40,10 @@ const LONG_OF_QUADS: f64 = 3.6;
 
 /// So many turns each median beyond it costs.
 const TURNS_OF_LENGTH: f64 = 20.0;
+
+/// Where one edge in a hundred is longer than so many medians, each median beyond costs so many turns more: with
+/// triangles no drawing shall have 2.5.
+const MANY_LONG: (f64, f64) = (2.4, 150.0);
 
 /// A patch on one lattice, and how far it is from being good enough.
 pub(crate) struct Found {
@@ -62,15 +67,21 @@ impl Found {
         (1.0 - least / GOOD_ANGLE).max(0.0)
     }
 
-    /// By how much the longest edges of a bent lattice are too long, see [`LONG`]; a straight one has none.
+    /// What the longest edges of a bent lattice cost in turns, see [`LONG`]; those of a straight one nothing.
     fn overlong(&self) -> f64 {
         let patch = &self.placed.patch;
-        let long = match patch.cells() {
-            CellShape::Triangle => LONG,
-            CellShape::Quad => LONG_OF_QUADS,
-        };
         match &self.bent {
-            Some((bent, _)) if !bent.is_sized() => (longest_over_median(patch) - long).max(0.0),
+            Some((bent, _)) if !bent.is_sized() => {
+                let (longest, long) = longest_over_median(patch);
+                match patch.cells() {
+                    CellShape::Triangle => {
+                        let (most, turns) = MANY_LONG;
+                        let few = TURNS_OF_LENGTH * (longest - LONG).max(0.0);
+                        few + turns * (long - most).max(0.0)
+                    }
+                    CellShape::Quad => TURNS_OF_LENGTH * (longest - LONG_OF_QUADS).max(0.0),
+                }
+            }
             _ => 0.0,
         }
     }
@@ -79,12 +90,13 @@ impl Found {
     pub(crate) fn score(&self) -> f64 {
         let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
         let worn = self.placed.worn_corners as f64;
+        // A rugged coast has hundreds of corners, and a few more or less of them cannot be seen.
         let corners = match self.placed.patch.cells() {
-            CellShape::Triangle => TURNS_OF_CORNER * worn,
+            CellShape::Triangle => TURNS_OF_CORNER * libm::log2(1.0 + worn),
             CellShape::Quad => TURNS_OF_CORNER * MOST_CORNERS * worn / (MOST_CORNERS + worn),
         };
         let shape = TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved();
-        self.outline.cost + price + shape + TURNS_OF_LENGTH * self.overlong() + corners
+        self.outline.cost + price + shape + self.overlong() + corners
     }
 
     /// True if neither another bend nor, where it turns little, a straight lattice needs to be tried.
