@@ -263,25 +263,17 @@ impl Joined {
     }
 }
 
+/// One of the arrays of numbers that `Joined.__reduce__` returned.
+type Row<'py> = PyReadonlyArray1<'py, i32>;
+
 /// Makes a joined mesh from what `Joined.__reduce__` returned.
 #[pyfunction]
 pub fn _joined(
     py: Python<'_>,
     vertices: PyReadonlyArray2<'_, f64>,
-    faces: (
-        PyReadonlyArray2<'_, i32>,
-        PyReadonlyArray2<'_, i32>,
-        PyReadonlyArray1<'_, i32>,
-        PyReadonlyArray1<'_, i32>,
-    ),
-    sources: (
-        PyReadonlyArray1<'_, i32>,
-        PyReadonlyArray1<'_, i32>,
-        PyReadonlyArray1<'_, i32>,
-        PyReadonlyArray1<'_, i32>,
-        PyReadonlyArray1<'_, i32>,
-    ),
-    collars: Vec<Vec<PyReadonlyArray1<'_, i32>>>,
+    faces: (PyReadonlyArray2<'_, i32>, PyReadonlyArray2<'_, i32>, Row<'_>, Row<'_>),
+    sources: (Row<'_>, Row<'_>, Row<'_>, Row<'_>, Row<'_>),
+    collars: Vec<Vec<Row<'_>>>,
     report: Py<PyDict>,
 ) -> PyResult<Joined> {
     let broken = || crate::error::error(py, "invalid_shape", "the pickled mesh is damaged".to_owned());
@@ -289,7 +281,7 @@ pub fn _joined(
         let of = |row: &[f64]| <[f64; 3]>::try_from(row).ok().map(DVec3::from_array);
         array.as_array().rows().into_iter().map(|r| r.as_slice().and_then(of).ok_or_else(broken)).collect()
     };
-    let row = |array: &PyReadonlyArray1<'_, i32>| arrays::row(py, array.as_array().to_vec());
+    let row = |array: &Row<'_>| arrays::row(py, array.as_array().to_vec());
     fn wide<const N: usize>(array: &PyReadonlyArray2<'_, i32>) -> Option<Vec<[u32; N]>> {
         let of = |row: &[i32]| <[i32; N]>::try_from(row).ok().map(|row| row.map(|v| v as u32));
         array.as_array().rows().into_iter().map(|r| r.as_slice().and_then(of)).collect()
