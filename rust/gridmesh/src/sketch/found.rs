@@ -27,8 +27,9 @@ const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 const TURNS_OF_ANGLE: f64 = 16.0;
 
 /// A corner of the drawing that the mesh cuts off is worth so many turns: more than the lattices differ by. Where a mesh of
-/// triangles cuts off many, so much again for each doubling of their number and one.
+/// triangles cuts off more than a few, so much again for each doubling of the others and one.
 const TURNS_OF_CORNER: f64 = 12.0;
+const FEW_CORNERS: f64 = 8.0;
 
 /// The longest edges may be so many times the median. Chosen looking at outlines of icons whose longest edges were 2.5 to
 /// 3.5 medians: parts of some had lost their shape.
@@ -92,7 +93,8 @@ impl Found {
         let worn = self.placed.worn_corners as f64;
         // A rugged coast has hundreds of corners, and a few more or less of them cannot be seen.
         let corners = match self.placed.patch.cells() {
-            CellShape::Triangle => TURNS_OF_CORNER * libm::log2(1.0 + worn),
+            CellShape::Triangle if worn <= FEW_CORNERS => TURNS_OF_CORNER * worn,
+            CellShape::Triangle => TURNS_OF_CORNER * (FEW_CORNERS + libm::log2(1.0 + worn - FEW_CORNERS)),
             CellShape::Quad => TURNS_OF_CORNER * MOST_CORNERS * worn / (MOST_CORNERS + worn),
         };
         let shape = TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved();
