@@ -510,6 +510,7 @@ _BRIDGES = {
     "none, with several loops": "keine, bei mehreren Schleifen",
     "one loop or more": "eine Schleife oder mehr",
     "the loops have too few vertices to be joined": "die Schleifen haben zu wenige Punkte, um verbunden zu werden",
+    "a patch of a joint has vertices beyond its rims": "ein Übergang hat Punkte außerhalb seiner Ränder",
     "a path of a tube leaves it": "ein Weg einer Röhre verlässt sie",
     "two paths of a tube meet": "zwei Wege einer Röhre treffen sich",
 }

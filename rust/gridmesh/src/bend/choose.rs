@@ -10,7 +10,7 @@ use super::image::{BentContours, Image};
 use super::mirrored::Mirrored;
 use super::price::{largest_over_median, price_of_size};
 use super::tangents::Tangents;
-use super::width::narrowest;
+use super::width::{Wish, narrowest};
 use super::{Bent, Ground};
 use crate::error::Result;
 use crate::geometry::laplace::Factor;
@@ -84,6 +84,8 @@ pub(crate) fn candidates(
     progress.report(0.1)?;
     let chosen = rotations(ground, &operators, (beta, &robin), turn, progress.part(0.1, 0.2))?;
     progress.report(0.2)?;
+    let narrowest = narrowest(&ground.carrier, &ground.widths);
+    let floor = |&narrow: &bool| if narrow { NARROW_FLOOR } else { FLOOR };
     let maker = Maker {
         ground,
         operators: &operators,
@@ -91,7 +93,9 @@ pub(crate) fn candidates(
         pull: (beta, &robin),
         turn,
         mirrored: ground.is_symmetric.then(|| Mirrored::new(&ground.carrier)),
-        narrowest: narrowest(&ground.carrier, &ground.widths),
+        wish: ground.wish(),
+        floors: narrowest.iter().map(floor).collect(),
+        narrowest,
     };
     if ground.shape == CellShape::Quad {
         return cheapest(&chosen, count, |rotation| maker.priced_quads(rotation));
@@ -162,6 +166,9 @@ struct Maker<'a> {
     /// Price of a change of direction.
     turn: f64,
     mirrored: Option<Mirrored>,
+    /// Scales that are wished for on the boundary; else those below which it should not be.
+    wish: Option<Wish>,
+    floors: Vec<f64>,
     narrowest: Vec<bool>,
 }
 
@@ -169,16 +176,12 @@ impl Maker<'_> {
     /// A rotation that minds its scale.
     fn sized(&self, rotation: &Rotation) -> Result<Rotation> {
         let ground = self.ground;
-        let v = match ground.wish() {
+        let v = match &self.wish {
             Some(wish) => {
                 let wished = if ground.is_asked() { ASKED } else { QUAD_SIZE };
-                self.solver.sized(rotation, self.pull, wished, &wish)?
+                self.solver.sized(rotation, self.pull, wished, wish)?
             }
-            None => {
-                let floor = |&narrow: &bool| if narrow { NARROW_FLOOR } else { FLOOR };
-                let floors: Vec<f64> = self.narrowest.iter().map(floor).collect();
-                self.solver.floored(&ground.carrier, rotation, self.pull, HELD, &floors)?
-            }
+            None => self.solver.floored(&ground.carrier, rotation, self.pull, HELD, &self.floors)?,
         };
         Ok(self.operators.judged(v, self.turn))
     }

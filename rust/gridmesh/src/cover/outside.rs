@@ -69,20 +69,17 @@ impl Followers {
                 // At an end both edges there decide: outside of either at a turn to the left, of both at one to the right.
                 let is_right = |a: DVec2, b: DVec2| (b - a).perp_dot(point - a) < 0.0;
                 let here = is_right(a, b);
-                let next = if share >= 1.0 { Some(((i + 1) % n, (i + 2) % n, b - a)) } else { None };
-                let before = if share <= 0.0 { Some(((i + n - 1) % n, i % n, b - a)) } else { None };
-                let outside = match (next, before) {
-                    (Some((c, d, along)), _) => {
-                        let (c, d) = (points[c], points[d]);
-                        let left = along.perp_dot(d - c) > 0.0;
-                        if left { here || is_right(c, d) } else { here && is_right(c, d) }
-                    }
-                    (None, Some((c, d, along))) => {
-                        let (c, d) = (points[c], points[d]);
-                        let left = (d - c).perp_dot(along) > 0.0;
-                        if left { here || is_right(c, d) } else { here && is_right(c, d) }
-                    }
-                    (None, None) => here,
+                let joint = |j: usize, turn: f64| {
+                    let there = is_right(points[j % n], points[(j + 1) % n]);
+                    if turn > 0.0 { here || there } else { here && there }
+                };
+                let along = |j: usize| points[(j + 1) % n] - points[j % n];
+                let outside = if share >= 1.0 {
+                    joint(i + 1, along(i).perp_dot(along(i + 1)))
+                } else if share <= 0.0 {
+                    joint(i + n - 1, along(i + n - 1).perp_dot(along(i)))
+                } else {
+                    here
                 };
                 nearest = (squared, outside);
             }

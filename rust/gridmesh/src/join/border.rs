@@ -11,7 +11,7 @@ use glam::DVec3;
 use super::patch::{Kind, Patch};
 use super::site::Site;
 use super::strips::Strip;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fill::even::local::{Local, quality};
 use crate::fill::even::nearest::Facets;
 use crate::fill::even::polish::improve;
@@ -27,7 +27,7 @@ const TEETH: usize = 8;
 /// Moves the vertices of a patch that are next to the line between its parts onto it; the part of each triangle.
 ///
 /// # Errors
-/// [`Error::Cancelled`](crate::Error::Cancelled).
+/// [`Error::Cancelled`].
 pub(super) fn straighten(
     site: &Site<'_>,
     strip: &Strip,
@@ -39,7 +39,11 @@ pub(super) fn straighten(
     if let [(part, _)] = surfaces.as_slice() {
         return Ok(vec![*part as i32; patch.triangles.len()]);
     }
-    let mut line = Line::new(site, strip, patch, &surfaces);
+    let border = strip.border(&site.outside);
+    let Some(local) = patch.local(site, &border) else {
+        return Err(Error::Internal { reason: "a patch of a joint has vertices beyond its rims" });
+    };
+    let mut line = Line::new(site, &border, local, &surfaces);
     if patch.kind != Kind::Exact {
         for (round, poor) in (0..).zip(POOR) {
             progress.report(f64::from(round) / POOR.len() as f64)?;
@@ -73,19 +77,8 @@ struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    fn new(site: &Site<'_>, strip: &Strip, patch: &Patch, surfaces: &'a [(usize, Facets)]) -> Line<'a> {
-        let n = site.parts.vertices.len() as u32;
-        let border =
-            strip.rims.iter().flat_map(|&k| site.outside.rims[k].iter().copied()).collect::<Vec<_>>();
-        let place: BTreeMap<u32, u32> = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
-        let m = border.len() as u32;
-        let number = |v: u32| if v < n { place[&v] } else { m + v - n };
-        let triangles = patch.triangles.iter().map(|t| t.map(number)).collect::<Vec<_>>();
-        let rims = border.iter().map(|&v| site.parts.vertices[v as usize]);
-        let positions = rims.chain(patch.vertices.iter().copied()).collect::<Vec<_>>();
-        let off = positions.iter().map(|&p| distances(surfaces, p)).collect();
-        let sides = vec![0; triangles.len()];
-        let mut local = Local::new(positions, triangles, sides, border.len());
+    fn new(site: &Site<'_>, border: &[u32], mut local: Local, surfaces: &'a [(usize, Facets)]) -> Line<'a> {
+        let off = local.positions.iter().map(|&p| distances(surfaces, p)).collect();
         for v in 0..local.positions.len() as u32 {
             let p = local.positions[v as usize];
             let near = local.neighbours(v);

@@ -71,6 +71,24 @@ pub(super) struct Patch {
     pub triangles: Vec<[u32; 3]>,
 }
 
+impl Patch {
+    /// It by itself, the vertices of its border first; `None` if it has other vertices of the parts.
+    pub fn local(&self, site: &Site<'_>, border: &[u32]) -> Option<Local> {
+        let (n, m) = (site.parts.vertices.len() as u32, border.len() as u32);
+        let place = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect::<FxHashMap<u32, u32>>();
+        let number = |v: u32| if v < n { place.get(&v).copied() } else { Some(m + v - n) };
+        let mut triangles = Vec::with_capacity(self.triangles.len());
+        for t in &self.triangles {
+            let [Some(a), Some(b), Some(c)] = t.map(number) else { return None };
+            triangles.push([a, b, c]);
+        }
+        let rims = border.iter().map(|&v| site.parts.vertices[v as usize]);
+        let positions = rims.chain(self.vertices.iter().copied()).collect();
+        let sides = vec![0; triangles.len()];
+        Some(Local::new(positions, triangles, sides, border.len()))
+    }
+}
+
 /// A patch and what is wrong with it.
 struct Try {
     patch: Patch,
@@ -125,8 +143,7 @@ impl Site<'_> {
     /// # Errors
     /// [`Error::JoinFailed`], [`Error::Cancelled`].
     pub fn close(&self, strip: &Strip, progress: Progress<'_>) -> Result<Patch> {
-        let rims = strip.rims.iter().flat_map(|&k| self.outside.rims[k].iter().copied());
-        let border = rims.collect::<Vec<_>>();
+        let border = strip.border(&self.outside);
         let place = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
         Place { site: self, strip, border, place, near: OnceCell::new() }.close(progress)
     }
@@ -221,18 +238,7 @@ impl Place<'_> {
         if patch.vertices.is_empty() {
             return Ok(None);
         }
-        let n = self.site.parts.vertices.len() as u32;
-        let m = self.border.len() as u32;
-        let number = |v: u32| if v < n { self.place.get(&v).copied() } else { Some(m + v - n) };
-        let mut triangles = Vec::with_capacity(patch.triangles.len());
-        for t in &patch.triangles {
-            let [Some(a), Some(b), Some(c)] = t.map(number) else { return Ok(None) };
-            triangles.push([a, b, c]);
-        }
-        let rims = self.border.iter().map(|&v| self.site.parts.vertices[v as usize]);
-        let positions = rims.chain(patch.vertices.iter().copied()).collect();
-        let sides = vec![0; triangles.len()];
-        let mut local = Local::new(positions, triangles, sides, self.border.len());
+        let Some(mut local) = patch.local(self.site, &self.border) else { return Ok(None) };
         let beyond = surroundings(self.site, self.strip, &self.border, &self.place, &mut local);
         let ground = Ground::of(&local);
         regularize(&mut local, Some(&ground), progress.part(0.0, 0.4))?;

@@ -26,6 +26,13 @@ pub(super) struct Strip {
     pub curves: Vec<usize>,
 }
 
+impl Strip {
+    /// The parts' vertices of its rims, one rim after the other.
+    pub fn border(&self, outside: &Outside) -> Vec<u32> {
+        self.rims.iter().flat_map(|&k| outside.rims[k].iter().copied()).collect()
+    }
+}
+
 /// Finds the strips.
 ///
 /// # Errors

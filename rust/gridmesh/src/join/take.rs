@@ -32,7 +32,7 @@ pub(super) struct Taken {
 /// Takes a strip out, with the line as a hard one if there is to be a crease; `None` if its border is not that of its rims.
 pub(super) fn take(site: &Site<'_>, strip: &Strip, crease: bool) -> Option<Taken> {
     let union = site.union;
-    let border = strip.rims.iter().flat_map(|&k| site.outside.rims[k].iter().copied()).collect::<Vec<_>>();
+    let border = strip.border(&site.outside);
     let place: FxHashMap<u32, u32> = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
     let mut positions = border.iter().map(|&v| site.parts.vertices[v as usize]).collect::<Vec<_>>();
     let mut number: FxHashMap<u32, u32> = FxHashMap::default();

@@ -16,20 +16,18 @@ const SLIGHT: f64 = 0.1;
 /// What a fault of one costs, in turns, where a bent lattice is compared with a straight one.
 const TURNS_OF_FAULT: f64 = 12.0;
 
-/// Of many corners that quads cut off each counts less: together no more than so many. A rugged coast has dozens of corners
-/// finer than its quads, and which of them are lost on a lattice is chance; counted each they would decide on it alone.
-const MOST_CORNERS: f64 = 4.0;
-
 /// Where a patch on a bent lattice has corners below this angle, 20 degrees, others are placed too.
 const GOOD_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
 /// So many turns it outweighs that an angle is zero.
 const TURNS_OF_ANGLE: f64 = 16.0;
 
-/// A corner of the drawing that the mesh cuts off is worth so many turns: more than the lattices differ by. Where a mesh of
-/// triangles cuts off more than a few, so much again for each doubling of the others and one.
+/// A corner of the drawing that the mesh cuts off is worth so many turns: more than the lattices differ by.
 const TURNS_OF_CORNER: f64 = 12.0;
-const FEW_CORNERS: f64 = 8.0;
+
+/// So many of them; beyond these each doubling of the others and one costs as much as one. A rugged coast has dozens of corners finer
+/// than its mesh, and which of them are lost on a lattice is chance; counted each they would decide on it alone.
+const FEW_CORNERS: usize = 8;
 
 /// The longest edges may be so many times the median. Chosen looking at outlines of icons whose longest edges were 2.5 to
 /// 3.5 medians: parts of some had lost their shape.
@@ -45,6 +43,12 @@ const TURNS_OF_LENGTH: f64 = 20.0;
 /// Where one edge in a hundred is longer than so many medians, each median beyond costs so many turns more: with
 /// triangles no drawing shall have 2.5.
 const MANY_LONG: (f64, f64) = (2.4, 150.0);
+
+/// What corners that the mesh cuts off cost, in turns.
+fn price_of_corners(worn: usize) -> f64 {
+    let few = worn.min(FEW_CORNERS);
+    TURNS_OF_CORNER * (few as f64 + libm::log2((1 + worn - few) as f64))
+}
 
 /// A patch on one lattice, and how far it is from being good enough.
 pub(crate) struct Found {
@@ -90,13 +94,7 @@ impl Found {
     /// Cost, faults, starved triangles, long edges and lost corners in turns.
     pub(crate) fn score(&self) -> f64 {
         let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
-        let worn = self.placed.worn_corners as f64;
-        // A rugged coast has hundreds of corners, and a few more or less of them cannot be seen.
-        let corners = match self.placed.patch.cells() {
-            CellShape::Triangle if worn <= FEW_CORNERS => TURNS_OF_CORNER * worn,
-            CellShape::Triangle => TURNS_OF_CORNER * (FEW_CORNERS + libm::log2(1.0 + worn - FEW_CORNERS)),
-            CellShape::Quad => TURNS_OF_CORNER * MOST_CORNERS * worn / (MOST_CORNERS + worn),
-        };
+        let corners = price_of_corners(self.placed.worn_corners);
         let shape = TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved();
         self.outline.cost + price + shape + self.overlong() + corners
     }
