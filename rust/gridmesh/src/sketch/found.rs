@@ -25,9 +25,9 @@ const TURNS_OF_ANGLE: f64 = 16.0;
 /// A corner of the drawing that the mesh cuts off is worth so many turns: more than the lattices differ by.
 const TURNS_OF_CORNER: f64 = 12.0;
 
-/// So many of them; beyond these each doubling of the others and one costs as much as one. A rugged coast has dozens of corners finer
-/// than its mesh, and which of them are lost on a lattice is chance; counted each they would decide on it alone.
-const FEW_CORNERS: usize = 8;
+/// So many of them; the others together no more than as many again. A rugged coast has dozens of corners finer than its mesh, and
+/// which of them are lost on a lattice is chance; counted each they would decide on it alone.
+const FEW_CORNERS: usize = 4;
 
 /// The longest edges may be so many times the median. Chosen looking at outlines of icons whose longest edges were 2.5 to
 /// 3.5 medians: parts of some had lost their shape.
@@ -47,7 +47,8 @@ const MANY_LONG: (f64, f64) = (2.4, 150.0);
 /// What corners that the mesh cuts off cost, in turns.
 fn price_of_corners(worn: usize) -> f64 {
     let few = worn.min(FEW_CORNERS);
-    TURNS_OF_CORNER * (few as f64 + libm::log2((1 + worn - few) as f64))
+    let (most, more) = (FEW_CORNERS as f64, (worn - few) as f64);
+    TURNS_OF_CORNER * (few as f64 + most * more / (most + more))
 }
 
 /// A patch on one lattice, and how far it is from being good enough.
