@@ -71,7 +71,7 @@ SKETCH = {
     "bend": Param("number", "how far the grid may bend with the outline (1)", least=0, most=1),
     "density": Param(
         "number",
-        "how much finer thin parts are, from 0 to 1; not set: about as fine as others",
+        f"how much finer thin parts are than others, from 0 to 1 ({defaults.DETAIL:g}: about as fine)",
         least=0,
         most=1,
     ),

@@ -13,6 +13,8 @@ CORNER_ANGLE = radians(40.0)
 """Turns sharper than this are corners."""
 BEND = 1.0
 """How far the lattice may bend with the outline."""
+DETAIL = 0.0
+"""How much smaller faces are in thin parts: about as large as others, so that the ends of limbs look round."""
 CLOSE_GAPS = 0.2
 """Largest gap between the ends of a drawn outline that is closed, relative to the stroke."""
 CUT_CLOSE_GAPS = 0.1

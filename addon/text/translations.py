@@ -213,8 +213,8 @@ GERMAN = {
     ),
     "Bend": "Biegung",
     "Detail in Thin Parts": "Feinheit dünner Teile",
-    "How much smaller faces are in thin parts than elsewhere, on a grid that bends; at 0 nothing is asked for": (
-        "Wie viel kleiner die Flächen in dünnen Teilen sind als anderswo, auf einem Gitter, das sich biegt; bei 0 wird nichts verlangt"
+    "How much smaller faces are in thin parts than elsewhere, on a grid that bends; at 0 they are about as large": (
+        "Wie viel kleiner die Flächen in dünnen Teilen sind als anderswo, auf einem Gitter, das sich biegt; bei 0 sind sie etwa gleich groß"
     ),
     "Detail by Pen Width": "Feinheit nach Strichbreite",
     "How much the width of the drawn line drives how many faces there are, on a grid that bends": (

@@ -125,9 +125,9 @@ class SketchOptions:
     )
     detail: FloatProperty(
         name="Detail in Thin Parts",
-        description="How much smaller faces are in thin parts than elsewhere, on a grid that bends; at 0 nothing is asked for",
+        description="How much smaller faces are in thin parts than elsewhere, on a grid that bends; at 0 they are about as large",
         subtype="FACTOR",
-        default=0.0,
+        default=defaults.DETAIL,
         min=0.0,
         max=1.0,
     )
@@ -198,7 +198,7 @@ class SketchOptions:
         return {
             # Quads always bend: poles cost more than irregular vertices of triangles.
             **({"cells": kind} if kind == "quads" else {"bend": self.bend}),
-            **({"density": self.detail} if self.detail and may_bend(self) else {}),
+            **({"density": self.detail} if may_bend(self) else {}),
             **fineness[self.resolution],
             "boundary": self.boundary.lower(),
             "max_distance": self.max_distance,

@@ -53,7 +53,7 @@ def test_drawings_have_fewer_irregular_vertices_than_on_straight_lattices(triang
 
 def test_the_number_of_irregular_vertices_hardly_grows_with_the_triangles():
     few, many = (
-        sum(mesh_sketch(points, triangles=n).report["irregular"] for points in blobs(9))
+        sum(mesh_sketch(points, triangles=n).report["irregular"] for points in blobs(20))
         for n in (2000, 16000)
     )
     assert many <= few * 4 / 3
@@ -162,6 +162,43 @@ def test_narrow_parts_get_more_triangles_by_width():
     assert lengths_near(wide, tip, 0.5) <= lengths_near(plain, tip, 0.5)
     assert lengths_near(wide, tip, 0.5) < lengths_near(even, tip, 0.5)
     assert wide.vertices.tobytes() == most.vertices.tobytes()
+
+
+def star(random):
+    """A disc with round limbs of even width at random angles, and the middles of their ends."""
+    n, width = random.integers(2, 6), random.uniform(0.2, 0.5)
+    angles = 2 * np.pi / n * (np.arange(n) + random.uniform(0, 0.6, n))
+    half = np.arcsin(width / 2)
+    outline, ends = [], []
+    for k, angle in enumerate(angles):
+        ahead = np.array([np.cos(angle), np.sin(angle)])
+        aside = np.array([-ahead[1], ahead[0]]) * width / 2
+        along = np.linspace(np.cos(half), 2.2 - width / 2, 12)[:, None] * ahead
+        ends.append(along[-1])
+        round_end = np.linspace(-np.pi / 2, np.pi / 2, 12)[1:-1, None]
+        cap = ends[-1] + width / 2 * np.cos(round_end) * ahead + np.sin(round_end) * aside
+        after = angles[(k + 1) % n] + 2 * np.pi * (k + 1 == n)
+        rest = np.linspace(angle + half, after - half, 10)[1:-1]
+        body = np.column_stack([np.cos(rest), np.sin(rest)])
+        outline += [along - aside, cap, along[::-1] + aside, body]
+    return np.vstack(outline), np.array(ends), width
+
+
+def test_limbs_are_no_coarser_than_on_a_straight_lattice_where_sizes_matter():
+    random = np.random.default_rng(1)
+    coarser, irregular = [], []
+    for _ in range(24):
+        points, ends, width = star(random)
+        plain = mesh_sketch(points, triangles=1500, bend=0)
+        minded, free = (mesh_sketch(points, triangles=1500, density=d) for d in (0, None))
+        check_patch(minded, [points])
+        sizes = [[lengths_near(p, end, width) for end in ends] for p in (minded, plain)]
+        coarser.append(max(np.divide(*sizes)))
+        irregular.append([p.report["irregular"] for p in (minded, free, plain)])
+    assert np.mean(coarser) <= 1
+    assert max(coarser) <= 1.3
+    minded, free, plain = np.sum(irregular, axis=0)
+    assert free <= minded <= 0.95 * plain
 
 
 def test_lattices_bend_unless_told_otherwise():

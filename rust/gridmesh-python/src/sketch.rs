@@ -73,7 +73,8 @@ use crate::{options, reports};
 ///     Without effect beside `angle` or `origin` and with boundary="grown".
 /// density : "width", float, (n,) array of positive numbers, or a sequence of such arrays, optional
 ///     With `bend` above 0: where there should be more triangles. "width": in narrow parts; one number from 0 to 1: so much of
-///     that ("width" is 1; at 0 all triangles should be of one size). An array: at each point of the outline so many times the triangles of elsewhere, as a sequence for the outline and its holes. It is a wish:
+///     that ("width" is 1; at 0 they are about as fine as on a straight lattice, so that the ends of limbs look round, for some
+///     more irregular vertices: None leaves a tenth less of them at 2000 triangles, and some limbs coarse). An array: at each point of the outline so many times the triangles of elsewhere, as a sequence for the outline and its holes. It is a wish:
 ///     the map stays conformal, so that neighbouring triangles differ little in size. Numbers not together with
 ///     self_crossing="union".
 /// keep : Patch, optional

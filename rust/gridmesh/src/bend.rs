@@ -35,14 +35,21 @@ use crate::error::Result;
 use crate::lattice::axial::Axial;
 use crate::options::{CellShape, Density};
 use crate::path::outline::Outline;
-use crate::path::placement::{Laid, Lattice};
+use crate::path::placement::{Laid, Lattice, ROW_HEIGHT};
 use crate::progress::Progress;
 use carrier::{Carrier, Line};
 use image::{BentContours, Image, WayBack};
-use width::{Wish, log_widths};
+use width::{Wish, log_limbs, log_widths};
 
 /// Coordinates in a drawing's own frame are multiples of this, in edges.
 const GRAIN: f64 = 1.0 / 1_048_576.0;
+
+/// Price of coarse limbs where thin parts shall be no coarser than on a straight lattice.
+const MIND_LIMBS: f64 = 4.0;
+/// The same where nothing is asked for, in meshes of so many triangles; in others in proportion, as a turn is a share of the
+/// mesh, up to the last. With 2000 triangles .71 % of the vertices are irregular so, else .88 % (medians of 317 drawings).
+const LIMBS: (f64, f64) = (0.4, 2000.0);
+const MOST_LIMBS: f64 = 1.0;
 
 /// A drawing in its own frame, in edges, and the coarse triangulation that carries its maps.
 pub(crate) struct Ground {
@@ -56,6 +63,10 @@ pub(crate) struct Ground {
     densities: Option<Vec<f64>>,
     /// How much finer narrow parts are wished for.
     narrow: Option<f64>,
+    /// Logarithm of the width of the limb at the carrier's boundary vertices; empty where limbs may be as coarse as they come.
+    limbs: Vec<f64>,
+    /// Price of limbs coarser than on a straight lattice, in turns for an edge of contour and a factor of e.
+    price_of_limbs: f64,
     /// The first axis of the frame is an axis of symmetry.
     is_symmetric: bool,
     /// What lattice the plane is bent for.
@@ -85,12 +96,34 @@ impl Ground {
             },
             _ => None,
         };
-        let narrow = match density {
+        let share = match density {
             Some(&Density::Width(share)) => Some(share),
             _ => None,
         };
+        let narrow = share.filter(|&share| share > 0.0);
         let widths = log_widths(&carrier, progress)?;
-        Ok(Some(Self { frame, lines, carrier, widths, densities, narrow, is_symmetric, shape }))
+        let (mut limbs, mut price_of_limbs) = (Vec::new(), 0.0);
+        if shape == CellShape::Triangle && densities.is_none() && narrow.is_none() {
+            limbs = log_limbs(&carrier, progress)?;
+            let (each, count) = LIMBS;
+            let triangles = carrier.areas().iter().sum::<f64>() / (0.5 * ROW_HEIGHT);
+            price_of_limbs = match share {
+                Some(_) => MIND_LIMBS,
+                None => (each * triangles / count).min(MOST_LIMBS),
+            };
+        }
+        Ok(Some(Self {
+            frame,
+            lines,
+            carrier,
+            widths,
+            densities,
+            narrow,
+            limbs,
+            price_of_limbs,
+            is_symmetric,
+            shape,
+        }))
     }
 
     /// True if sizes are asked for.
@@ -146,6 +179,8 @@ pub(crate) struct Bent {
     turn: f64,
     /// What its range of sizes is worth, in turns.
     pub(crate) price: f64,
+    /// What its coarse limbs are, in turns, where it is compared with other bends.
+    pub(crate) limbs: f64,
     /// Whether the map was made for another drawing.
     is_followed: bool,
 }

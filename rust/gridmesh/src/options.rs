@@ -56,7 +56,8 @@ pub enum Mirror {
 /// Where a drawing should have more triangles than elsewhere.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Density {
-    /// In narrow parts, 0 to 1: at 1 they have up to eleven times the triangles, so far as others can be larger.
+    /// In narrow parts, 0 to 1: at 1 they have up to eleven times the triangles, so far as others can be larger; at 0 they are
+    /// about as fine as on a straight lattice, for some more irregular vertices.
     Width(f64),
     /// At each input point so many times the triangles of elsewhere: the outline's numbers, then those of
     /// the holes; a contour with no numbers has no wish.

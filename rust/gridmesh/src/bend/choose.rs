@@ -8,7 +8,7 @@ use super::conformal::{Operators, Rotation, Solver, keep_area};
 use super::directions::Directions;
 use super::image::{BentContours, Image};
 use super::mirrored::Mirrored;
-use super::price::{largest_over_median, price_of_size};
+use super::price::{coarseness_of_limbs, largest_over_median, price_of_size};
 use super::tangents::Tangents;
 use super::width::{Wish, narrowest};
 use super::{Bent, Ground};
@@ -50,6 +50,8 @@ const ASKED: (f64, usize) = (4.0, 12);
 /// The same of the wish for finer narrow parts on a lattice of squares: with a third of it the bend leaves limbs so coarse that
 /// they lose their corners.
 const QUAD_SIZE: (f64, usize) = (0.3, 3);
+/// The share of the wish for finer narrow parts in a bend that is made where limbs would be coarse.
+const FINER: f64 = 0.5;
 /// The largest log of the edge length that 99 % of the edges do not reach, over the median.
 const UNEVEN: f64 = 0.65;
 /// Shares of a bend that are tried while the bent drawing overlaps itself.
@@ -100,8 +102,11 @@ pub(crate) fn candidates(
     if ground.shape == CellShape::Quad {
         return cheapest(&chosen, count, |rotation| maker.priced_quads(rotation));
     }
-    let sized: Vec<Result<(f64, Rotation)>> = chosen.par_iter().map(|r| maker.priced(r)).collect();
-    let mut sized = sized.into_iter().collect::<Result<Vec<(f64, Rotation)>>>()?;
+    let priced: Vec<Result<Vec<(f64, Rotation)>>> = chosen.par_iter().map(|r| maker.priced(r)).collect();
+    let mut sized = Vec::new();
+    for priced in priced {
+        sized.extend(priced?);
+    }
     sized.sort_by(|a, b| a.0.total_cmp(&b.0));
     sized.truncate(MADE);
     let made: Vec<Result<Option<(Bent, f64)>>> = sized
@@ -186,14 +191,28 @@ impl Maker<'_> {
         Ok(self.operators.judged(v, self.turn))
     }
 
-    /// A rotation that minds its scale, with its cost in turns.
-    fn priced(&self, rotation: &Rotation) -> Result<(f64, Rotation)> {
+    /// A rotation that minds its scale, with its cost in turns; and where limbs would be coarse, one that makes narrow
+    /// parts finer.
+    fn priced(&self, rotation: &Rotation) -> Result<Vec<(f64, Rotation)>> {
+        let (cost, coarse, sized) = self.with_cost(self.sized(rotation)?)?;
+        let mut found = vec![(cost, sized)];
+        if coarse > 0.0 {
+            let wish = Wish::of_narrowness(&self.ground.widths, FINER);
+            let v = self.solver.sized(rotation, self.pull, ASKED, &wish)?;
+            let (cost, _, finer) = self.with_cost(self.operators.judged(v, self.turn))?;
+            found.push((cost, finer));
+        }
+        Ok(found)
+    }
+
+    /// What a rotation is expected to cost, in turns, its sizes and coarse limbs included; and these alone.
+    fn with_cost(&self, rotation: Rotation) -> Result<(f64, f64, Rotation)> {
         let ground = self.ground;
-        let rotation = self.sized(rotation)?;
         let mut u = self.solver.scale(&rotation.v)?;
         keep_area(&ground.carrier, &mut u);
         let price = if ground.is_asked() { 0.0 } else { price_of_size(ground, &u, &self.narrowest) };
-        Ok((cost(&rotation) + price, rotation))
+        let coarse = ground.price_of_limbs * coarseness_of_limbs(ground, &u);
+        Ok((cost(&rotation) + price + coarse, coarse, rotation))
     }
 
     /// The bend of quads by a rotation, with its cost in turns.
@@ -221,7 +240,7 @@ impl Maker<'_> {
     fn expected(&self, bent: &Bent) -> f64 {
         let found = self.operators.directions(&bent.image.v, self.turn);
         let of = |d: &Directions| d.turns as f64 + MISFIT_MADE * d.misfit;
-        found.iter().map(of).sum::<f64>() + bent.price
+        found.iter().map(of).sum::<f64>() + bent.price + bent.limbs
     }
 }
 
@@ -281,6 +300,7 @@ fn bent(
         }
         let is_asked = ground.is_asked();
         let price = if is_asked { 0.0 } else { price_of_size(ground, &u, narrowest) };
+        let limbs = ground.price_of_limbs * coarseness_of_limbs(ground, &u);
         let image = Image { positions, u, v };
         let is_free = is_asked || ground.shape == CellShape::Quad;
         let is_uneven = !is_free && largest_over_median(ground, &image.u) > UNEVEN;
@@ -295,6 +315,7 @@ fn bent(
                 share,
                 turn,
                 price,
+                limbs,
                 is_followed: false,
             }));
         }

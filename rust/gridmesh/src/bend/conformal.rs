@@ -73,7 +73,7 @@ impl Operators {
         let contour = |(rim, t): (&Rim, &Tangents)| (rim.start, rim.len(), t.total(step));
         let contours = carrier.rims.iter().zip(tangents).map(contour).collect();
         let lengths = carrier.lengths();
-        let pulls = lengths.iter().zip(room(widths)).map(|(length, room)| length * room).collect();
+        let pulls = lengths.iter().zip(room(widths, shape)).map(|(length, room)| length * room).collect();
         Ok(Self { topology, weights, pattern, lengths, pulls, tangents: at_rim, contours, step })
     }
 

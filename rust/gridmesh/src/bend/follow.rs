@@ -56,6 +56,7 @@ impl Bent {
             share: self.share,
             turn: self.turn,
             price: 0.0,
+            limbs: 0.0,
             is_followed: true,
         })
     }

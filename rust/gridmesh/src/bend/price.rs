@@ -1,4 +1,4 @@
-//! What unequal sizes of a bent lattice cost beside turns.
+//! What unequal sizes of a bent lattice and coarse limbs cost beside turns.
 
 use super::Ground;
 use crate::options::CellShape;
@@ -11,6 +11,11 @@ const UNEVEN: (f64, f64) = (0.35, 40.0);
 const UNEVEN_OF_QUADS: (f64, f64) = (0.45, 30.0);
 /// So does the longest edge, linearly.
 const LONGEST: (f64, f64) = (0.8, 5.0);
+
+/// With so many edges across, the end of a limb looks round.
+const ROUND: f64 = 3.0;
+/// The largest factor by which limbs count as too coarse, as a logarithm.
+const COARSEST: f64 = 1.0;
 
 /// Log edge lengths, ascending, each counted by the lattice edges that have it; with the sum of the counts.
 struct Sizes(Vec<(f64, f64)>, f64);
@@ -68,4 +73,16 @@ pub(super) fn price_of_size(ground: &Ground, u: &[f64], narrowest: &[bool]) -> f
     let longest = sizes.0.last().map_or(0.0, |s| s.0);
     thin + each * (sizes.quantile(0.99) - middle - free).max(0.0).powi(2)
         + longer * (longest - middle - rare).max(0.0)
+}
+
+/// By how much limbs are coarser than on a straight lattice, as far as their ends lack edges to be round: the logarithm,
+/// summed along the contours, in edges. The end of a limb whose sides converge in the bent plane needs a turn less, and so
+/// does its base; but it has fewer edges across.
+pub(super) fn coarseness_of_limbs(ground: &Ground, u: &[f64]) -> f64 {
+    let lengths = ground.carrier.lengths();
+    let of = |((width, length), u): ((&f64, &f64), &f64)| {
+        let lacking = libm::log(ROUND) - width - u;
+        length * lacking.min(-u).clamp(0.0, COARSEST)
+    };
+    ground.limbs.iter().zip(&lengths).zip(u).map(of).sum()
 }

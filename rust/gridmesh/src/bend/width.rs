@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::carrier::{Carrier, Rim};
 use crate::error::Result;
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Parts narrower than this want more triangles across, in edges.
@@ -47,10 +48,43 @@ fn narrowness(widths: &[f64]) -> Vec<f64> {
 
 /// How much the direction of each boundary vertex counts, 0 to 1: less at tips and in parts too narrow for
 /// two lattice lines, which no lattice direction suits.
-pub fn room(widths: &[f64]) -> Vec<f64> {
-    const NARROW: f64 = 2.5;
+pub fn room(widths: &[f64], shape: CellShape) -> Vec<f64> {
     const LEAST: f64 = 0.02;
-    widths.iter().map(|width| (libm::exp(*width) / NARROW).powi(2).clamp(LEAST, 1.0)).collect()
+    let narrow = match shape {
+        CellShape::Triangle => 1.2,
+        CellShape::Quad => 2.5,
+    };
+    widths.iter().map(|width| (libm::exp(*width) / narrow).powi(2).clamp(LEAST, 1.0)).collect()
+}
+
+/// Logarithm of the width of the limb at each boundary vertex, in edges: of the largest disc inside the drawing that comes
+/// near it. A bump on the rim of a wide part is no limb.
+///
+/// O(number of boundary vertices times number of all).
+///
+/// # Errors
+/// [`Error::Cancelled`](crate::error::Error::Cancelled).
+pub fn log_limbs(carrier: &Carrier, progress: Progress<'_>) -> Result<Vec<f64>> {
+    /// A disc that ends so far from a boundary vertex, in edges, comes near it.
+    const NEAR: f64 = 0.7;
+    const LEAST: f64 = 0.5;
+    let n: usize = carrier.rims.iter().map(Rim::len).sum();
+    let (rim, inner) = carrier.vertices.split_at(n);
+    let mut discs: Vec<(DVec2, f64)> = Vec::with_capacity(inner.len());
+    for (i, &centre) in inner.iter().enumerate() {
+        if i % ASKED == 0 {
+            progress.report(0.0)?;
+        }
+        let nearest = rim.iter().map(|p| p.distance_squared(centre)).fold(f64::INFINITY, f64::min);
+        discs.push((centre, nearest.sqrt()));
+    }
+    let width = |p: &DVec2| {
+        let reaches =
+            |&&(centre, radius): &&(DVec2, f64)| p.distance_squared(centre) <= (radius + NEAR).powi(2);
+        let largest = discs.iter().filter(reaches).map(|disc| disc.1).fold(LEAST, f64::max);
+        libm::log(2.0 * largest)
+    };
+    Ok(rim.iter().map(width).collect())
 }
 
 /// The boundary vertices in the narrowest part of the contours, a seventh of their length.

@@ -27,6 +27,11 @@ const EDGES: f64 = 150.0;
 const TRACED: usize = 3;
 const TRACED_OF_QUADS: usize = 2;
 
+/// What a path on a bent lattice costs beside others, in turns.
+fn expected((bent, _, outline): &(Bent, Lattice, Outline)) -> f64 {
+    bent.price + bent.limbs + outline.cost
+}
+
 /// Share of the bend that quads are tried with where no patch on the whole bend is good.
 const WEAKER: f64 = 0.75;
 
@@ -87,14 +92,14 @@ impl Job<'_> {
             while let Some((mut bent, _)) = bends.next() {
                 bent.share *= strength;
                 let Some(traced) = self.bent_outline(asked, bent, progress.part(0.1, 0.3))? else { continue };
-                let cost = traced.0.price + traced.2.cost;
+                let cost = expected(&traced);
                 outlines.push(traced);
                 let next = bends.peek().map_or(f64::INFINITY, |next| next.1);
                 if self.options.cells == CellShape::Triangle && cost <= next {
                     break;
                 }
             }
-            outlines.sort_by(|a, b| (a.0.price + a.2.cost).total_cmp(&(b.0.price + b.2.cost)));
+            outlines.sort_by(|a, b| expected(a).total_cmp(&expected(b)));
             self.lap("bend", started);
             if self.best_placed(outlines, best, progress)? {
                 return Ok(true);
@@ -123,7 +128,7 @@ impl Job<'_> {
             let bent = Some((Arc::new(bent), lattice));
             let found = Found { faults, bent, outline, placed, mirror_error };
             let is_good = found.is_good();
-            if best.as_ref().is_none_or(|best| found.score() < best.score()) {
+            if best.as_ref().is_none_or(|best| found.score_of_bent() < best.score_of_bent()) {
                 *best = Some(found);
             }
             if is_good {

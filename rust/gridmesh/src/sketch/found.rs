@@ -100,6 +100,11 @@ impl Found {
         self.outline.cost + price + shape + self.overlong() + corners
     }
 
+    /// The same beside other bends, where coarse limbs count too.
+    pub(crate) fn score_of_bent(&self) -> f64 {
+        self.score() + self.bent.as_ref().map_or(0.0, |(bent, _)| bent.limbs)
+    }
+
     /// True if neither another bend nor, where it turns little, a straight lattice needs to be tried.
     pub(crate) fn is_good(&self) -> bool {
         self.faults <= SLIGHT
