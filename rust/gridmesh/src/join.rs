@@ -16,6 +16,7 @@ mod rims;
 mod site;
 mod strips;
 mod take;
+mod tries;
 mod union;
 
 pub use self::assemble::Joined;
