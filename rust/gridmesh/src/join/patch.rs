@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 use super::site::Site;
 use super::strips::Strip;
 use super::take::{Taken, surroundings, take};
-use super::tries::{Try, better};
+use super::tries::{Kind, Patch, Try, better};
 use crate::error::{Error, Result};
 use crate::fill::even::fair::{Beyond, fair};
 use crate::fill::even::local::Local;
@@ -43,49 +43,6 @@ const AROUND: [f64; 2] = [2.0, 6.0];
 /// lengths.
 const HELD: usize = 4;
 const BESIDE: f64 = 2.0;
-
-/// How a patch was made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// A lattice tube between two rims.
-    Tube,
-    /// A grid patch in one rim.
-    Fill,
-    /// The union's own surface, triangulated anew.
-    Strip,
-    /// The same with the line as a crease, though a blend was asked for.
-    Crease,
-    /// The union's own triangles.
-    Exact,
-}
-
-/// What takes the place of a strip.
-#[derive(Clone)]
-pub(super) struct Patch {
-    pub kind: Kind,
-    /// Its new vertices.
-    pub vertices: Vec<DVec3>,
-    /// Numbers from that of the parts' vertices on are the new vertices.
-    pub triangles: Vec<[u32; 3]>,
-}
-
-impl Patch {
-    /// It by itself, the vertices of its border first; `None` if it has other vertices of the parts.
-    pub fn local(&self, site: &Site<'_>, border: &[u32]) -> Option<Local> {
-        let (n, m) = (site.parts.vertices.len() as u32, border.len() as u32);
-        let place = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect::<FxHashMap<u32, u32>>();
-        let number = |v: u32| if v < n { place.get(&v).copied() } else { Some(m + v - n) };
-        let mut triangles = Vec::with_capacity(self.triangles.len());
-        for t in &self.triangles {
-            let [Some(a), Some(b), Some(c)] = t.map(number) else { return None };
-            triangles.push([a, b, c]);
-        }
-        let rims = border.iter().map(|&v| site.parts.vertices[v as usize]);
-        let positions = rims.chain(self.vertices.iter().copied()).collect();
-        let sides = vec![0; triangles.len()];
-        Some(Local::new(positions, triangles, sides, border.len()))
-    }
-}
 
 /// A strip with what lies around it.
 struct Place<'a> {
