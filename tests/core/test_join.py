@@ -378,6 +378,9 @@ def test_a_campaign_of_random_bodies():
     of = lambda name: np.array([getattr(it, name) for it in measures])  # noqa: E731
     assert np.median(of("irregular")) <= 0.06
     assert np.median(of("angle")) >= 18
+    assert of("angle").min() >= 10
+    assert of("ratio").max() <= 4
+    assert of("collar").max() <= 0.15
     assert of("meetings").max() == 0
     assert np.median(of("volume")) <= 0.03
 

@@ -2,7 +2,8 @@
 //!
 //! `local` is the mesh whose edges are split, collapsed and flipped, `remesh` does so until all are about as long as wanted, on the
 //! surface as it was (`nearest`), `regular` takes irregular vertices out (`net`), `fair` makes the surface smooth to what lies beyond the
-//! border, `polish` makes thin triangles rounder, `untangle` takes back what of it meets something.
+//! border, `polish` makes thin triangles rounder, `untangle` takes back what of it meets something, `slivers` what thin triangles
+//! that has left.
 
 pub(crate) mod fair;
 pub(crate) mod local;
@@ -11,4 +12,5 @@ mod net;
 pub(crate) mod polish;
 pub(crate) mod regular;
 pub(crate) mod remesh;
+pub(crate) mod slivers;
 pub(crate) mod untangle;

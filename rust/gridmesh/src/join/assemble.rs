@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::options::JoinReport;
 use super::parts::{Parts, volume};
-use super::patch::{Kind, Patch};
 use super::rims::Outside;
 use super::site::Site;
+use super::tries::{Kind, Patch};
 use crate::error::{Error, Result};
 use crate::fill::surface::meet::{Box3, MOST, count_meetings, near_boxes};
 use crate::geometry::metrics::{check_mesh, min_angle};

@@ -8,9 +8,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::patch::{Kind, Patch};
 use super::site::Site;
 use super::strips::Strip;
+use super::tries::{Kind, Patch};
 use crate::error::{Error, Result};
 use crate::fill::even::local::{Local, quality};
 use crate::fill::even::nearest::Facets;

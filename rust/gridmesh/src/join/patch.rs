@@ -9,26 +9,19 @@ use rustc_hash::FxHashMap;
 use super::site::Site;
 use super::strips::Strip;
 use super::take::{Taken, surroundings, take};
+use super::tries::{Kind, Patch, Try, better};
 use crate::error::{Error, Result};
 use crate::fill::even::fair::{Beyond, fair};
 use crate::fill::even::local::Local;
 use crate::fill::even::polish::polish;
-use crate::fill::even::regular::regularize;
+use crate::fill::even::regular::{regularize, regularize_beside};
 use crate::fill::even::remesh::{Ground, flip_valences, mend_thin, remesh};
+use crate::fill::even::slivers::mend_slivers;
 use crate::fill::even::untangle::{Near, tangled, untangle};
 use crate::fill::surface::meet::Box3;
 use crate::fill::{BridgeOptions, Fill, FillOptions, bridge, fill_hole};
 use crate::geometry::metrics::min_angle;
 use crate::progress::Progress;
-
-/// Angles, in radians, below which a patch is worse for it.
-const FINE: f64 = 0.35;
-
-/// So many irregular vertices weigh as much as an angle of nothing instead of a fine one.
-const FLAT: f64 = 60.0;
-
-/// Irregular vertices that a tube or a fill may have, by vertex, before it is compared with others.
-const FEW: f64 = 0.04;
 
 /// Rounds of flips and fairing.
 const ROUNDS: usize = 3;
@@ -46,86 +39,10 @@ const MANY: (f64, f64) = (4_000.0, 3.0);
 const SHORTER: f64 = 0.6;
 const AROUND: [f64; 2] = [2.0, 6.0];
 
-/// How a patch was made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// A lattice tube between two rims.
-    Tube,
-    /// A grid patch in one rim.
-    Fill,
-    /// The union's own surface, triangulated anew.
-    Strip,
-    /// The same with the line as a crease, though a blend was asked for.
-    Crease,
-    /// The union's own triangles.
-    Exact,
-}
-
-/// What takes the place of a strip.
-#[derive(Clone)]
-pub(super) struct Patch {
-    pub kind: Kind,
-    /// Its new vertices.
-    pub vertices: Vec<DVec3>,
-    /// Numbers from that of the parts' vertices on are the new vertices.
-    pub triangles: Vec<[u32; 3]>,
-}
-
-impl Patch {
-    /// It by itself, the vertices of its border first; `None` if it has other vertices of the parts.
-    pub fn local(&self, site: &Site<'_>, border: &[u32]) -> Option<Local> {
-        let (n, m) = (site.parts.vertices.len() as u32, border.len() as u32);
-        let place = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect::<FxHashMap<u32, u32>>();
-        let number = |v: u32| if v < n { place.get(&v).copied() } else { Some(m + v - n) };
-        let mut triangles = Vec::with_capacity(self.triangles.len());
-        for t in &self.triangles {
-            let [Some(a), Some(b), Some(c)] = t.map(number) else { return None };
-            triangles.push([a, b, c]);
-        }
-        let rims = border.iter().map(|&v| site.parts.vertices[v as usize]);
-        let positions = rims.chain(self.vertices.iter().copied()).collect();
-        let sides = vec![0; triangles.len()];
-        Some(Local::new(positions, triangles, sides, border.len()))
-    }
-}
-
-/// A patch and what is wrong with it.
-struct Try {
-    patch: Patch,
-    /// Changes the volume by more than a blend does.
-    far: bool,
-    /// Triangles, or pairs of them, that meet something.
-    meetings: usize,
-    angle: f64,
-    /// Vertices with other numbers of triangles than wanted, those of the rims too.
-    odd: usize,
-    /// Where something meets.
-    places: Vec<DVec3>,
-}
-
-impl Try {
-    /// Less is better.
-    fn faults(&self) -> (bool, usize, f64) {
-        (self.far, self.meetings, self.odd as f64 + FLAT * (1.0 - self.angle / FINE).max(0.0))
-    }
-
-    fn is_sound(&self) -> bool {
-        !self.far && self.meetings == 0
-    }
-
-    fn is_fine(&self) -> bool {
-        self.is_sound() && self.angle > FINE
-    }
-
-    fn is_good(&self) -> bool {
-        self.is_fine() && (self.odd as f64) <= FEW * self.patch.vertices.len() as f64
-    }
-}
-
-/// That of two with fewer faults; the first of equal ones.
-fn better(a: Try, b: Try) -> Try {
-    if a.faults() <= b.faults() { a } else { b }
-}
+/// Times that triangles are made more regular anew, with more that stay as they are, and how far around what met something, in edge
+/// lengths.
+const HELD: usize = 4;
+const BESIDE: f64 = 2.0;
 
 /// A strip with what lies around it.
 struct Place<'a> {
@@ -160,7 +77,7 @@ impl Place<'_> {
             }
             let other = self.refined(&it.patch, progress.part(0.3, 0.5))?;
             let it = other.into_iter().fold(it, better);
-            if it.is_fine() {
+            if it.is_fine() && it.is_even() {
                 return Ok(it.patch);
             }
             best = Some(it);
@@ -242,7 +159,8 @@ impl Place<'_> {
         let beyond = surroundings(self.site, self.strip, &self.border, &self.place, &mut local);
         let ground = Ground::of(&local);
         regularize(&mut local, Some(&ground), progress.part(0.0, 0.4))?;
-        self.smoothed(local, &beyond, patch.kind, progress.part(0.4, 1.0)).map(Some)
+        let (local, bad) = self.smoothed(local, &beyond, progress.part(0.4, 1.0))?;
+        Ok(Some(self.tried(&local, &bad, patch.kind)))
     }
 
     /// The strip with even triangles, faired unless the line is to stay; with shorter edges where that would meet something. `None` if
@@ -268,15 +186,7 @@ impl Place<'_> {
                 let bad = tangled(&local, self.near(), part.part(0.4, 1.0))?;
                 self.tried(&local, &bad, kind)
             } else {
-                let plain = local.clone();
-                regularize(&mut local, Some(&ground), part.part(0.4, 0.6))?;
-                let made = self.smoothed(local, beyond, kind, part.part(0.6, 0.8))?;
-                if made.is_sound() {
-                    made
-                } else {
-                    // More regular is not always as near to where nothing meets.
-                    better(made, self.smoothed(plain, beyond, kind, part.part(0.8, 1.0))?)
-                }
+                self.regular(local, &ground, beyond, kind, part.part(0.4, 1.0))?
             };
             let (places, far) = (made.places.clone(), made.far);
             let hopeless = best.as_ref().is_some_and(|best| 2 * made.meetings > best.meetings);
@@ -292,6 +202,69 @@ impl Place<'_> {
             }
         }
         Ok(best)
+    }
+
+    /// Even triangles, made more regular and faired; where that meets something, more regular only where it does not.
+    fn regular(
+        &self,
+        plain: Local,
+        ground: &Ground,
+        beyond: &Beyond,
+        kind: Kind,
+        progress: Progress<'_>,
+    ) -> Result<Try> {
+        let mut local = plain.clone();
+        regularize(&mut local, Some(ground), progress.part(0.0, 0.2))?;
+        let (local, bad) = self.smoothed(local, beyond, progress.part(0.2, 0.4))?;
+        let mut best = self.tried(&local, &bad, kind);
+        if best.is_sound() {
+            return Ok(best);
+        }
+        let (sound, bad) = self.smoothed(plain, beyond, progress.part(0.4, 0.6))?;
+        best = better(best, self.tried(&sound, &bad, kind));
+        if !bad.is_empty() {
+            return Ok(best);
+        }
+        match self.eased(&sound, beyond, progress.part(0.6, 1.0))? {
+            Some(local) => Ok(better(best, self.tried(&local, &[], kind))),
+            None => Ok(best),
+        }
+    }
+
+    /// A finished patch that meets nothing, made more regular where that stays so.
+    fn eased(&self, sound: &Local, beyond: &Beyond, progress: Progress<'_>) -> Result<Option<Local>> {
+        let ground = Ground::of(sound);
+        let (mut held, mut places): (Vec<u32>, Vec<DVec3>) = (vec![], vec![]);
+        // How far from all places, in edge lengths.
+        let far = |local: &Local, v: usize, places: &[DVec3]| {
+            let near = places.iter().map(|q| q.distance(local.positions[v]));
+            near.fold(f64::INFINITY, f64::min) / local.sizes[v]
+        };
+        for round in 0..HELD {
+            let at = |k: usize| k as f64 / HELD as f64;
+            let part = progress.part(at(round), at(round + 1));
+            let mut local = sound.clone();
+            regularize_beside(&mut local, Some(&ground), &held, part.part(0.0, 0.5))?;
+            let bad = tangled(&local, self.near(), part.part(0.5, 0.6))?;
+            if bad.is_empty() {
+                let flat = local.positions.clone();
+                let smooth = fair(&local, beyond, part.part(0.6, 0.8))?;
+                for v in local.border..flat.len() {
+                    let share = (far(&local, v, &places) / BESIDE - 1.0).clamp(0.0, 1.0);
+                    local.positions[v] = flat[v].lerp(smooth[v], share);
+                }
+                if !untangle(&mut local, &flat, self.near(), polish, part.part(0.8, 0.9))?.is_empty() {
+                    local.positions = flat;
+                }
+                mend_slivers(&mut local, self.near(), part.part(0.9, 1.0))?;
+                return Ok(Some(local));
+            }
+            places.extend(bad.iter().map(|&t| middle(&local, t)));
+            held = (0..sound.positions.len() as u32)
+                .filter(|&v| far(sound, v as usize, &places) < BESIDE)
+                .collect();
+        }
+        Ok(None)
     }
 
     /// Whether triangles in place of the strip change the volume by more than a blend does.
@@ -312,8 +285,13 @@ impl Place<'_> {
         (new - old).abs() > 6.0 * CHANGED * own
     }
 
-    /// Fairs, as far as nothing meets by it.
-    fn smoothed(&self, mut local: Local, beyond: &Beyond, kind: Kind, progress: Progress<'_>) -> Result<Try> {
+    /// Fairs, as far as nothing meets by it; and the triangles that do.
+    fn smoothed(
+        &self,
+        mut local: Local,
+        beyond: &Beyond,
+        progress: Progress<'_>,
+    ) -> Result<(Local, Vec<u32>)> {
         let flat = local.positions.clone();
         for round in 0..ROUNDS {
             let at = |k: usize| 0.5 * k as f64 / ROUNDS as f64;
@@ -322,8 +300,11 @@ impl Place<'_> {
         }
         local.positions = fair(&local, beyond, progress.part(0.5, 0.6))?;
         mend_thin(&mut local);
-        let bad = untangle(&mut local, &flat, self.near(), polish, progress.part(0.6, 1.0))?;
-        Ok(self.tried(&local, &bad, kind))
+        let bad = untangle(&mut local, &flat, self.near(), polish, progress.part(0.6, 0.95))?;
+        if bad.is_empty() {
+            mend_slivers(&mut local, self.near(), progress.part(0.95, 1.0))?;
+        }
+        Ok((local, bad))
     }
 
     fn tried(&self, local: &Local, bad: &[u32], kind: Kind) -> Try {
@@ -336,14 +317,18 @@ impl Place<'_> {
             vertices: local.positions[m as usize..].to_vec(),
             triangles: local.triangles.iter().map(|t| t.map(name)).collect(),
         };
-        let middle = |&t: &u32| local.corners(t).iter().sum::<DVec3>() / 3.0;
         Try {
             far: self.is_far(&patch.vertices, &patch.triangles),
             patch,
             meetings: bad.len(),
             angle: min_angle(&local.positions, &local.triangles),
             odd: (0..local.positions.len() as u32).filter(off).count(),
-            places: bad.iter().map(middle).collect(),
+            places: bad.iter().map(|&t| middle(local, t)).collect(),
         }
     }
+}
+
+/// The middle of a triangle.
+fn middle(local: &Local, t: u32) -> DVec3 {
+    local.corners(t).iter().sum::<DVec3>() / 3.0
 }

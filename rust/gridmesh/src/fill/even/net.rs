@@ -23,6 +23,8 @@ pub(super) struct Net {
     /// Wanted edge length at each vertex.
     pub sizes: Vec<f64>,
     pub border: usize,
+    /// Vertices whose triangles stay as they are; those that come later are none of them.
+    pub held: Vec<bool>,
     taken: FxHashSet<[u32; 2]>,
     /// For each corner of a triangle the triangle beyond the edge that faces it.
     across: Vec<[u32; 3]>,
@@ -75,6 +77,7 @@ impl Net {
             sizes: local.sizes.clone(),
             taken: local.taken.clone(),
             border: local.border,
+            held: vec![false; n],
             triangles,
             across,
             count,
@@ -287,6 +290,7 @@ impl Net {
         self.positions[v as usize] = here;
         self.positions.push(there);
         self.sizes.push(self.sizes[v as usize]);
+        self.held.push(false);
         self.at.push(first);
         self.at[v as usize] = after;
         self.count.push(m as i32 + 2);
@@ -310,7 +314,9 @@ impl Net {
             }
         }
         for (v, (sum, normals)) in sums.into_iter().enumerate().skip(self.border) {
-            let (true, Some(up)) = (self.count[v] > 0, normals.try_normalize()) else { continue };
+            let (true, Some(up)) = (self.count[v] > 0 && !self.held[v], normals.try_normalize()) else {
+                continue;
+            };
             let p = self.positions[v];
             let mean = sum / f64::from(2 * self.count[v]);
             let there = p + PART * (mean - p).reject_from_normalized(up);

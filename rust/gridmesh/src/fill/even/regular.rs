@@ -59,10 +59,24 @@ impl Dice {
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled).
 pub(crate) fn regularize(local: &mut Local, ground: Option<&Ground>, progress: Progress<'_>) -> Result<()> {
+    regularize_beside(local, ground, &[], progress)
+}
+
+/// The same where the triangles of some vertices stay as they are.
+///
+/// # Errors
+/// [`Error::Cancelled`](crate::error::Error::Cancelled).
+pub(crate) fn regularize_beside(
+    local: &mut Local,
+    ground: Option<&Ground>,
+    held: &[u32],
+    progress: Progress<'_>,
+) -> Result<()> {
     if !local.hard.is_empty() {
         return Ok(());
     }
-    let net = Net::new(local);
+    let mut net = Net::new(local);
+    held.iter().for_each(|&v| net.held[v as usize] = true);
     let before = cost(&net);
     // They cannot all be taken out: flips leave the sum as it is.
     let least = 2 * net.off.iter().sum::<i32>().abs();
@@ -87,7 +101,10 @@ pub(crate) fn regularize(local: &mut Local, ground: Option<&Ground>, progress: P
     if cost(&annealer.net) < before {
         annealer.net.write(local);
     }
-    relax(local, ground);
+    // It would move the held ones, too.
+    if held.is_empty() {
+        relax(local, ground);
+    }
     Ok(())
 }
 
@@ -194,7 +211,7 @@ impl Annealer {
 
     fn flip(&mut self, it: Pair) {
         let [a, b, c, d] = [it.a, it.b, it.c, it.d].map(|v| self.off(v));
-        if a | b | c | d == 0 {
+        if a | b | c | d == 0 || [it.a, it.b, it.c, it.d].into_iter().any(|v| self.net.held[v as usize]) {
             return;
         }
         let after = price(a - 1) + price(b - 1) + price(c + 1) + price(d + 1);
@@ -221,7 +238,12 @@ impl Annealer {
             self.net.ring(v, &mut ring);
             let regular = self.off(v) == 0 && ring.iter().all(|r| self.off(r[0]) == 0);
             // A vertex where two fans meet stays.
-            if regular || ring.len() as i32 != self.net.count[v as usize] {
+            let held = |v: u32| self.net.held[v as usize];
+            if regular
+                || ring.len() as i32 != self.net.count[v as usize]
+                || held(v)
+                || ring.iter().any(|r| held(r[0]))
+            {
                 continue;
             }
             if !self.collapse(v, &ring) {
@@ -281,6 +303,8 @@ impl Annealer {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use glam::DVec3;
 
     use super::*;
@@ -335,6 +359,27 @@ mod tests {
         assert!(10 * after <= before, "{before} {after}");
         let thin = (0..local.triangles.len() as u32).map(|t| quality(local.corners(t)));
         assert!(thin.fold(1.0, f64::min) > 0.3);
+    }
+
+    #[test]
+    fn what_is_held_stays_and_the_rest_becomes_regular() {
+        let mut local = shuffled(6, 60);
+        let held = (0..local.positions.len() as u32).filter(|&v| local.positions[v as usize].x < -1.0);
+        let held = held.collect::<Vec<_>>();
+        // Held vertices do not move, so that their positions tell them.
+        let name = |local: &Local, v: u32| local.positions[v as usize].to_array().map(f64::to_bits);
+        let names = held.iter().map(|&v| name(&local, v)).collect::<BTreeSet<_>>();
+        let own = |local: &Local| {
+            let corners = local.triangles.iter().map(|t| t.map(|v| name(local, v)));
+            let mut all = corners.filter(|t| t.iter().all(|p| names.contains(p))).collect::<Vec<_>>();
+            all.iter_mut().for_each(|t| t.sort_unstable());
+            all.sort_unstable();
+            all
+        };
+        let (before, first) = (cost(&Net::new(&local)), own(&local));
+        regularize_beside(&mut local, None, &held, Progress::NONE).unwrap();
+        let after = cost(&Net::new(&local));
+        assert!(first.len() > 30 && own(&local) == first && after < before / 2, "{before} {after}");
     }
 
     #[test]

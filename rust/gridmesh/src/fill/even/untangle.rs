@@ -56,6 +56,14 @@ impl Near {
         }
         near
     }
+
+    /// The positions of a patch and of what is near, and the triangles of what is near between them.
+    pub(super) fn beside(&self, local: &Local) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let (border, own) = (local.border as u32, local.positions.len() as u32);
+        let named = |v: u32| if v < border { v } else { v - border + own };
+        let triangles = self.triangles.iter().map(|t| t.map(named)).collect();
+        ([&local.positions[..], &self.positions[..]].concat(), triangles)
+    }
 }
 
 /// The triangles of a patch that meet others of it, or what is near, elsewhere than in shared vertices and edges (exact
@@ -64,12 +72,8 @@ impl Near {
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled).
 pub(crate) fn tangled(local: &Local, near: &Near, progress: Progress<'_>) -> Result<Vec<u32>> {
-    let border = local.border as u32;
-    let own = local.positions.len() as u32;
-    let vertices = [&local.positions[..], &near.positions[..]].concat();
-    let named = |v: u32| if v < border { v } else { v - border + own };
-    let all = local.triangles.iter().copied().chain(near.triangles.iter().map(|t| t.map(named)));
-    let all = all.collect::<Vec<_>>();
+    let (vertices, around) = near.beside(local);
+    let all = [&local.triangles[..], &around[..]].concat();
     let around = |t: &[u32; 3]| Box3::around(t.map(|v| vertices[v as usize]));
     let boxed = |(k, t): (usize, &[u32; 3])| {
         let own = around(t);
