@@ -14,7 +14,7 @@ use glam::DVec2;
 use crate::cover::outside::{Followers, LoopEdges, loop_of};
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::ClosedCurve;
-use crate::drawing::union::{nearest_source, outer_outline};
+use crate::drawing::union::{nearest_sources, outer_outline};
 use crate::error::{Error, Result, told};
 use crate::options::{SelfCrossing, SketchOptions};
 use crate::patch::Patch;
@@ -96,9 +96,7 @@ pub fn cover_sketch(
         best.patch.loops.iter_mut().zip(std::iter::once(outline).chain(holes.iter().map(Vec::as_slice)))
     {
         let vertices = &best.patch.vertices[contour.start as usize..];
-        for (source, &vertex) in contour.source.iter_mut().zip(vertices) {
-            *source = nearest_source(own, vertex);
-        }
+        contour.source = nearest_sources(own, &vertices[..contour.source.len()]);
     }
     progress.report(1.0)?;
     Ok(Covering { sketch: best, outside: least })
