@@ -135,7 +135,6 @@ fn widened<'p>(
         origin: None,
         mirror: None,
         density: None,
-        self_crossing: SelfCrossing::Union,
         least: false,
         ..options.clone()
     };
@@ -156,7 +155,16 @@ fn widened<'p>(
             wider.push(contour.iter().zip(&*far).zip(outward).map(|((&p, &far), n)| p + far * n).collect());
         }
         let outer: Vec<DVec2> = wider.remove(0);
-        let sketch = match mesh_sketch_on(&kept, &outer, &wider, &options, part(round)) {
+        let made = |self_crossing: SelfCrossing| {
+            let options = SketchOptions { self_crossing, ..options.clone() };
+            mesh_sketch_on(&kept, &outer, &wider, &options, part(round))
+        };
+        // Only few cross themselves, and to find what these enclose takes longer than to see it.
+        let made = match made(SelfCrossing::Error) {
+            Err(Error::SelfIntersecting { .. }) => made(SelfCrossing::Union),
+            made => made,
+        };
+        let sketch = match made {
             Ok(sketch) => sketch,
             Err(Error::Cancelled) => return Err(Error::Cancelled),
             // Wider, it meets itself or is too thin elsewhere: the best so far serves.
