@@ -23,7 +23,7 @@ use crate::progress::Progress;
 use crate::sketch::{Sketch, mesh_sketch, mesh_sketch_on};
 
 /// Patches made at most after the first, each of a wider outline.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 3;
 
 /// What may stay outside, in edge lengths, when no wider outline is tried any more: at 500 triangles a few hundredths of a
 /// pixel of a picture 64 pixels wide.
@@ -51,7 +51,7 @@ pub struct Covering {
 /// most, and single vertices are moved to tips. For pictures on meshes, whose opaque pixels must not be cut off.
 ///
 /// Topology, valences and orientation are as of [`mesh_sketch`]; boundary vertices lie near the contours, not on them.
-/// Takes the time of up to five meshes, four of them on a known lattice.
+/// Takes the time of up to four meshes, three of them on a known lattice.
 ///
 /// # Errors
 /// Those of [`mesh_sketch`]; [`Error::InvalidOption`] if the slack is negative or not finite.
