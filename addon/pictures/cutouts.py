@@ -176,7 +176,7 @@ def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progres
             [parts[k] for k in left],
             {"cells": cells, "edge_length": finer * length, "least": False, **_bend(cells, options)},
             # Lines that are thin for the triangles wanted have many as it is.
-            replace(options, again=options.again and step < 2),
+            replace(options, again=options.again and FINER[step] >= 0.5),
             part_of(progress, step / len(FINER), (step + 1) / len(FINER)),
         )
         for k, surface in zip(left, found, strict=True):
