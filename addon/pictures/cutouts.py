@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,9 @@ FINER = (1.0, 0.7, 0.5, 0.35, 0.25)
 _SQUARE = 0.75
 """How far whole pixels may reach over the outline of what they cover, at most."""
 
+_AGAIN = 0.5
+"""Parts whose edges are at least this long, relative to those of the others, are meshed again where their mesh lacks something."""
+
 CUT_OFF = 0.4
 """Parts of whose outlines this many pixels stay outside, beyond the slack, are meshed finer: middles of pixels lie deeper inside."""
 
@@ -28,6 +31,9 @@ EMPTY = 0.03
 
 EMPTY_OF_BODY = 0.01
 """The same for bodies, whose rims are opaque: seen from the front they overlap their pictures by 99 % where that can be held."""
+
+_MOST = 4
+"""Sizes tried at most for parts that are cut off."""
 
 SHORT = 1 / 3
 """Bodies with edges shorter than this, in mean lengths of their edges, are tried in other sizes: it shows in a texture."""
@@ -63,8 +69,6 @@ class Options:
     """The same of quads; None makes triangles."""
     body: dict[str, Any] | None = None
     """Keyword arguments of `gridmesh.inflate`; None for a flat sheet."""
-    again: bool = True
-    """Parts whose mesh has short edges, cuts something off or is too large are meshed again, finer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,8 +179,9 @@ def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progres
             gridmesh,
             [parts[k] for k in left],
             {"cells": cells, "edge_length": finer * length, "least": False, **_bend(cells, options)},
+            options,
             # Lines that are thin for the triangles wanted have many as it is.
-            replace(options, again=options.again and FINER[step] >= 0.5),
+            finer >= _AGAIN,
             part_of(progress, step / len(FINER), (step + 1) / len(FINER)),
         )
         for k, surface in zip(left, found, strict=True):
@@ -204,9 +209,10 @@ def _surfaces(
     parts: list[Any],
     options: dict[str, Any],
     chosen: Options,
+    again: bool,
     progress: Progress | None,
 ) -> list[Any]:
-    """Surface or GridMeshError for each part."""
+    """Surface or GridMeshError for each part; those that lack something are meshed again, finer, where that is allowed."""
     body = chosen.body
     if body is not None and "corner_angle" in body:
         options = {**options, "corner_angle": body["corner_angle"]}
@@ -215,8 +221,8 @@ def _surfaces(
         part = part_of(progress, at / len(parts), (at + 1) / len(parts))
         try:
             if body is None:
-                return gridmesh.flat(_patch(gridmesh, (outline, holes), options, chosen, part))
-            return _body(gridmesh, (outline, holes), options, chosen, part)
+                return gridmesh.flat(_patch(gridmesh, (outline, holes), options, chosen, again, part))
+            return _body(gridmesh, (outline, holes), options, chosen, again, part)
         except gridmesh.GridMeshError as error:
             return error
 
@@ -228,15 +234,16 @@ def _body(
     part: tuple[np.ndarray, list[np.ndarray]],
     options: dict[str, Any],
     chosen: Options,
+    again: bool,
     progress: Progress | None,
 ) -> Any:
     """Body on the outline of a part; of a few sizes the first that has no short edge, or the one whose shortest is longest."""
     made: list[Any] = []
-    for step, size in enumerate(_SIZES if chosen.again else _SIZES[:1]):
+    for step, size in enumerate(_SIZES if again else _SIZES[:1]):
         sized = {**options, "edge_length": size * options["edge_length"]}
         of_this = part_of(progress, step / len(_SIZES), (step + 1) / len(_SIZES))
         try:
-            patch = _patch(gridmesh, part, sized, chosen, part_of(of_this, 0.0, 0.7))
+            patch = _patch(gridmesh, part, sized, chosen, again, part_of(of_this, 0.0, 0.7))
             made.append(gridmesh.inflate(patch, progress=part_of(of_this, 0.7, 1.0), **chosen.body))
         except gridmesh.GridMeshError as error:
             if not made or error.kind == "cancelled":
@@ -261,6 +268,7 @@ def _patch(
     part: tuple[np.ndarray, list[np.ndarray]],
     options: dict[str, Any],
     chosen: Options,
+    again: bool,
     progress: Progress | None,
 ) -> Any:
     """Patch on the outline of a part, or one that covers it but for what the margin allows, finer where that takes it."""
@@ -269,7 +277,6 @@ def _patch(
         return gridmesh.mesh_sketch(outline, holes, progress=progress, **options)
     slack = max(0.0, chosen.margin - _SQUARE)
     empty, tries = (EMPTY, 2) if chosen.body is None else (EMPTY_OF_BODY, 3)
-    tries = tries if chosen.again else 1
     drawn = _area(outline) + sum(map(_area, holes))
 
     def lacks(one: Any) -> tuple[float, float]:
@@ -278,9 +285,11 @@ def _patch(
         return max(one.report["outside"], CUT_OFF), max(larger, empty)
 
     best = None
-    for step, finer in enumerate(FINER[:tries]):
+    for step, finer in enumerate(FINER[: _MOST if again else 1]):
+        if step >= tries and lacks(best)[0] <= CUT_OFF:
+            break
         sized = {**options, "edge_length": finer * options["edge_length"]}
-        of_this = part_of(progress, step / tries, (step + 1) / tries)
+        of_this = part_of(progress, step / _MOST, (step + 1) / _MOST)
         try:
             patch = gridmesh.cover_sketch(outline, holes, slack=slack, progress=of_this, **sized)
         except gridmesh.GridMeshError as error:

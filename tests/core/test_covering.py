@@ -195,6 +195,13 @@ def test_bodies_are_finer_where_that_takes_it_to_have_the_silhouettes_of_their_p
     assert np.mean(overlaps) > 0.985  # 0.979 with the triangles asked for alone
 
 
+@pytest.mark.parametrize("name", ["camel", "puzzle", "snowflake"])
+def test_tips_of_large_pictures_are_covered(name):
+    """Pixels are small beside the edges of the mesh there; parts that one finer mesh did not cover stayed cut off."""
+    alpha = alpha_of(name, 384)
+    assert is_whole(alpha, sprite(alpha, margin=1.0))
+
+
 def test_thin_lines_become_a_body_in_little_time():
     """Nearest segments were looked for among all: lines a pixel wide took ten times as long."""
     alpha = np.zeros((256, 256))
