@@ -239,9 +239,11 @@ def _body(
 ) -> Any:
     """Body on the outline of a part; of a few sizes the first that has no short edge, or the one whose shortest is longest."""
     made: list[Any] = []
-    for step, size in enumerate(_SIZES if again else _SIZES[:1]):
+    # Quads at a rim are low by themselves.
+    sizes = _SIZES if again and options["cells"] == "triangles" else _SIZES[:1]
+    for step, size in enumerate(sizes):
         sized = {**options, "edge_length": size * options["edge_length"]}
-        of_this = part_of(progress, step / len(_SIZES), (step + 1) / len(_SIZES))
+        of_this = part_of(progress, step / len(sizes), (step + 1) / len(sizes))
         try:
             patch = _patch(gridmesh, part, sized, chosen, again, part_of(of_this, 0.0, 0.7))
             made.append(gridmesh.inflate(patch, progress=part_of(of_this, 0.7, 1.0), **chosen.body))
