@@ -20,11 +20,26 @@ FINER = (1.0, 0.7, 0.5, 0.35, 0.25)
 _SQUARE = 0.75
 """How far whole pixels may reach over the outline of what they cover, at most."""
 
+_AGAIN = 0.5
+"""Parts whose edges are at least this long, relative to those of the others, are meshed again where their mesh lacks something."""
+
 CUT_OFF = 0.4
 """Parts of whose outlines this many pixels stay outside, beyond the slack, are meshed finer: middles of pixels lie deeper inside."""
 
 EMPTY = 0.03
 """Likewise parts whose mesh is larger than the outline by more than this share."""
+
+EMPTY_OF_BODY = 0.01
+"""The same for bodies, whose rims are opaque: seen from the front they overlap their pictures by 99 % where that can be held."""
+
+_MOST = 4
+"""Sizes tried at most for parts that are cut off."""
+
+SHORT = 1 / 3
+"""Bodies with edges shorter than this, in mean lengths of their edges, are tried in other sizes: it shows in a texture."""
+
+_SIZES = (1.0, 0.94, 0.88)
+"""Edge lengths tried for these, relative to that wanted: little finer each, as the lattice lies elsewhere at any other size."""
 
 _TRACING = 0.3
 """Part of the time that tracing takes; the rest is meshing."""
@@ -165,6 +180,8 @@ def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progres
             [parts[k] for k in left],
             {"cells": cells, "edge_length": finer * length, "least": False, **_bend(cells, options)},
             options,
+            # Lines that are thin for the triangles wanted have many as it is.
+            finer >= _AGAIN,
             part_of(progress, step / len(FINER), (step + 1) / len(FINER)),
         )
         for k, surface in zip(left, found, strict=True):
@@ -192,54 +209,99 @@ def _surfaces(
     parts: list[Any],
     options: dict[str, Any],
     chosen: Options,
+    again: bool,
     progress: Progress | None,
 ) -> list[Any]:
-    """Surface or GridMeshError for each part."""
+    """Surface or GridMeshError for each part; those that lack something are meshed again, finer, where that is allowed."""
     body = chosen.body
     if body is not None and "corner_angle" in body:
         options = {**options, "corner_angle": body["corner_angle"]}
 
-    slack = max(0.0, chosen.margin - _SQUARE) if chosen.margin > 0 or chosen.cover else None
-
     def surface(at: int, outline: np.ndarray, holes: list[np.ndarray]) -> Any:
         part = part_of(progress, at / len(parts), (at + 1) / len(parts))
         try:
-            patch = _patch(gridmesh, outline, holes, slack, options, part_of(part, 0.0, 0.7))
             if body is None:
-                return gridmesh.flat(patch)
-            return gridmesh.inflate(patch, progress=part_of(part, 0.7, 1.0), **body)
+                return gridmesh.flat(_patch(gridmesh, (outline, holes), options, chosen, again, part))
+            return _body(gridmesh, (outline, holes), options, chosen, again, part)
         except gridmesh.GridMeshError as error:
             return error
 
     return [surface(at, *part) for at, part in enumerate(parts)]
 
 
-def _patch(
+def _body(
     gridmesh: Any,
-    outline: np.ndarray,
-    holes: list[np.ndarray],
-    slack: float | None,
+    part: tuple[np.ndarray, list[np.ndarray]],
     options: dict[str, Any],
+    chosen: Options,
+    again: bool,
     progress: Progress | None,
 ) -> Any:
-    """Patch on the outline, or one that covers it but for a rim of `slack`."""
-    if slack is None:
+    """Body on the outline of a part; of a few sizes the first that has no short edge, or the one whose shortest is longest."""
+    made: list[Any] = []
+    # Quads at a rim are low by themselves.
+    sizes = _SIZES if again and options["cells"] == "triangles" else _SIZES[:1]
+    for step, size in enumerate(sizes):
+        sized = {**options, "edge_length": size * options["edge_length"]}
+        of_this = part_of(progress, step / len(sizes), (step + 1) / len(sizes))
+        try:
+            patch = _patch(gridmesh, part, sized, chosen, again, part_of(of_this, 0.0, 0.7))
+            made.append(gridmesh.inflate(patch, progress=part_of(of_this, 0.7, 1.0), **chosen.body))
+        except gridmesh.GridMeshError as error:
+            if not made or error.kind == "cancelled":
+                raise
+            break
+        if _shortest(made[-1]) >= SHORT:
+            return made[-1]
+    return max(made, key=_shortest)
+
+
+def _shortest(surface: Any) -> float:
+    """The shortest edge of a surface, in mean lengths of its edges."""
+    faces = faces_of(surface)
+    edges = np.sort(np.stack([faces, np.roll(faces, 1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    ends = surface.vertices[np.unique(edges, axis=0)]
+    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    return float(lengths.min() / lengths.mean())
+
+
+def _patch(
+    gridmesh: Any,
+    part: tuple[np.ndarray, list[np.ndarray]],
+    options: dict[str, Any],
+    chosen: Options,
+    again: bool,
+    progress: Progress | None,
+) -> Any:
+    """Patch on the outline of a part, or one that covers it but for what the margin allows, finer where that takes it."""
+    outline, holes = part
+    if chosen.margin <= 0 and not chosen.cover:
         return gridmesh.mesh_sketch(outline, holes, progress=progress, **options)
-    patch = gridmesh.cover_sketch(
-        outline, holes, slack=slack, progress=part_of(progress, 0.0, 0.7), **options
-    )
+    slack = max(0.0, chosen.margin - _SQUARE)
+    empty, tries = (EMPTY, 2) if chosen.body is None else (EMPTY_OF_BODY, 3)
     drawn = _area(outline) + sum(map(_area, holes))
 
     def lacks(one: Any) -> tuple[float, float]:
         """What is cut off, then the share that is empty; each only from where it shows."""
-        empty = sum(_area(one.vertices[loop]) for loop in one.loops) / drawn - 1
-        return max(one.report["outside"], CUT_OFF), max(empty, EMPTY)
+        larger = sum(_area(one.vertices[loop]) for loop in one.loops) / drawn - 1
+        return max(one.report["outside"], CUT_OFF), max(larger, empty)
 
-    if lacks(patch) == (CUT_OFF, EMPTY):
-        return patch
-    finer = {**options, "edge_length": FINER[1] * options["edge_length"]}
-    other = gridmesh.cover_sketch(outline, holes, slack=slack, progress=part_of(progress, 0.7, 1.0), **finer)
-    return min(patch, other, key=lacks)
+    best = None
+    for step, finer in enumerate(FINER[: _MOST if again else 1]):
+        if step >= tries and lacks(best)[0] <= CUT_OFF:
+            break
+        sized = {**options, "edge_length": finer * options["edge_length"]}
+        of_this = part_of(progress, step / _MOST, (step + 1) / _MOST)
+        try:
+            patch = gridmesh.cover_sketch(outline, holes, slack=slack, progress=of_this, **sized)
+        except gridmesh.GridMeshError as error:
+            if best is None or error.kind == "cancelled":
+                raise
+            break
+        best = patch if best is None else min(best, patch, key=lacks)
+        if lacks(best) == (CUT_OFF, empty):
+            break
+    return best
 
 
 def _filled(traced: list[tuple[np.ndarray, list[np.ndarray]]]) -> list[tuple[np.ndarray, list[np.ndarray]]]:

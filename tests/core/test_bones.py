@@ -153,3 +153,19 @@ def test_where_the_ends_of_a_chain_pull_the_bone_between_does_too():
     apart = np.array([[[-8, 0], [-5, 5]], [[-2, 8], [2, 8]], [[5, 5], [8, 0]]])
     weights = gridmesh.bone_weights(patch.vertices, patch.triangles, apart)
     assert weights[even, 1].max() < 0.1
+
+
+@pytest.mark.parametrize("degrees", [60, -60])
+@pytest.mark.parametrize("aside", [1.5, 2.0])
+def test_a_ring_is_bent_without_folds_where_it_is_thin(degrees, aside):
+    """A ring that is thinnest across from the joint: heat flows least there, so that weights changed most, and some sixty triangles folded."""
+    turns = np.linspace(0, 2 * np.pi, 200, endpoint=False)
+    circle = np.column_stack([np.cos(turns), np.sin(turns)])
+    hole = 7 * circle[::-1] - [0, aside]
+    patch = gridmesh.mesh_sketch(10 * circle, [hole], triangles=800)
+    top = (10 + 7 - aside) / 2
+    bones = np.array([[[-8, 0], [0, top]], [[0, top], [8, 0]]])
+    weights = gridmesh.bone_weights(patch.vertices, patch.triangles, bones)
+    is_partition(weights)
+    moved = bent(patch.vertices, weights, [0, np.radians(degrees)], [[0, 0], [0, top]])
+    assert folded(moved, patch.triangles) == 0

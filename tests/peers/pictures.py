@@ -143,7 +143,9 @@ def tell(what: str, results: dict[str, dict[str, float]], refused: dict[str, str
         )
     print(f"  the mesh's own: most {100 * (columns['empty'] - columns['margin']).max():.2f} %")
     short = columns["shortest"]
-    print(f"  shortest edge over the mean: least {short.min():.3f}, below a third in {(short < 1 / 3).sum()}")
+    print(
+        f"  shortest edge over the mean: least {short.min():.3f}, below a third in {(short < 1 / 3).sum()}: {', '.join(names[short < 1 / 3][:8])}"
+    )
     print(f"  closed: {columns['closed'].sum():.0f}; triangles: median {np.median(columns['triangles']):.0f}")
     seconds = columns["seconds"]
     print(

@@ -118,7 +118,7 @@ def main() -> None:
             found = np.array([measured(scene, eye, file, chosen.triangles, shape) for file in files])
             worst = [files[k].stem for k in np.argsort(found[:, 0])[:5]]
             print(
-                f"{shape}: IoU median {np.median(found[:, 0]):.4f}, least {found[:, 0].min():.4f} ({', '.join(worst)})"
+                f"{shape}: IoU median {np.median(found[:, 0]):.4f}, {(found[:, 0] >= 0.99).sum()} of {len(found)} from 0.99 on, least {found[:, 0].min():.4f} ({', '.join(worst)})"
             )
             print(
                 f"  colors differ by {found[:, 1].mean():.2f} of 255, most {found[:, 1].max():.2f}",

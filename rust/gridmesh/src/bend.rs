@@ -14,6 +14,7 @@
 
 pub(crate) mod carrier;
 pub(crate) mod choose;
+mod chords;
 pub(crate) mod conformal;
 pub mod directions;
 mod follow;

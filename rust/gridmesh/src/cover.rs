@@ -14,7 +14,7 @@ use glam::DVec2;
 use crate::cover::outside::{Followers, LoopEdges, loop_of};
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::ClosedCurve;
-use crate::drawing::union::{nearest_source, outer_outline};
+use crate::drawing::union::{nearest_sources, outer_outline};
 use crate::error::{Error, Result, told};
 use crate::options::{SelfCrossing, SketchOptions};
 use crate::patch::Patch;
@@ -23,7 +23,7 @@ use crate::progress::Progress;
 use crate::sketch::{Sketch, mesh_sketch, mesh_sketch_on};
 
 /// Patches made at most after the first, each of a wider outline.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 3;
 
 /// What may stay outside, in edge lengths, when no wider outline is tried any more: at 500 triangles a few hundredths of a
 /// pixel of a picture 64 pixels wide.
@@ -51,7 +51,7 @@ pub struct Covering {
 /// most, and single vertices are moved to tips. For pictures on meshes, whose opaque pixels must not be cut off.
 ///
 /// Topology, valences and orientation are as of [`mesh_sketch`]; boundary vertices lie near the contours, not on them.
-/// Takes the time of up to five meshes, four of them on a known lattice.
+/// Takes the time of up to four meshes, three of them on a known lattice.
 ///
 /// # Errors
 /// Those of [`mesh_sketch`]; [`Error::InvalidOption`] if the slack is negative or not finite.
@@ -96,9 +96,7 @@ pub fn cover_sketch(
         best.patch.loops.iter_mut().zip(std::iter::once(outline).chain(holes.iter().map(Vec::as_slice)))
     {
         let vertices = &best.patch.vertices[contour.start as usize..];
-        for (source, &vertex) in contour.source.iter_mut().zip(vertices) {
-            *source = nearest_source(own, vertex);
-        }
+        contour.source = nearest_sources(own, &vertices[..contour.source.len()]);
     }
     progress.report(1.0)?;
     Ok(Covering { sketch: best, outside: least })
@@ -137,7 +135,6 @@ fn widened<'p>(
         origin: None,
         mirror: None,
         density: None,
-        self_crossing: SelfCrossing::Union,
         least: false,
         ..options.clone()
     };
@@ -158,7 +155,16 @@ fn widened<'p>(
             wider.push(contour.iter().zip(&*far).zip(outward).map(|((&p, &far), n)| p + far * n).collect());
         }
         let outer: Vec<DVec2> = wider.remove(0);
-        let sketch = match mesh_sketch_on(&kept, &outer, &wider, &options, part(round)) {
+        let made = |self_crossing: SelfCrossing| {
+            let options = SketchOptions { self_crossing, ..options.clone() };
+            mesh_sketch_on(&kept, &outer, &wider, &options, part(round))
+        };
+        // Only few cross themselves, and to find what these enclose takes longer than to see it.
+        let made = match made(SelfCrossing::Error) {
+            Err(Error::SelfIntersecting { .. }) => made(SelfCrossing::Union),
+            made => made,
+        };
+        let sketch = match made {
             Ok(sketch) => sketch,
             Err(Error::Cancelled) => return Err(Error::Cancelled),
             // Wider, it meets itself or is too thin elsewhere: the best so far serves.

@@ -17,7 +17,7 @@ use crate::drawing::curve::ClosedCurve;
 use crate::drawing::symmetry::Symmetry;
 use crate::drawing::thickness;
 use crate::drawing::thickness::Limb;
-use crate::drawing::union::{nearest_source, outer_outline};
+use crate::drawing::union::{nearest_sources, outer_outline};
 use crate::error::{Error, Needed, Result, told};
 use crate::options::{
     BoundaryMethod, CellShape, DEFAULT_QUADS, DEFAULT_TRIANGLES, Density, LEAST_CHOSEN, MAX_TRIANGLES,
@@ -148,9 +148,7 @@ fn mesh(
     if let Some((_, slivers)) = union {
         // The sources so far lead to the outer outline.
         let Patch { vertices, loops, .. } = &mut sketch.patch;
-        for (source, &vertex) in loops[0].source.iter_mut().zip(&*vertices) {
-            *source = nearest_source(outline, vertex);
-        }
+        loops[0].source = nearest_sources(outline, &vertices[..loops[0].source.len()]);
         sketch.report.repaired += slivers;
     }
     progress.report(1.0)?;

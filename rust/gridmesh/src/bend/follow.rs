@@ -2,12 +2,12 @@
 
 use glam::DVec2;
 
-use super::carrier::{Carrier, Line, Rim};
+use super::carrier::{Carrier, Line};
+use super::chords::Chords;
 use super::grid::TriangleGrid;
 use super::image::{BentContours, Image};
 use super::{Bent, in_frame};
 use crate::drawing::curve::ClosedCurve;
-use crate::geometry::segments::nearest_on_segment;
 
 /// Places of a line are bent that are at most so far apart, in edges; and where its points are those of the old
 /// line, others between them only where they are farther apart.
@@ -145,11 +145,13 @@ struct WayThere<'a> {
     carrier: &'a Carrier,
     image: &'a Image,
     grid: TriangleGrid,
+    chords: Chords<'a>,
 }
 
 impl<'a> WayThere<'a> {
     fn new(carrier: &'a Carrier, image: &'a Image) -> Self {
-        Self { carrier, image, grid: TriangleGrid::new(&carrier.vertices, &carrier.triangles) }
+        let grid = TriangleGrid::new(&carrier.vertices, &carrier.triangles);
+        Self { carrier, image, grid, chords: Chords::new(carrier, &carrier.vertices) }
     }
 
     /// Half the linear map, half the corners' own derivatives; outside by the derivative at the nearest chord.
@@ -162,16 +164,7 @@ impl<'a> WayThere<'a> {
             };
             return carrier.triangles[t].into_iter().zip(weights).map(corner).sum();
         }
-        let mut best: Option<(f64, [usize; 2], f64)> = None;
-        let chords = |rim: &'a Rim| (0..rim.len()).map(|i| [rim.start + i, rim.next(i)]);
-        for ends in carrier.rims.iter().flat_map(chords) {
-            let [a, b] = ends.map(|e| carrier.vertices[e]);
-            let (t, squared) = nearest_on_segment(x, a, b);
-            if best.is_none_or(|(least, ..)| squared < least) {
-                best = Some((squared, ends, t));
-            }
-        }
-        best.map_or(x, |(_, [a, b], t)| {
+        self.chords.nearest(x).map_or(x, |([a, b], t)| {
             let off = x - carrier.vertices[a].lerp(carrier.vertices[b], t);
             let [p, q] = [a, b].map(|e| image.turned(e, off));
             image.positions[a].lerp(image.positions[b], t) + p.lerp(q, t)

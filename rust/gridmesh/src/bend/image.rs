@@ -3,10 +3,11 @@
 use glam::DVec2;
 
 use super::carrier::{Carrier, Line, Rim};
+use super::chords::Chords;
 use super::grid::TriangleGrid;
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::ClosedCurve;
-use crate::geometry::segments::{nearest_on_segment, orientation};
+use crate::geometry::segments::orientation;
 
 /// A carrier with its image under a conformal map: log scale and rotation at the vertices.
 pub struct Image {
@@ -157,12 +158,13 @@ pub struct WayBack<'a> {
     carrier: &'a Carrier,
     image: &'a Image,
     grid: TriangleGrid,
+    chords: Chords<'a>,
 }
 
 impl<'a> WayBack<'a> {
     pub fn new(carrier: &'a Carrier, image: &'a Image) -> Self {
         let grid = TriangleGrid::new(&image.positions, &carrier.triangles);
-        Self { carrier, image, grid }
+        Self { carrier, image, grid, chords: Chords::new(carrier, &image.positions) }
     }
 
     /// The point of the drawing that was bent onto `x`: barycentric on the carrier, corrected by the
@@ -173,18 +175,7 @@ impl<'a> WayBack<'a> {
             let corners = carrier.triangles[t].map(|v| v as usize);
             return self.blend(x, &corners, &weights);
         }
-        let mut best: Option<(f64, [usize; 2], f64)> = None;
-        for rim in &carrier.rims {
-            for i in 0..rim.len() {
-                let ends = [rim.start + i, rim.next(i)];
-                let [a, b] = ends.map(|e| image.positions[e]);
-                let (t, squared) = nearest_on_segment(x, a, b);
-                if best.is_none_or(|(least, ..)| squared < least) {
-                    best = Some((squared, ends, t));
-                }
-            }
-        }
-        best.map_or(x, |(_, ends, t)| self.off_chord(x, ends, t))
+        self.chords.nearest(x).map_or(x, |(ends, t)| self.off_chord(x, ends, t))
     }
 
     /// The same for a point beside a place of a contour, given by its arc length on the drawing.

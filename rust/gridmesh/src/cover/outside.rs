@@ -1,9 +1,10 @@
 //! How far points of a contour lie outside the loop of a patch that follows it.
 
+use std::cell::OnceCell;
+
 use glam::DVec2;
 
-use crate::drawing::union::nearest_source;
-use crate::geometry::segments::nearest_on_segment;
+use crate::geometry::segments::{SegmentGrid, nearest_on_segment};
 use crate::patch::Patch;
 
 /// Edges to each side of the one that follows a point, from which its distance is taken: an end may have been moved past it.
@@ -11,6 +12,9 @@ const BESIDE: usize = 1;
 
 /// How far from its contour a vertex may be that lies on it, in edge lengths: coordinates of unions are rounded.
 const ON: f64 = 1e-3;
+
+/// So many segments ahead are looked at before all are sorted by their places: some times those of an edge.
+const SOON: usize = 64;
 
 /// Which edge of a loop follows each point of its contour.
 #[derive(Clone, Debug)]
@@ -91,18 +95,42 @@ impl Followers {
 /// Places of the vertices of a loop on the contour that they lie on, in order: segment and share.
 fn places(vertices: &[DVec2], meshed: &[DVec2], edge_length: f64) -> Vec<f64> {
     let n = meshed.len();
-    let on = (ON * edge_length).powi(2);
+    let on = ON * edge_length;
+    let segment = |i: usize| [meshed[i], meshed[(i + 1) % n]];
+    let share_on = |vertex: DVec2, i: usize| {
+        let [a, b] = segment(i);
+        let (share, squared) = nearest_on_segment(vertex, a, b);
+        (squared <= on * on).then_some(share)
+    };
+    // Asked for where the vertices of a loop and the points of its contour do not keep step.
+    let all = OnceCell::new();
+    let grid = || {
+        all.get_or_init(|| {
+            let segments: Vec<[DVec2; 2]> = (0..n).map(segment).collect();
+            (SegmentGrid::new(&segments), segments)
+        })
+    };
     let mut start = 0;
     let mut place = |&vertex: &DVec2| {
         // Where the search begins the next vertex is a few segments ahead.
-        let ahead = (0..n).map(|k| (start + k) % n).find_map(|i| {
-            let (share, squared) = nearest_on_segment(vertex, meshed[i], meshed[(i + 1) % n]);
-            (squared <= on).then_some((i, share))
+        let soon = (0..n.min(SOON)).find_map(|k| {
+            let i = (start + k) % n;
+            share_on(vertex, i).map(|share| (i, share))
         });
-        let (segment, share) = ahead.unwrap_or_else(|| {
-            let (segment, share) = nearest_source(meshed, vertex);
-            (segment as usize, share)
-        });
+        let (segment, share) = soon
+            .or_else(|| {
+                let mut ahead = Vec::new();
+                grid().0.near(vertex - on, vertex + on, |i| ahead.push((i + n - start) % n));
+                ahead.sort_unstable();
+                ahead.into_iter().find_map(|k| {
+                    let i = (start + k) % n;
+                    share_on(vertex, i).map(|share| (i, share))
+                })
+            })
+            .unwrap_or_else(|| {
+                let (grid, segments) = grid();
+                grid.nearest(segments, vertex)
+            });
         start = segment;
         segment as f64 + share
     };

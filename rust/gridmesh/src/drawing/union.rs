@@ -6,7 +6,7 @@ use i_overlay::float::simplify::SimplifyShape;
 
 use crate::drawing::curve::bounds;
 use crate::error::{Error, Result};
-use crate::geometry::segments::nearest_on_segment;
+use crate::geometry::segments::SegmentGrid;
 
 /// Parts smaller than this share of the largest one are slivers of a shaky crossing: dropped.
 const SLIVER: f64 = 1e-3;
@@ -49,16 +49,16 @@ pub(crate) fn outer_outline(input: &[DVec2], what: &str) -> Result<(Vec<DVec2>, 
     Ok((parts.swap_remove(0), slivers))
 }
 
-/// The input segment nearest to a point, and the parameter on it. Linear in the input.
-pub(crate) fn nearest_source(input: &[DVec2], point: DVec2) -> (u32, f64) {
-    let mut best = (0, 0.0, f64::INFINITY);
-    for i in 0..input.len() {
-        let (t, squared) = nearest_on_segment(point, input[i], input[(i + 1) % input.len()]);
-        if squared < best.2 {
-            best = (i as u32, t, squared);
-        }
-    }
-    (best.0, best.1)
+/// The input segment nearest to each point, and the parameter on it. Near-linear.
+pub(crate) fn nearest_sources(input: &[DVec2], points: &[DVec2]) -> Vec<(u32, f64)> {
+    let segments: Vec<[DVec2; 2]> =
+        (0..input.len()).map(|i| [input[i], input[(i + 1) % input.len()]]).collect();
+    let grid = SegmentGrid::new(&segments);
+    let nearest = |&point: &DVec2| {
+        let (segment, t) = grid.nearest(&segments, point);
+        (segment as u32, t)
+    };
+    points.iter().map(nearest).collect()
 }
 
 fn area(points: &[DVec2]) -> f64 {
@@ -92,7 +92,7 @@ mod tests {
         assert!((area(&outline) - 19.0).abs() < 1e-9, "{}", area(&outline));
         assert_eq!(slivers, 0);
         for p in outline {
-            let (segment, t) = nearest_source(&drawn, p);
+            let (segment, t) = nearest_sources(&drawn, &[p])[0];
             let (a, b) = (drawn[segment as usize], drawn[(segment as usize + 1) % drawn.len()]);
             assert!(a.lerp(b, t).distance(p) < 1e-12);
         }

@@ -1,11 +1,14 @@
 //! Weights of the vertices of a flat mesh for the bones that are to bend it.
 
+mod bends;
+mod heat;
 mod ways;
 
 use glam::DVec2;
 
+use self::bends::ease;
+use self::heat::Heat;
 use self::ways::Ways;
-use super::cholesky::Pattern;
 use super::disjoint::Disjoint;
 use super::march::{Around, march};
 use crate::error::{Error, Result};
@@ -35,12 +38,17 @@ const SHARING: usize = 6;
 /// Weights below this are dropped.
 const LEAST: f64 = 1e-4;
 
+/// Times at most that heat spreads anew where triangles would be pressed together: three are enough for most meshes, and of the
+/// others more help hardly any.
+const ROUNDS: usize = 8;
+
 /// How much each bone moves each vertex of a flat mesh: a row for each vertex, a number for each bone.
 ///
 /// Rows sum to 1 up to rounding, have no negative numbers, and at most `most` that are not 0. Distances are measured within the mesh, so that a
 /// bone has no hold on a limb that is near in the plane but far in the drawing. Away from joints the
 /// nearest bone has nearly all of the weight; at joints it passes from bone to bone over `reach` times half the
-/// width of the limb, which is the distance to the bone and to the rim together. Where bones pull that do not touch each other, those
+/// width of the limb, which is the distance to the bone and to the rim together; over more where triangles would be pressed
+/// together when a joint is bent, as far from it in a ring. Where bones pull that do not touch each other, those
 /// between them in the chain do so, too. Parts of the mesh that no bone
 /// meets follow the bone that is nearest to them as a whole. O(b n log n) in practice.
 ///
@@ -83,10 +91,18 @@ pub fn bone_weights(
         transfer[v] = (options.reach * half).powi(-2);
     }
     progress.report(0.7)?;
-    let mut weights = wanted;
-    settle(vertices, triangles, &transfer, &mut weights, b)?;
-    progress.report(1.0)?;
-    Ok(strongest(&weights, n, &Ways::new(bones), options.most))
+    let heat = Heat::new(vertices, triangles, &transfer)?;
+    let ways = Ways::new(bones);
+    let mut eased = vec![1.0; triangles.len()];
+    for round in 0.. {
+        let found = strongest(&heat.settled(&eased, &wanted, b)?, n, &ways, options.most);
+        if round == ROUNDS || !ease(&ways.joints, options.reach, vertices, triangles, &found, &mut eased) {
+            progress.report(1.0)?;
+            return Ok(found);
+        }
+        progress.report(0.7 + 0.3 * (round + 1) as f64 / (ROUNDS + 1) as f64)?;
+    }
+    Ok(wanted)
 }
 
 fn check(
@@ -214,69 +230,6 @@ fn longest_edges(vertices: &[DVec2], triangles: &[[u32; 3]]) -> Vec<f64> {
     }
     longest.iter_mut().for_each(|length| *length = if *length > 0.0 { *length } else { 1.0 });
     longest
-}
-
-/// Replaces the wanted weights by the equilibrium of heat between them and the neighbours': `(L + T M) w = T M wanted`, with
-/// cotangents that are not negative, so that weights stay between 0 and 1 and sum to 1.
-fn settle(
-    vertices: &[DVec2],
-    triangles: &[[u32; 3]],
-    transfer: &[f64],
-    weights: &mut [f64],
-    bones: usize,
-) -> Result<()> {
-    let n = vertices.len();
-    let mut mass = vec![0.0; n];
-    let mut edges: Vec<(u32, u32, f64)> = Vec::with_capacity(3 * triangles.len());
-    for corners in triangles {
-        let points = corners.map(|v| vertices[v as usize]);
-        let doubled = (points[1] - points[0]).perp_dot(points[2] - points[0]).abs();
-        corners.iter().for_each(|&v| mass[v as usize] += doubled / 6.0);
-        for k in 0..3 {
-            let (a, b) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
-            let (u, v) = (points[(k + 1) % 3] - points[k], points[(k + 2) % 3] - points[k]);
-            let least = 1e-9 * (u.length_squared() + v.length_squared());
-            if doubled.max(least) > 0.0 {
-                edges.push((a.max(b), a.min(b), 0.5 * u.dot(v) / doubled.max(least)));
-            }
-        }
-    }
-    // Stable, so that the weights of an edge are added in the order of its triangles.
-    edges.sort_by_key(|&(i, j, _)| (i, j));
-    edges.dedup_by(|next, kept| {
-        let is_same = (next.0, next.1) == (kept.0, kept.1);
-        if is_same {
-            kept.2 += next.2;
-        }
-        is_same
-    });
-    edges.retain(|&(i, j, weight)| i != j && weight > 0.0);
-    // Vertices that belong to no area keep what is wanted.
-    let held: Vec<f64> = (0..n).map(|v| if mass[v] > 0.0 { mass[v] * transfer[v] } else { 1.0 }).collect();
-    let mut diagonal = held.clone();
-    for &(i, j, weight) in &edges {
-        diagonal[i as usize] += weight;
-        diagonal[j as usize] += weight;
-    }
-    let (mut col_ptr, mut row_idx, mut entries) = (vec![0], Vec::new(), Vec::new());
-    let mut rest = edges.as_slice();
-    for (v, &sum) in diagonal.iter().enumerate() {
-        let (column, after) = rest.split_at(rest.partition_point(|edge| edge.0 as usize <= v));
-        rest = after;
-        row_idx.extend(column.iter().map(|edge| edge.1 as usize));
-        entries.extend(column.iter().map(|edge| -edge.2));
-        row_idx.push(v);
-        entries.push(sum);
-        col_ptr.push(row_idx.len());
-    }
-    for k in 0..bones {
-        for v in 0..n {
-            weights[k * n + v] *= held[v];
-        }
-    }
-    Pattern::new("bone weights", col_ptr, row_idx, Progress::NONE)?
-        .factor(entries, Progress::NONE)?
-        .solve(weights, bones)
 }
 
 /// By vertex, the strongest alone, summing to 1.

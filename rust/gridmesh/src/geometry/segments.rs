@@ -105,6 +105,32 @@ impl SegmentGrid {
         }
     }
 
+    /// The segment nearest to a point, the first of those equally near, and the parameter on it, of the segments that the grid was
+    /// made of. Near-constant time for points near them.
+    pub(crate) fn nearest(&self, segments: &[[DVec2; 2]], point: DVec2) -> (usize, f64) {
+        let mut reach = self.cell;
+        loop {
+            let mut best = (f64::INFINITY, 0, 0.0);
+            self.near(point - reach, point + reach, |i| {
+                let (t, squared) = nearest_on_segment(point, segments[i][0], segments[i][1]);
+                if squared < best.0 || (squared == best.0 && i < best.1) {
+                    best = (squared, i, t);
+                }
+            });
+            let (low, high) = (self.origin, self.origin + self.cell * self.size());
+            let is_all = (point - reach).cmple(low).all() && (point + reach).cmpge(high).all();
+            if best.0 <= reach * reach || is_all || !reach.is_finite() {
+                return (best.1, best.2);
+            }
+            reach *= 2.0;
+        }
+    }
+
+    /// In cells.
+    fn size(&self) -> DVec2 {
+        DVec2::new(self.columns as f64, self.rows as f64)
+    }
+
     /// Calls `visit` with the pairs `(i, j)`, `i < j`, of segments that share a cell; stops when it
     /// returns false. A pair may come several times.
     pub(crate) fn pairs(&self, mut visit: impl FnMut(usize, usize) -> bool) {
@@ -189,6 +215,19 @@ mod tests {
                         "{seed} {i} {j}"
                     );
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearest_is_that_of_looking_at_all() {
+        for seed in 1..20 {
+            let segments = random(60, seed);
+            let grid = SegmentGrid::new(&segments);
+            for point in random(40, seed + 99).into_iter().flatten().map(|p| 6.0 * p - 3.0) {
+                let all = segments.iter().map(|&[a, b]| nearest_on_segment(point, a, b)).enumerate();
+                let (i, (t, _)) = all.min_by(|(_, a), (_, b)| a.1.total_cmp(&b.1)).unwrap();
+                assert_eq!(grid.nearest(&segments, point), (i, t));
             }
         }
     }

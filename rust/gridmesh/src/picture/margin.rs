@@ -26,6 +26,9 @@ const SPARE: f64 = 0.02;
 /// Gaps of less than twice this, in pixels, are closed.
 const SLIT: f64 = 0.4;
 
+/// How far contours are looked for around a corner of a pixel, in pixels: nearly all of them pass within the first.
+const REACHES: [f64; 2] = [1.0, 3.0];
+
 /// Offsets tried where contours come to touch themselves.
 const TRIES: i32 = 6;
 
@@ -114,17 +117,26 @@ fn farthest_outside(parts: &[Part], points: &[DVec2], progress: Progress<'_>) ->
             progress.report(k as f64 / points.len() as f64)?;
         }
         let mut nearest = (f64::INFINITY, false);
-        grid.near(point - 3.0, point + 3.0, |i| {
-            let [a, b] = segments[i];
-            let squared = nearest_on_segment(point, a, b).1;
-            let outside = orientation(a, b, point) < 0.0;
-            // Nearest to a vertex: outside of either segment counts.
-            if squared < nearest.0 - 1e-12 {
-                nearest = (squared, outside);
-            } else if squared < nearest.0 + 1e-12 {
-                nearest.1 |= outside;
+        for reach in REACHES {
+            nearest = (f64::INFINITY, false);
+            grid.near(point - reach, point + reach, |i| {
+                let [a, b] = segments[i];
+                let squared = nearest_on_segment(point, a, b).1;
+                if squared >= nearest.0 + 1e-12 {
+                    return;
+                }
+                let outside = orientation(a, b, point) < 0.0;
+                // Nearest to a vertex: outside of either segment counts.
+                if squared < nearest.0 - 1e-12 {
+                    nearest = (squared, outside);
+                } else {
+                    nearest.1 |= outside;
+                }
+            });
+            if nearest.0 < reach * reach - 1e-9 {
+                break;
             }
-        });
+        }
         if nearest.1 && nearest.0.is_finite() {
             farthest = farthest.max(nearest.0.sqrt());
         }
