@@ -4,9 +4,10 @@
 //! cargo run -p gridmesh --release --features svg --example draw -- tests/sketches/drawings/frog.json
 //! ```
 //!
-//! writes one file for each stage of figure 1 of the paper, by the paper's growth and by the optimum,
+//! writes one file for each stage of figure 1 of the paper, by the paper's growth, by the optimum and on a bent lattice,
 //! to `target/drawings`. Other words draw other pictures: see [`USAGE`]. Only the public API is used.
 
+mod bent;
 mod scene;
 mod stages;
 

@@ -29,7 +29,7 @@ pub struct Scene {
 /// The inside of closed lattice paths, where it lies on the lattice.
 pub struct Region {
     pub paths: Vec<Vec<Axial>>,
-    positions: Vec<DVec2>,
+    pub positions: Vec<DVec2>,
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -43,7 +43,11 @@ impl Scene {
     ) -> Anything<Self> {
         let options =
             SketchOptions { triangles: Some(triangles), boundary, bend: 0.0, ..SketchOptions::default() };
-        let sketch = mesh_sketch(&drawing.outline, &drawing.holes, &options, Progress::NONE)
+        Self::with(drawing, &options, size, weight)
+    }
+
+    pub fn with(drawing: &Drawing, options: &SketchOptions, size: f64, weight: f64) -> Anything<Self> {
+        let sketch = mesh_sketch(&drawing.outline, &drawing.holes, options, Progress::NONE)
             .map_err(|error| format!("{}: {error}", drawing.name))?;
         let lattice = sketch.patch.lattice;
         let points = || drawing.outline.iter().copied();

@@ -16,6 +16,7 @@ use gridmesh::progress::Progress;
 use gridmesh::svg::{Ink, Picture};
 use rustc_hash::FxHashMap;
 
+use crate::bent::bent_stages;
 use crate::scene::{Region, Scene};
 use crate::{Anything, Drawing};
 
@@ -26,7 +27,7 @@ const CHORD_ROOM: f64 = 1.0;
 
 pub type Stages = Vec<(&'static str, Picture)>;
 
-/// Figure 1 of the paper, by its growth (not round holes) and by the optimum.
+/// Figure 1 of the paper, by its growth (not round holes), by the optimum, and on a bent lattice where there is one.
 pub fn stages(drawing: &Drawing, triangles: usize, size: f64) -> Anything<Stages> {
     let scene = |boundary| Scene::new(drawing, triangles, boundary, size, size / 640.0);
     let mut stages = Stages::new();
@@ -34,6 +35,7 @@ pub fn stages(drawing: &Drawing, triangles: usize, size: f64) -> Anything<Stages
         grown_stages(&scene(BoundaryMethod::Grown)?, &mut stages)?;
     }
     optimal_stages(&scene(BoundaryMethod::Optimal)?, &mut stages)?;
+    bent_stages(drawing, triangles, size, &mut stages)?;
     Ok(stages)
 }
 
@@ -117,7 +119,7 @@ fn optimal_stages(scene: &Scene, stages: &mut Stages) -> Anything<()> {
 }
 
 /// The stages must lead to the patch of [`mesh_sketch`], or the pictures would lie.
-fn agree(scene: &Scene, region: &Region) -> Anything<()> {
+pub fn agree(scene: &Scene, region: &Region) -> Anything<()> {
     if scene.sketch.patch.triangles == region.triangles {
         return Ok(());
     }

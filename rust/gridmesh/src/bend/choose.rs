@@ -18,7 +18,7 @@ use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Price of a change of direction against a squared radian along one edge, while directions are sought.
-const TURN: f64 = 1.0;
+pub(super) const TURN: f64 = 1.0;
 /// A squared radian along one edge costs so many turns in the end.
 const MISFIT: f64 = 2.0;
 /// The same for a bend of triangles that is made: steps along its sides cost about so much.
@@ -240,7 +240,7 @@ impl Maker<'_> {
     fn expected(&self, bent: &Bent) -> f64 {
         let found = self.operators.directions(&bent.image.v, self.turn);
         let of = |d: &Directions| d.turns as f64 + MISFIT_MADE * d.misfit;
-        found.iter().map(of).sum::<f64>() + bent.price + bent.limbs
+        found.iter().map(of).sum::<f64>() + bent.price + bent.price_of_limbs
     }
 }
 
@@ -300,7 +300,7 @@ fn bent(
         }
         let is_asked = ground.is_asked();
         let price = if is_asked { 0.0 } else { price_of_size(ground, &u, narrowest) };
-        let limbs = ground.price_of_limbs * coarseness_of_limbs(ground, &u);
+        let price_of_limbs = ground.price_of_limbs * coarseness_of_limbs(ground, &u);
         let image = Image { positions, u, v };
         let is_free = is_asked || ground.shape == CellShape::Quad;
         let is_uneven = !is_free && largest_over_median(ground, &image.u) > UNEVEN;
@@ -315,7 +315,7 @@ fn bent(
                 share,
                 turn,
                 price,
-                limbs,
+                price_of_limbs,
                 is_followed: false,
             }));
         }

@@ -56,7 +56,7 @@ impl Bent {
             share: self.share,
             turn: self.turn,
             price: 0.0,
-            limbs: 0.0,
+            price_of_limbs: 0.0,
             is_followed: true,
         })
     }

@@ -50,6 +50,7 @@ fn narrowness(widths: &[f64]) -> Vec<f64> {
 /// two lattice lines, which no lattice direction suits.
 pub fn room(widths: &[f64], shape: CellShape) -> Vec<f64> {
     const LEAST: f64 = 0.02;
+    // Triangles hardly mind; with 1.2 quads in the outline of Brazil have 40 poles instead of 16.
     let narrow = match shape {
         CellShape::Triangle => 1.2,
         CellShape::Quad => 2.5,

@@ -17,19 +17,13 @@ use crate::progress::{Meter, Progress};
 use crate::sketch::found::{Found, faults};
 use crate::sketch::job::{Asked, Effort, Job};
 
-/// Distances of a path on a bent lattice of triangles count so much of what they do on a straight one.
-const BENT_SHARE: f64 = 0.1;
-
-/// In outlines of triangles with so many edges and fewer; in longer ones less.
-const EDGES: f64 = 150.0;
-
 /// So many bends are traced at most, and so many for quads.
 const TRACED: usize = 3;
 const TRACED_OF_QUADS: usize = 2;
 
 /// What a path on a bent lattice costs beside others, in turns.
 fn expected((bent, _, outline): &(Bent, Lattice, Outline)) -> f64 {
-    bent.price + bent.limbs + outline.cost
+    bent.price + bent.price_of_limbs + outline.cost
 }
 
 /// Share of the bend that quads are tried with where no patch on the whole bend is good.
@@ -187,18 +181,9 @@ impl Job<'_> {
         Ok(Some((bent, lattice, outline)))
     }
 
-    /// The options in a bent plane: distances count less there, since the vertices come back to the drawing, and less the more
-    /// edges the outline has: along a long side they add up to more than turns are worth. Halves, so that a drawing
-    /// that is changed a little keeps its path.
+    /// The options in a bent plane.
     pub(super) fn of_bent(&self, bent: &Bent) -> SketchOptions {
-        let (share, edges) = match self.options.cells {
-            CellShape::Triangle => (BENT_SHARE, EDGES),
-            CellShape::Quad => (1.0, choose::EDGES),
-        };
-        let length: f64 = bent.contours().iter().map(ClosedCurve::length).sum();
-        let halvings = libm::log2(length / edges).round().max(0.0);
-        let closeness = share * libm::exp2(-halvings) * self.options.closeness;
-        SketchOptions { closeness, ..self.options.clone() }
+        SketchOptions { closeness: bent.closeness(self.options), ..self.options.clone() }
     }
 
     /// The same job for the bent drawing.

@@ -102,7 +102,7 @@ impl Found {
 
     /// The same beside other bends, where coarse limbs count too.
     pub(crate) fn score_of_bent(&self) -> f64 {
-        self.score() + self.bent.as_ref().map_or(0.0, |(bent, _)| bent.limbs)
+        self.score() + self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price_of_limbs)
     }
 
     /// True if neither another bend nor, where it turns little, a straight lattice needs to be tried.

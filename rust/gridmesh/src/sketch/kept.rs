@@ -3,9 +3,11 @@
 use std::sync::Arc;
 
 use crate::bend::Bent;
+use crate::bend::shown::Shown;
 use crate::error::{Error, Result};
 use crate::options::SketchOptions;
 use crate::path::placement::Lattice;
+use crate::progress::Progress;
 
 /// The lattice of a patch, with its bend: [`mesh_sketch_on`](crate::sketch::mesh_sketch_on).
 ///
@@ -27,6 +29,15 @@ impl Kept {
     /// A straight lattice.
     pub fn straight(lattice: Lattice) -> Self {
         Self { lattice, bent: None }
+    }
+
+    /// The bend, for pictures of it; none where the lattice is straight. `options` are those of the patch.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`], [`Error::Solver`].
+    pub fn shown(&self, options: &SketchOptions, progress: Progress<'_>) -> Result<Option<Shown>> {
+        let Some((bent, lattice)) = &self.bent else { return Ok(None) };
+        bent.shown(*lattice, bent.closeness(options), progress).map(Some)
     }
 
     /// The options for a straight lattice that stays.
