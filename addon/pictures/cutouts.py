@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -229,6 +230,25 @@ def _surfaces(
     return [surface(at, *part) for at, part in enumerate(parts)]
 
 
+def _in_sizes(
+    gridmesh: Any,
+    sizes: tuple[float, ...],
+    options: dict[str, Any],
+    make: Callable[[dict[str, Any], Progress | None], Any],
+    progress: Progress | None,
+) -> Iterator[Any]:
+    """What is made with edges of each of these lengths, relative to that wanted; no more where one is refused after the first."""
+    for step, size in enumerate(sizes):
+        sized = {**options, "edge_length": size * options["edge_length"]}
+        try:
+            made = make(sized, part_of(progress, step / len(sizes), (step + 1) / len(sizes)))
+        except gridmesh.GridMeshError as error:
+            if step == 0 or error.kind == "cancelled":
+                raise
+            return
+        yield made
+
+
 def _body(
     gridmesh: Any,
     part: tuple[np.ndarray, list[np.ndarray]],
@@ -238,21 +258,18 @@ def _body(
     progress: Progress | None,
 ) -> Any:
     """Body on the outline of a part; of a few sizes the first that has no short edge, or the one whose shortest is longest."""
-    made: list[Any] = []
+
+    def make(sized: dict[str, Any], of_this: Progress | None) -> Any:
+        patch = _patch(gridmesh, part, sized, chosen, again, part_of(of_this, 0.0, 0.7))
+        return gridmesh.inflate(patch, progress=part_of(of_this, 0.7, 1.0), **chosen.body)
+
     # Quads at a rim are low by themselves.
     sizes = _SIZES if again and options["cells"] == "triangles" else _SIZES[:1]
-    for step, size in enumerate(sizes):
-        sized = {**options, "edge_length": size * options["edge_length"]}
-        of_this = part_of(progress, step / len(sizes), (step + 1) / len(sizes))
-        try:
-            patch = _patch(gridmesh, part, sized, chosen, again, part_of(of_this, 0.0, 0.7))
-            made.append(gridmesh.inflate(patch, progress=part_of(of_this, 0.7, 1.0), **chosen.body))
-        except gridmesh.GridMeshError as error:
-            if not made or error.kind == "cancelled":
-                raise
-            break
-        if _shortest(made[-1]) >= SHORT:
-            return made[-1]
+    made = []
+    for body in _in_sizes(gridmesh, sizes, options, make, progress):
+        made.append(body)
+        if _shortest(body) >= SHORT:
+            return body
     return max(made, key=_shortest)
 
 
@@ -286,22 +303,16 @@ def _patch(
         larger = sum(_area(one.vertices[loop]) for loop in one.loops) / drawn - 1
         return max(one.report["outside"], CUT_OFF), max(larger, empty)
 
-    best = None
-    for step, finer in enumerate(FINER[: _MOST if again else 1]):
-        if step >= tries and lacks(best)[0] <= CUT_OFF:
+    def make(sized: dict[str, Any], of_this: Progress | None) -> Any:
+        return gridmesh.cover_sketch(outline, holes, slack=slack, progress=of_this, **sized)
+
+    found = []
+    for patch in _in_sizes(gridmesh, FINER[: _MOST if again else 1], options, make, progress):
+        found.append(patch)
+        cut_off, larger = lacks(min(found, key=lacks))
+        if cut_off <= CUT_OFF and (larger <= empty or len(found) >= tries):
             break
-        sized = {**options, "edge_length": finer * options["edge_length"]}
-        of_this = part_of(progress, step / _MOST, (step + 1) / _MOST)
-        try:
-            patch = gridmesh.cover_sketch(outline, holes, slack=slack, progress=of_this, **sized)
-        except gridmesh.GridMeshError as error:
-            if best is None or error.kind == "cancelled":
-                raise
-            break
-        best = patch if best is None else min(best, patch, key=lacks)
-        if lacks(best) == (CUT_OFF, empty):
-            break
-    return best
+    return min(found, key=lacks)
 
 
 def _filled(traced: list[tuple[np.ndarray, list[np.ndarray]]]) -> list[tuple[np.ndarray, list[np.ndarray]]]:
