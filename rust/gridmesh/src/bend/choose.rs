@@ -52,6 +52,8 @@ const ASKED: (f64, usize) = (4.0, 12);
 const QUAD_SIZE: (f64, usize) = (0.3, 3);
 /// The share of the wish for finer narrow parts in a bend that is made where limbs would be coarse.
 const FINER: f64 = 0.5;
+/// Coarse limbs that cost fewer turns are not worth it.
+const WORTH: f64 = 1.0;
 /// The largest log of the edge length that 99 % of the edges do not reach, over the median.
 const UNEVEN: f64 = 0.65;
 /// Shares of a bend that are tried while the bent drawing overlaps itself.
@@ -196,7 +198,7 @@ impl Maker<'_> {
     fn priced(&self, rotation: &Rotation) -> Result<Vec<(f64, Rotation)>> {
         let (cost, coarse, sized) = self.with_cost(self.sized(rotation)?)?;
         let mut found = vec![(cost, sized)];
-        if coarse > 0.0 {
+        if coarse > WORTH {
             let wish = Wish::of_narrowness(&self.ground.widths, FINER);
             let v = self.solver.sized(rotation, self.pull, ASKED, &wish)?;
             let (cost, _, finer) = self.with_cost(self.operators.judged(v, self.turn))?;
