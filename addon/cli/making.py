@@ -51,12 +51,6 @@ class Made:
         loading.tidy(source, self.objects)
 
 
-def _may_bend(options: dict[str, Any]) -> bool:
-    """Whether the lattice bends with these options of a sketch: only then can faces have several sizes."""
-    bends = options.get("bend", defaults.BEND) > 0 or options.get("cells") == "quads"
-    return bends and options.get("boundary") != "grown" and "angle" not in options
-
-
 def strokes_to_bodies(source: Path, pattern: str | None, options: dict[str, Any], *, scripts: bool) -> Made:
     """Make a body of each closed stroke."""
     found, reasons, notes = loading.drawn(source, pattern, scripts=scripts)
@@ -70,8 +64,7 @@ def strokes_to_bodies(source: Path, pattern: str | None, options: dict[str, Any]
     if not {"triangles", "quads", "edge_length"} & options.keys():
         quads = options.get("cells") == "quads"
         sketch_options |= {"quads": defaults.QUADS} if quads else {"triangles": defaults.TRIANGLES}
-    if _may_bend(sketch_options):
-        sketch_options.setdefault("density", defaults.DETAIL)
+    sketch_options.setdefault("density", defaults.DETAIL)
     body_options = {key: value for key, value in options.items() if key in params.BODY}
     bodies, refused = api.build(sketches, sketch_options, {**body_options, "corner_angle": corner})
     reasons = reasons + [str(failure) for failure in failures + refused]

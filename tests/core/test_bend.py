@@ -201,6 +201,12 @@ def test_limbs_are_no_coarser_than_on_a_straight_lattice_where_sizes_matter():
     assert free <= minded <= 0.95 * plain
 
 
+def test_on_a_straight_lattice_thin_parts_are_as_fine_as_on_one():
+    points = with_a_foot(1.4)
+    plain, minded = (mesh_sketch(points, triangles=1500, bend=0, density=d) for d in (None, 0))
+    assert plain.vertices.tobytes() == minded.vertices.tobytes()
+
+
 def test_lattices_bend_unless_told_otherwise():
     points = with_a_foot(0.9)
     given, plain = mesh_sketch(points, triangles=2000), gridmesh.mesh_sketch(points, triangles=2000)

@@ -40,7 +40,9 @@ use crate::path::outline::Outline;
 use crate::path::placement::{Laid, Lattice, ROW_HEIGHT};
 use crate::progress::Progress;
 use carrier::{Carrier, Line};
+use conformal::Operators;
 use image::{BentContours, Image, WayBack};
+use tangents::Tangents;
 use width::{Wish, log_limbs, log_widths};
 
 /// Coordinates in a drawing's own frame are multiples of this, in edges.
@@ -132,6 +134,13 @@ impl Ground {
             is_symmetric,
             shape,
         }))
+    }
+
+    /// The Laplacian of the carrier and what stands on its boundary.
+    fn operators(&self, progress: Progress<'_>) -> Result<Operators> {
+        let tangents: Vec<Tangents> =
+            self.lines.iter().map(|line| Tangents::new(&line.points, &line.arcs)).collect();
+        Operators::new(&self.carrier, &self.widths, &tangents, self.shape, progress)
     }
 
     /// True if sizes are asked for.

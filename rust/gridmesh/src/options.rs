@@ -254,7 +254,9 @@ impl SketchOptions {
     /// # Errors
     /// [`Error::InvalidOption`] for wishes of density that no lattice, or no drawing, can have.
     fn check_density(&self) -> Result<()> {
-        if self.density.is_some() && self.bend == 0.0 {
+        // At 0 thin parts shall be as fine as on a straight lattice, which they are there.
+        let is_asked = self.density.as_ref().is_some_and(|density| *density != Density::Width(0.0));
+        if is_asked && self.bend == 0.0 {
             return Err(Error::InvalidOption {
                 name: "density",
                 value: "given, with bend 0".to_owned(),

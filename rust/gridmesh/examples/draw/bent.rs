@@ -1,15 +1,14 @@
 //! Panels of a lattice that bends with the drawing: directions, rotation, scale, the bent plane with its path, the patch.
 
+use std::f64::consts::FRAC_PI_3;
+
 use glam::DVec2;
 use gridmesh::bend::shown::Shown;
-use gridmesh::lattice::assemble::assemble;
 use gridmesh::options::SketchOptions;
-use gridmesh::path::placement::Lattice;
 use gridmesh::path::target::Target;
 use gridmesh::path::trace::{TraceOptions, trace};
 use gridmesh::progress::Progress;
 use gridmesh::svg::{Ink, Picture};
-use std::f64::consts::FRAC_PI_3;
 
 use crate::scene::{Region, Scene};
 use crate::stages::{Stages, agree};
@@ -39,14 +38,7 @@ pub fn bent_stages(drawing: &Drawing, triangles: usize, size: f64, stages: &mut 
 
 /// The lattice direction that each part of the outline shall follow, and where it changes.
 fn directions(scene: &Scene, shown: &Shown) -> Picture {
-    let turns = |n: usize, i: usize, start: usize| shown.steps[start + (i + 1) % n] - shown.steps[start + i];
-    let mut changes = Vec::new();
-    for range in &shown.contours {
-        let n = range.len();
-        // Once around the steps gain what the outline turns by.
-        changes.extend((0..n).map(|i| if i + 1 == n { 0 } else { turns(n, i, range.start) }));
-    }
-    let changed = changes.iter().filter(|change| **change != 0).count();
+    let changed = shown.changes.iter().filter(|change| **change != 0).count();
     let caption =
         format!("{changed} changes of direction on a carrier of {} triangles", shown.triangles.len());
     let mut picture = scene.panel("Bent 1. Directions", &caption);
@@ -58,7 +50,7 @@ fn directions(scene: &Scene, shown: &Shown) -> Picture {
         [shown.vertices[i] - half, shown.vertices[i] + half]
     };
     picture.lines(Ink::Chord, shown.steps.iter().enumerate().map(along));
-    crate::scene::marks(&mut picture, &changes, &shown.vertices);
+    crate::scene::marks(&mut picture, &shown.changes, &shown.vertices);
     picture
 }
 
@@ -99,17 +91,13 @@ fn path(scene: &Scene, shown: &Shown, size: f64) -> Anything<Picture> {
         ..TraceOptions::default()
     };
     let traced = trace(&targets, &options, Progress::NONE).map_err(|failure| format!("{failure:?}"))?;
-    let paths: Vec<Vec<_>> = traced.paths.into_iter().map(|path| path.points).collect();
-    let inside = assemble(&paths);
-    let positions = inside.points.iter().map(|&p| lattice.from_units(Lattice::units(p))).collect();
-    let region = Region { paths, positions, triangles: inside.triangles };
-    agree(scene, &region).map_err(|error| format!("bent: {error}"))?;
+    let region = Region::new(traced.paths.into_iter().map(|path| path.points).collect(), &lattice);
+    agree(scene, &region)?;
     let mut picture = Picture::new(low, high, size, size, size / 640.0)
         .titled("Bent 4. Bent drawing, path", &region.count());
     region.fill(&mut picture, Ink::Fill);
-    picture.wire(&region.positions, &region.triangles);
-    picture.polygons(Ink::Drawing, shown.bent.iter().map(|contour| contour.points()));
-    region.fill(&mut picture, Ink::Path);
-    crate::scene::marks(&mut picture, &region.turns(), &region.positions);
+    region.draw_edges(&mut picture, |picture| {
+        picture.polygons(Ink::Drawing, shown.bent.iter().map(|contour| contour.points()));
+    });
     Ok(picture)
 }

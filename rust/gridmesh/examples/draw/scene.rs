@@ -29,7 +29,7 @@ pub struct Scene {
 /// The inside of closed lattice paths, where it lies on the lattice.
 pub struct Region {
     pub paths: Vec<Vec<Axial>>,
-    pub positions: Vec<DVec2>,
+    positions: Vec<DVec2>,
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -67,9 +67,7 @@ impl Scene {
     }
 
     pub fn region(&self, paths: Vec<Vec<Axial>>) -> Region {
-        let region = assemble(&paths);
-        let positions = region.points.iter().map(|&p| self.at(p)).collect();
-        Region { paths, positions, triangles: region.triangles }
+        Region::new(paths, &self.lattice)
     }
 
     pub fn drawn(&self, picture: &mut Picture) {
@@ -87,10 +85,7 @@ impl Scene {
         if let Some(before) = before {
             before.fill(picture, Ink::Fill);
         }
-        picture.wire(&region.positions, &region.triangles);
-        self.drawn(picture);
-        region.fill(picture, Ink::Path);
-        marks(picture, &region.turns(), &region.positions);
+        region.draw_edges(picture, |picture| self.drawn(picture));
     }
 
     /// The patch on the drawing.
@@ -170,6 +165,12 @@ impl Scene {
 }
 
 impl Region {
+    pub fn new(paths: Vec<Vec<Axial>>, lattice: &Lattice) -> Self {
+        let region = assemble(&paths);
+        let positions = region.points.iter().map(|&p| lattice.from_units(Lattice::units(p))).collect();
+        Self { paths, positions, triangles: region.triangles }
+    }
+
     /// The paths, as a face or as lines.
     pub fn fill(&self, picture: &mut Picture, ink: Ink) {
         let mut start = 0;
@@ -178,6 +179,14 @@ impl Region {
             &self.positions[start - path.len()..start]
         });
         picture.polygons(ink, outlines);
+    }
+
+    /// Its edges, boundary and turns over what else is drawn.
+    pub fn draw_edges(&self, picture: &mut Picture, beneath: impl Fn(&mut Picture)) {
+        picture.wire(&self.positions, &self.triangles);
+        beneath(picture);
+        self.fill(picture, Ink::Path);
+        marks(picture, &self.turns(), &self.positions);
     }
 
     /// The turn at each boundary vertex.

@@ -9,7 +9,6 @@ use super::directions::Directions;
 use super::image::{BentContours, Image};
 use super::mirrored::Mirrored;
 use super::price::{coarseness_of_limbs, largest_over_median, price_of_size};
-use super::tangents::Tangents;
 use super::width::{Wish, narrowest};
 use super::{Bent, Ground};
 use crate::error::Result;
@@ -71,9 +70,7 @@ pub(crate) fn candidates(
     count: usize,
     progress: Progress<'_>,
 ) -> Result<Vec<(Bent, f64)>> {
-    let tangents: Vec<Tangents> =
-        ground.lines.iter().map(|line| Tangents::new(&line.points, &line.arcs)).collect();
-    let operators = Operators::new(&ground.carrier, &ground.widths, &tangents, ground.shape, progress)?;
+    let operators = ground.operators(progress)?;
     // What is solved after this is reported as one part.
     let solver = operators.solver(progress.part(0.1, 0.2))?;
     let (strength, turn) = match ground.shape {

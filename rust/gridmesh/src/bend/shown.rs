@@ -6,8 +6,6 @@ use glam::DVec2;
 
 use super::Bent;
 use super::choose::TURN;
-use super::conformal::Operators;
-use super::tangents::Tangents;
 use crate::drawing::curve::ClosedCurve;
 use crate::error::Result;
 use crate::path::placement::Lattice;
@@ -23,6 +21,8 @@ pub struct Shown {
     pub contours: Vec<Range<usize>>,
     /// At each vertex on a contour the multiple of 60 degrees, of 90 for quads, that the outline shall have in the bent plane.
     pub steps: Vec<i32>,
+    /// By how many of them it changes from each to the next.
+    pub changes: Vec<i32>,
     /// At each vertex the direction in the drawing, in radians, of what is the first axis of the bent plane.
     pub axes: Vec<f64>,
     /// At each vertex the length in the drawing of an edge of the lattice.
@@ -43,17 +43,23 @@ impl Bent {
     pub(crate) fn shown(&self, lattice: Lattice, closeness: f64, progress: Progress<'_>) -> Result<Shown> {
         let (ground, image) = (&self.ground, &self.image);
         let carrier = &ground.carrier;
-        let tangents: Vec<Tangents> =
-            ground.lines.iter().map(|line| Tangents::new(&line.points, &line.arcs)).collect();
-        let operators = Operators::new(carrier, &ground.widths, &tangents, ground.shape, progress)?;
-        let found = operators.directions(&image.v, TURN);
+        let operators = ground.operators(progress)?;
+        let steps: Vec<i32> =
+            operators.directions(&image.v, TURN).into_iter().flat_map(|found| found.steps).collect();
+        let mut changes = Vec::with_capacity(steps.len());
+        for &(start, n, total) in operators.contours() {
+            // Once around they gain what the contour turns by.
+            let next = |i: usize| if i + 1 < n { steps[start + i + 1] } else { steps[start] + total };
+            changes.extend((0..n).map(|i| next(i) - steps[start + i]));
+        }
         let frame = &ground.frame;
         let edge = frame.edge_length * lattice.edge_length;
         Ok(Shown {
             vertices: carrier.vertices.iter().map(|&p| frame.from_units(p)).collect(),
             triangles: carrier.triangles.clone(),
             contours: carrier.rims.iter().map(|rim| rim.start..rim.start + rim.len()).collect(),
-            steps: found.into_iter().flat_map(|directions| directions.steps).collect(),
+            steps,
+            changes,
             axes: image.v.iter().map(|v| frame.angle - v).collect(),
             lengths: image.u.iter().map(|u| edge * libm::exp(-u)).collect(),
             bent: self.contours().to_vec(),

@@ -94,15 +94,16 @@ pub fn bone_weights(
     let heat = Heat::new(vertices, triangles, &transfer)?;
     let ways = Ways::new(bones);
     let mut eased = vec![1.0; triangles.len()];
-    for round in 0.. {
+    let mut round = 0;
+    loop {
         let found = strongest(&heat.settled(&eased, &wanted, b)?, n, &ways, options.most);
         if round == ROUNDS || !ease(&ways.joints, options.reach, vertices, triangles, &found, &mut eased) {
             progress.report(1.0)?;
             return Ok(found);
         }
-        progress.report(0.7 + 0.3 * (round + 1) as f64 / (ROUNDS + 1) as f64)?;
+        round += 1;
+        progress.report(0.7 + 0.3 * round as f64 / (ROUNDS + 1) as f64)?;
     }
-    Ok(wanted)
 }
 
 fn check(

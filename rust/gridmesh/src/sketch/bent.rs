@@ -21,13 +21,13 @@ use crate::sketch::job::{Asked, Effort, Job};
 const TRACED: usize = 3;
 const TRACED_OF_QUADS: usize = 2;
 
+/// Share of the bend that quads are tried with where no patch on the whole bend is good.
+const WEAKER: f64 = 0.75;
+
 /// What a path on a bent lattice costs beside others, in turns.
 fn expected((bent, _, outline): &(Bent, Lattice, Outline)) -> f64 {
     bent.price + bent.price_of_limbs + outline.cost
 }
-
-/// Share of the bend that quads are tried with where no patch on the whole bend is good.
-const WEAKER: f64 = 0.75;
 
 impl Job<'_> {
     /// True if the lattice may bend.

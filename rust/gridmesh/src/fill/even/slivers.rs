@@ -187,27 +187,45 @@ impl Mender {
             return None;
         }
         let old = self.local.fan(v).to_vec();
-        let new = old.iter().map(|&t| self.local.triangles[t as usize]).collect::<Vec<_>>();
-        let up = new.iter().map(|&t| self.normal(t)).sum::<DVec3>().try_normalize()?;
+        let normals = old.iter().map(|&t| self.normal(self.local.triangles[t as usize]));
+        let up = normals.sum::<DVec3>().try_normalize()?;
         let (e, f) = up.any_orthonormal_pair();
         let (here, size) = (self.points[v as usize], self.local.sizes[v as usize]);
-        let worst = new.iter().map(|&t| self.quality(t)).fold(1.0, f64::min);
-        let mut best = (worst + GAIN, None);
-        for step in STEPS {
-            for way in 0..WAYS {
+        let moves = STEPS.into_iter().flat_map(|step| {
+            (0..WAYS).map(move |way| {
                 let t = std::f64::consts::TAU * way as f64 / WAYS as f64;
-                let there = here + step * size * (libm::cos(t) * e + libm::sin(t) * f);
-                self.points[v as usize] = there;
-                let facing = new.iter().all(|&t| self.normal(t).dot(up) > 0.0);
-                let found = new.iter().map(|&t| self.quality(t)).fold(1.0, f64::min);
-                if facing && found > best.0 {
-                    best = (found, Some(there));
-                }
+                vec![(v, here + step * size * (libm::cos(t) * e + libm::sin(t) * f))]
+            })
+        });
+        let ups = vec![up; old.len()];
+        self.best_of(moves, old, &ups)
+    }
+
+    /// The best of some moves, if it gains enough; triangles face as `ups` do.
+    fn best_of(
+        &mut self,
+        moves: impl Iterator<Item = Vec<(u32, DVec3)>>,
+        old: Vec<u32>,
+        ups: &[DVec3],
+    ) -> Option<Trial> {
+        let new = old.iter().map(|&t| self.local.triangles[t as usize]).collect::<Vec<_>>();
+        let mut best = (new.iter().map(|&t| self.quality(t)).fold(1.0, f64::min) + GAIN, None);
+        for moved in moves {
+            let here = self.placed(&moved);
+            let facing = new.iter().zip(ups).all(|(&t, up)| self.normal(t).dot(*up) > 0.0);
+            let worst = new.iter().map(|&t| self.quality(t)).fold(1.0, f64::min);
+            if facing && worst > best.0 {
+                best = (worst, Some(moved));
             }
+            self.placed(&here);
         }
-        self.points[v as usize] = here;
-        let there = best.1?;
-        Some(Trial { change: Change::Move(vec![(v, there)]), old, new, worst: best.0 })
+        Some(Trial { change: Change::Move(best.1?), old, new, worst: best.0 })
+    }
+
+    /// Puts vertices to places, and returns where they were.
+    fn placed(&mut self, places: &[(u32, DVec3)]) -> Vec<(u32, DVec3)> {
+        let put = |&(v, p): &(u32, DVec3)| (v, std::mem::replace(&mut self.points[v as usize], p));
+        places.iter().map(put).collect()
     }
 
     /// Around a tunnel, or a thread, three edges wide none of them can go: it is made wider.
@@ -227,31 +245,20 @@ impl Mender {
         let mut old = ring.iter().flat_map(|&v| local.fan(v)).copied().collect::<Vec<_>>();
         old.sort_unstable();
         old.dedup();
-        let new = old.iter().map(|&t| local.triangles[t as usize]).collect::<Vec<_>>();
-        let before = new.iter().map(|&t| self.normal(t)).collect::<Vec<_>>();
+        let ups = old.iter().map(|&t| self.normal(local.triangles[t as usize])).collect::<Vec<_>>();
         let here = ring.iter().map(|&v| (v, self.points[v as usize])).collect::<Vec<_>>();
-        let mut best = (new.iter().map(|&t| self.quality(t)).fold(1.0, f64::min) + GAIN, None);
-        for wide in WIDE {
-            let there = here.iter().map(|&(v, p)| (v, centre + (p - centre) * (wide / length)));
-            let there = there.collect::<Vec<_>>();
-            there.iter().for_each(|&(v, p)| self.points[v as usize] = p);
-            let facing = new.iter().zip(&before).all(|(&t, up)| self.normal(t).dot(*up) > 0.0);
-            let worst = new.iter().map(|&t| self.quality(t)).fold(1.0, f64::min);
-            if facing && worst > best.0 {
-                best = (worst, Some(there));
-            }
-        }
-        here.iter().for_each(|&(v, p)| self.points[v as usize] = p);
-        Some(Trial { change: Change::Move(best.1?), old, new, worst: best.0 })
+        let moves = WIDE
+            .into_iter()
+            .map(|wide| here.iter().map(|&(v, p)| (v, centre + (p - centre) * (wide / length))).collect());
+        self.best_of(moves, old, &ups)
     }
 
     /// Whether no new triangle meets anything.
     fn is_free(&mut self, trial: &Trial) -> bool {
-        let mut back = vec![];
-        if let Change::Move(moved) = &trial.change {
-            back.extend(moved.iter().map(|&(v, _)| (v, self.points[v as usize])));
-            moved.iter().for_each(|&(v, p)| self.points[v as usize] = p);
-        }
+        let back = match &trial.change {
+            Change::Move(moved) => self.placed(moved),
+            _ => vec![],
+        };
         let meets = |t: [u32; 3]| {
             let rectangle = *self.boxed(t, 0).geom();
             let envelope = AABB::from_corners(rectangle.lower(), rectangle.upper());
@@ -269,7 +276,7 @@ impl Mender {
             trial.new[k + 1..].iter().any(|&other| triangles_meet(&self.points, trial.new[k], other))
         };
         let free = !trial.new.iter().any(|&t| meets(t)) && !(0..trial.new.len()).any(pairs);
-        back.into_iter().for_each(|(v, p)| self.points[v as usize] = p);
+        self.placed(&back);
         free
     }
 
@@ -285,10 +292,8 @@ impl Mender {
                 true
             }
             Change::Move(moved) => {
-                for (v, p) in moved {
-                    self.local.positions[v as usize] = p;
-                    self.points[v as usize] = p;
-                }
+                moved.iter().for_each(|&(v, p)| self.local.positions[v as usize] = p);
+                self.placed(&moved);
                 true
             }
         };
