@@ -72,11 +72,12 @@ use crate::{options, reports};
 ///     are about as fine as on a straight lattice; tips sharper than 35 degrees may be blunted, by two edge lengths at most.
 ///     Without effect beside `angle` or `origin` and with boundary="grown".
 /// density : "width", float, (n,) array of positive numbers, or a sequence of such arrays, optional
-///     With `bend` above 0: where there should be more triangles. "width": in narrow parts; one number from 0 to 1: so much of
-///     that ("width" is 1; at 0 they are about as fine as on a straight lattice, so that the ends of limbs look round, for some
-///     more irregular vertices: None leaves a tenth less of them at 2000 triangles, and some limbs coarse). An array: at each point of the outline so many times the triangles of elsewhere, as a sequence for the outline and its holes. It is a wish:
-///     the map stays conformal, so that neighbouring triangles differ little in size. Numbers not together with
-///     self_crossing="union".
+///     Where there should be more triangles. "width": in narrow parts; one number from 0 to 1: so much of that ("width" is 1;
+///     at 0 they are about as fine as on a straight lattice, so that the ends of limbs look round, for some more irregular
+///     vertices: None leaves a fifth less of them at 2000 triangles, and some limbs coarse). An array: at each point of the
+///     outline so many times the triangles of elsewhere, as a sequence for the outline and its holes. It is a wish:
+///     the map stays conformal, so that neighbouring triangles differ little in size. But for 0 only with `bend` above 0.
+///     Arrays not together with self_crossing="union".
 /// keep : Patch, optional
 ///     A patch whose lattice stays where it is, with its bend, for outlines that change step by step: then nothing is searched but the
 ///     boundary, in a part of the time, and vertices stay where they can. Exclusive with `edge_length`, `triangles`, `quads`,
