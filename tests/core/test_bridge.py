@@ -215,6 +215,17 @@ def test_loops_nested_in_a_plane_stay_in_it_and_do_not_meet():
     assert found.angle > 20
 
 
+@pytest.mark.parametrize("number", [462, 495])
+def test_a_tube_that_would_fold_where_its_loops_turn_is_pulled_tight(number):
+    case = bridges.case(1, number)
+    fill = gridmesh.bridge(case.vertices, case.triangles, *case.loops)
+    assert not faults(case, fill)
+    assert fill.report["folds"] == fill.report["self_intersections"] == 0
+    assert np.degrees(fill.report["min_angle"]) > 15
+    for kept in (fill, pickle.loads(pickle.dumps(fill))):
+        assert np.array_equal(kept.refit(case.vertices), fill.vertices)
+
+
 def test_directions_of_the_loops_do_not_matter():
     one, two = circle(24), circle(30, z=2.0)
     fill, _ = bridged(one, two)

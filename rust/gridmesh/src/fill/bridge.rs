@@ -9,6 +9,7 @@ pub(in crate::fill) mod align;
 mod choose;
 mod loft;
 mod options;
+mod refit;
 mod rings;
 mod route;
 mod settle;

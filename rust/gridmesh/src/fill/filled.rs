@@ -33,12 +33,14 @@ pub struct Fill {
 }
 
 /// A further loop of a patch between several.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bridged {
     /// Vertices of the loops before.
     pub first: usize,
     /// It was given the other way round.
     pub reversed: bool,
+    /// How far the surface of a tube between two loops goes on as it leaves them, 1 as far as arcs do.
+    pub pull: f64,
 }
 
 /// What is needed to solve the same patch again.
@@ -132,7 +134,7 @@ impl Fill {
             return self.shape.carried(vertices, progress);
         }
         let positions = match self.shape.bridged.as_slice() {
-            [bridged] => self.shape.lofted(vertices, bridged.first, progress)?,
+            [bridged] => self.shape.lofted(vertices, *bridged, progress)?,
             [_, _, ..] => return self.shape.carried(vertices, progress),
             [] => self.shape.solve(vertices, progress)?.positions,
         };

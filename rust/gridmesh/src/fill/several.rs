@@ -184,7 +184,7 @@ impl Several<'_> {
         Shape {
             flat: vec![DVec2::ZERO; work.end],
             bridged: (work.later.iter().zip(&self.checked[1..]))
-                .map(|(&first, checked)| Bridged { first, reversed: checked.reversed })
+                .map(|(&first, checked)| Bridged { first, reversed: checked.reversed, pull: 1.0 })
                 .collect(),
             work,
             loop_: border.vertices.clone(),

@@ -40,7 +40,7 @@ impl Ideal {
 
     /// Half of |J|^2, J the map from the ideal: equals `det` if it is one.
     pub fn stretch(self, a: DVec2, b: DVec2) -> f64 {
-        let sides = self.sides([a, b, b - a].map(DVec2::length_squared));
+        let sides = self.sides([a.length_squared(), b.length_squared(), (b - a).length_squared()]);
         if self == Ideal::Equilateral { sides / 3.0 } else { 0.5 * sides }
     }
 
@@ -102,7 +102,7 @@ impl Corner {
     /// The same where the product of the two sides is known: `[a, b, a x b]`.
     #[inline]
     pub fn crossed(ideal: Ideal, [a, b, cross]: [DVec3; 3], normal: DVec3) -> Self {
-        let sides = ideal.sides([a, b, b - a].map(DVec3::length_squared));
+        let sides = ideal.sides([a.length_squared(), b.length_squared(), (b - a).length_squared()]);
         let (lengthening, curvature) = match ideal {
             Ideal::Equilateral | Ideal::Own => (-2.0 * (a + b), 4.0),
             Ideal::Next => (-2.0 * a, 2.0),

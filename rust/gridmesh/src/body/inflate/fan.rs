@@ -102,7 +102,7 @@ impl<'a> Fan<'a> {
     pub fn worst(self, at: impl Fn(u32) -> DVec3, point: DVec3) -> f64 {
         let ratio = |(i, j, ideal): (u32, u32, Ideal)| {
             let (a, b) = (at(i) - point, at(j) - point);
-            let sides = ideal.sides([a, b, b - a].map(DVec3::length_squared));
+            let sides = ideal.sides([a.length_squared(), b.length_squared(), (b - a).length_squared()]);
             a.cross(b).length() * ideal.best() / sides
         };
         self.iter().map(ratio).fold(f64::INFINITY, f64::min)

@@ -85,6 +85,8 @@ impl Rail {
 pub(super) struct Loft {
     lower: Rail,
     upper: Rail,
+    /// As given.
+    pub pull: f64,
 }
 
 /// One loop of a loft.
@@ -97,7 +99,8 @@ pub(super) struct Edge<'a> {
 }
 
 impl Loft {
-    pub fn new(lower: &Edge<'_>, upper: &Edge<'_>) -> Loft {
+    /// `pull`: how far the curves go on as they leave the loops, 1 as far as arcs do; the less, the tighter they are.
+    pub fn new(lower: &Edge<'_>, upper: &Edge<'_>, pull: f64) -> Loft {
         let straight = |edge: &Edge<'_>| {
             let none = vec![DVec3::ZERO; edge.around.len()];
             Rail::new(edge.around.to_vec(), edge.ring.points.clone(), none)
@@ -108,13 +111,14 @@ impl Loft {
             let slope = |k: usize| {
                 let point = own.ring.points[k];
                 let (far, back) = facing(own.around[k]);
-                slope(point, own.onward[k], far, back, own.ring.length / std::f64::consts::TAU) * sign
+                let slope = slope(point, own.onward[k], far, back, own.ring.length / std::f64::consts::TAU);
+                slope * if own.onward[k] == DVec3::ZERO { sign } else { sign * pull }
             };
             (0..own.around.len()).map(slope).collect::<Vec<_>>()
         };
         let below = slopes(lower, upper, &b, 1.0);
         let above = slopes(upper, lower, &a, -1.0);
-        Loft { lower: Rail { across: below, ..a }, upper: Rail { across: above, ..b } }
+        Loft { lower: Rail { across: below, ..a }, upper: Rail { across: above, ..b }, pull }
     }
 
     pub fn at(&self, around: f64, height: f64) -> Spot {
@@ -184,7 +188,7 @@ mod tests {
         let (up, down) = (vec![DVec3::Z; 60], vec![-DVec3::Z; 60]);
         let lower = Edge { ring: &a, around: &s, onward: &up };
         let upper = Edge { ring: &b, around: &t, onward: &down };
-        let loft = Loft::new(&lower, &upper);
+        let loft = Loft::new(&lower, &upper, 1.0);
         for k in 0..100 {
             let spot = loft.at(0.01 * f64::from(k), 0.37);
             assert!((spot.point.truncate().length() - 1.0).abs() < 1e-3);
@@ -199,7 +203,7 @@ mod tests {
         t.iter_mut().for_each(|t| *t += 0.13);
         let (up, none) = (vec![DVec3::new(0.6, 0.0, 0.8); 17], vec![DVec3::ZERO; 31]);
         let lower = Edge { ring: &a, around: &s, onward: &up };
-        let loft = Loft::new(&lower, &Edge { ring: &b, around: &t, onward: &none });
+        let loft = Loft::new(&lower, &Edge { ring: &b, around: &t, onward: &none }, 1.0);
         let d = 1e-6;
         for (x, y) in [(0.1, 0.2), (0.5, 0.9), (1.3, 0.4)] {
             let (here, along, across) = (loft.at(x, y), loft.at(x + d, y), loft.at(x, y + d));

@@ -15,8 +15,8 @@ const HALVINGS: usize = 4;
 /// Sweeps at most.
 const SWEEPS: usize = 10;
 
-/// Sweeps end when a mean vertex gains less than this share of a good corner.
-const SETTLED: f64 = 1e-3;
+/// A vertex that gains less than this share of a good corner rests until one beside it gains more.
+const RESTS: f64 = 0.02;
 
 /// The badness of a corner counts to this power, and one: the worst ones most.
 const POWER: i32 = 6;
@@ -31,16 +31,27 @@ pub(super) fn settle(
     positions: &mut [DVec3],
     progress: Progress<'_>,
 ) -> Result<()> {
+    let mut awake = vec![true; positions.len()];
     let mut mover = Mover { loft, star: vec![], seen: vec![] };
     for _ in 0..SWEEPS {
         progress.report(0.0)?;
-        let mut gain = 0.0;
+        let mut all_rest = true;
         for v in work.inner() {
+            if !std::mem::take(&mut awake[v]) {
+                continue;
+            }
             work.star(v, &mut mover.star);
             let spot = &mut spots[v - work.n];
-            gain += mover.moved(&mut flat[v], spot, positions, v);
+            if mover.moved(&mut flat[v], spot, positions, v) > RESTS {
+                all_rest = false;
+                awake[v] = true;
+                mover
+                    .star
+                    .iter()
+                    .for_each(|&(i, j, _)| [i, j].iter().for_each(|&w| awake[w as usize] = true));
+            }
         }
-        if gain < SETTLED * work.inner().len() as f64 {
+        if all_rest {
             break;
         }
     }

@@ -5,8 +5,9 @@ use rustc_hash::FxHashSet;
 
 use super::align::{Ring, best_fit, facing};
 use super::choose::{Bank, Chooser, Chosen};
-use super::loft::{Edge, Loft};
+use super::loft::Loft;
 use super::options::BridgeOptions;
+use super::refit::{edge, onward, reversed, work_positions};
 use super::settle::settle;
 use crate::error::{Error, Result};
 use crate::fill::filled::{Bridged, Fill, Shape};
@@ -17,15 +18,13 @@ use crate::fill::loops::reserve::{edges, wanted};
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::report::{FillReport, Grid};
 use crate::fill::surface::faces::cut;
-use crate::fill::surface::fair::Bending;
-use crate::fill::surface::fair::Membrane;
-use crate::fill::surface::fit::{SEAM_OF_CURVATURE, curvature_target, folds, rim_angle};
+use crate::fill::surface::fit::{folds, rim_angle};
 use crate::fill::surface::patchwork::Patchwork;
 use crate::options::CellShape;
 use crate::progress::{Clock, Progress};
 
-/// Steps towards the wanted curvature.
-const CURVED: usize = 2;
+/// A surface that folds is tried with its curves pulled this tight, one after the other.
+const PULLS: [f64; 3] = [0.6, 0.35, 0.15];
 
 /// A lattice whose least angle is below this, in radians, is compared with rings of any lengths.
 const THIN: f64 = 0.2;
@@ -48,6 +47,7 @@ struct Attempt {
     lattice: bool,
     rows: f64,
     min_angle: f64,
+    folds: usize,
 }
 
 impl<'a> Span<'a> {
@@ -85,8 +85,9 @@ impl<'a> Span<'a> {
             !sides.filter(|[a, b]| *a < m && *b >= m && *b < both).any(|[a, b]| joined.contains(&[a, b - m]))
         };
         let onward = self.onward();
-        let loft =
-            Loft::new(&edge(lower, &onward[self.lower]), &edge(upper, &reversed(&onward[1 - self.lower])));
+        let (below, above) = (&onward[self.lower], reversed(&onward[1 - self.lower]));
+        let pulled = |pull: f64| Loft::new(&edge(lower, below), &edge(upper, &above), pull);
+        let loft = pulled(1.0);
         clock.stage("surface");
         let mut chosen = None;
         // Where the mesh joins the loops already, a row more keeps them apart.
@@ -111,7 +112,16 @@ impl<'a> Span<'a> {
             });
         };
         clock.stage("grid");
-        let mut best = self.placed(&banks, &loft, &found, progress.part(0.6, 0.9))?;
+        let mut best = self.placed(&banks, &loft, &found, progress.part(0.6, 0.8))?;
+        for pull in PULLS {
+            if best.folds == 0 {
+                break;
+            }
+            let other = self.placed(&banks, &pulled(pull), &found, progress.part(0.8, 0.9))?;
+            if other.folds < best.folds {
+                best = other;
+            }
+        }
         if self.options.cells == CellShape::Triangle && best.lattice && best.min_angle < THIN {
             let other = chooser.stacked();
             if apart(&other) {
@@ -233,7 +243,7 @@ impl<'a> Span<'a> {
             work,
             loop_,
             reversed: self.loops[0].reversed,
-            bridged: vec![Bridged { first, reversed: self.loops[1].reversed }],
+            bridged: vec![Bridged { first, reversed: self.loops[1].reversed, pull: loft.pull }],
             flat,
             smooth: self.options.smooth,
             vertices: self.vertices.len(),
@@ -247,11 +257,12 @@ impl<'a> Span<'a> {
             return Err(Error::Solver { stage: "bridge", reason: "a vertex is not finite".into() });
         }
         let [least, _] = shape.work.corner_range(&shape.positions);
-        Ok(Attempt { shape, lattice: chosen.lattice, rows: tube.rows, min_angle: least })
+        let folds = folds(&shape.work, &shape.positions);
+        Ok(Attempt { shape, lattice: chosen.lattice, rows: tube.rows, min_angle: least, folds })
     }
 
     fn finish(&self, attempt: Attempt, clock: Clock) -> Fill {
-        let Attempt { shape, lattice, rows, min_angle } = attempt;
+        let Attempt { shape, lattice, rows, min_angle, folds } = attempt;
         let work = &shape.work;
         let loops = self.loops.iter().map(|l| l.vertices.as_slice());
         let [irregular, irregular_loop] = work.irregular(loops, self.rim, &self.options.polygons);
@@ -271,7 +282,7 @@ impl<'a> Span<'a> {
             wire_edges: self.loops.iter().map(|l| l.wire).sum(),
             min_angle,
             max_angle: work.corner_range(&shape.positions)[1],
-            folds: folds(work, &shape.positions),
+            folds,
             self_intersections: 0,
             creases: 0,
             creases_kept: 0,
@@ -283,139 +294,8 @@ impl<'a> Span<'a> {
     }
 }
 
-impl Shape {
-    /// Positions of a bridge for a mesh with vertices at `mesh`: on the surface between its loops where they were on
-    /// the old one.
-    ///
-    /// # Errors
-    /// [`Error::Solver`].
-    pub(in crate::fill) fn lofted(
-        &self,
-        mesh: &[DVec3],
-        first: usize,
-        progress: Progress<'_>,
-    ) -> Result<Vec<DVec3>> {
-        let work = &self.work;
-        let mut positions = work_positions(work, &self.loop_, mesh);
-        let bank = |range: std::ops::Range<usize>| {
-            let apex = |v: usize| {
-                let next = work.after(v) as u32;
-                let mut beyond = work.fan(v).iter().filter(|&&[t, ..]| t as usize >= work.n_patch);
-                beyond.find_map(|&[_, p, q]| match next {
-                    next if p == next => Some(positions[q as usize]),
-                    next if q == next => Some(positions[p as usize]),
-                    _ => None,
-                })
-            };
-            let points = positions[range.clone()].to_vec();
-            let apexes = range.clone().map(apex).collect::<Vec<_>>();
-            let flat = self.smooth == Smooth::Flat;
-            let mut onward = if flat { vec![DVec3::ZERO; points.len()] } else { onward(&points, &apexes) };
-            let mut around = self.flat[range.clone()].iter().map(|p| p.x).collect::<Vec<_>>();
-            let upper = self.flat[range.start].y > 0.5;
-            let mut ring = Ring::new(points);
-            if upper {
-                (around, onward, ring) = (reversed(&around), reversed(&onward), ring.reversed());
-            }
-            (upper, Bank { ring, around, wanted: vec![] }, onward)
-        };
-        let mut banks = [bank(0..first), bank(first..work.n)];
-        banks.sort_by_key(|bank| bank.0);
-        let [(_, lower, below), (_, upper, above)] = &banks;
-        let loft = Loft::new(&edge(lower, below), &edge(upper, above));
-        for v in work.inner() {
-            positions[v] = loft.at(self.flat[v].x, self.flat[v].y).point;
-        }
-        if self.smooth == Smooth::Curvature {
-            positions = self.curved(positions, progress)?;
-        }
-        if positions.iter().any(|p| !p.is_finite()) {
-            return Err(Error::Solver { stage: "bridge", reason: "a vertex is not finite".into() });
-        }
-        Ok(positions)
-    }
-
-    /// [`Shape::curved`] for quads: four triangles around the middle of each bend the same in all directions.
-    fn centred_curved(&self, mut start: Vec<DVec3>, progress: Progress<'_>) -> Result<Vec<DVec3>> {
-        let (end, quads) = (self.work.end, self.work.quads);
-        let middle = |q: [u32; 4]| q.iter().map(|&v| start[v as usize]).sum::<DVec3>() / 4.0;
-        let middles = self.work.quads().map(middle).collect::<Vec<_>>();
-        start.splice(end..end, middles);
-        let mut curved = self.centred()?.curved(start, progress)?;
-        curved.drain(end..end + quads);
-        Ok(curved)
-    }
-
-    /// Moves the vertices of a bridge along their normals towards the curvature of the surroundings.
-    fn curved(&self, start: Vec<DVec3>, progress: Progress<'_>) -> Result<Vec<DVec3>> {
-        let work = &self.work;
-        if work.inner().is_empty() || !work.closed[..work.n].contains(&true) {
-            return Ok(start);
-        }
-        if work.quads > 0 {
-            return self.centred_curved(start, progress);
-        }
-        let steps = || {
-            let (bending, membrane) = (Bending::new(work, progress)?, Membrane::new(work, progress)?);
-            let mut positions = start.clone();
-            for _ in 0..CURVED {
-                let target = curvature_target(work, &membrane, &positions, progress)?;
-                bending.normal_step(&mut positions, SEAM_OF_CURVATURE, Some(&target), progress)?;
-            }
-            Ok(positions)
-        };
-        match steps() {
-            // Triangles without area spoil the equations.
-            Err(Error::Solver { .. }) => Ok(start),
-            other => other,
-        }
-    }
-}
-
-/// The loops' own positions, those of vertices around, and zeros between.
-fn work_positions(work: &Patchwork, loop_: &[u32], mesh: &[DVec3]) -> Vec<DVec3> {
-    let mut positions = vec![DVec3::ZERO; work.len()];
-    for (k, &v) in loop_.iter().enumerate() {
-        positions[k] = mesh[v as usize];
-    }
-    for (k, &v) in work.outer.iter().enumerate() {
-        positions[work.end + k] = mesh[v as usize];
-    }
-    positions
-}
-
 /// The two loops run to the right, the lower one first.
 fn rings(loops: &[Checked; 2], lower: usize, vertices: &[DVec3]) -> [Ring; 2] {
     let ring = |k: usize| Ring::new(loops[k].vertices.iter().map(|&v| vertices[v as usize]).collect());
     [ring(lower), ring(1 - lower).reversed()]
-}
-
-fn edge<'a>(bank: &'a Bank, onward: &'a [DVec3]) -> Edge<'a> {
-    Edge { ring: &bank.ring, around: &bank.around, onward }
-}
-
-fn reversed<T: Clone>(items: &[T]) -> Vec<T> {
-    items.iter().rev().cloned().collect()
-}
-
-/// For each vertex of a loop the direction in which the surface around goes on; `apexes`: the third corners of the
-/// triangles beyond the edges. Zero where there are none.
-fn onward(points: &[DVec3], apexes: &[Option<DVec3>]) -> Vec<DVec3> {
-    const ROUNDS: usize = 2;
-    let n = points.len();
-    let across = |k: usize| {
-        let (a, b) = (points[k], points[(k + 1) % n]);
-        let along = (b - a).normalize_or_zero();
-        let away = apexes[k].map_or(DVec3::ZERO, |apex| 0.5 * (a + b) - apex);
-        away.reject_from_normalized(along).normalize_or_zero()
-    };
-    let edges = (0..n).map(across).collect::<Vec<_>>();
-    let mut onward = (0..n).map(|k| edges[k] + edges[(k + n - 1) % n]).collect::<Vec<_>>();
-    for _ in 0..ROUNDS {
-        let before = onward.clone();
-        for k in 0..n {
-            onward[k] = 2.0 * before[k] + before[(k + 1) % n] + before[(k + n - 1) % n];
-        }
-    }
-    onward.into_iter().map(|v| v.normalize_or_zero()).collect()
 }
