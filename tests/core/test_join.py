@@ -321,6 +321,16 @@ def test_a_bar_of_few_faces_in_a_fine_ball_is_not_cut_off(at):
     assert abs(report["volume"] / report["exact_volume"] - 1) < 0.05
 
 
+@pytest.mark.parametrize("edge", [0.25, 0.18])
+def test_blends_of_coarse_parts_hardly_change_the_volume(edge):
+    """Two edges wide they would fill the groove between two balls of few triangles; asked for, they may."""
+    wide, plain = (joined(ball(edge=edge), ball((1.3, 0, 0), edge=edge), blend=blend) for blend in (4.0, 2.0))
+    of = lambda made: abs(made.report["volume"] / made.report["exact_volume"] - 1)  # noqa: E731
+    assert of(plain) <= 0.03
+    assert plain.report["genus"] == 0
+    assert wide.report["collar_triangles"] > plain.report["collar_triangles"]
+
+
 def test_edge_lengths_of_one_to_four_are_graded():
     made = joined(ball(edge=0.16), ball((1.2, 0, 0), 0.7, edge=0.04))
     assert made.report["components"] == 1
@@ -380,9 +390,9 @@ def test_a_campaign_of_random_bodies():
     assert np.median(of("angle")) >= 18
     assert of("angle").min() >= 10
     assert of("ratio").max() <= 4
-    assert of("collar").max() <= 0.15
+    assert of("collar").max() <= 0.18
     assert of("meetings").max() == 0
-    assert np.median(of("volume")) <= 0.03
+    assert of("volume").max() <= 0.03
 
 
 # -------------------------------------------------------------------------------------------------- the result

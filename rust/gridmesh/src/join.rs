@@ -23,7 +23,7 @@ pub use self::assemble::Joined;
 use self::collar::{Curves, Left};
 pub use self::options::{JoinOptions, JoinReport};
 pub use self::parts::Part;
-use self::parts::Parts;
+use self::parts::{Parts, volume};
 use self::rims::Outside;
 use self::site::Site;
 use self::strips::{Strip, strips};
@@ -37,15 +37,23 @@ use crate::progress::{Clock, Progress};
 /// Times that the blend of curves in one collar is halved, until each has its own.
 const HALVED: usize = 2;
 
-/// Times that the blend of curves is halved whose patches would meet something, or be no blend but most of a part.
-const NARROWED: usize = 2;
+/// The volume may grow or shrink by such a share of the exact union's; with wider blends than the default one by more, as what they
+/// fill grows with the square of their width.
+const GAINED: f64 = 0.03;
+
+/// Times that the blend of curves becomes narrower whose patches would meet something, or be no blend but most of a part,
+/// and how much; and how much where the volume changes too much.
+const NARROWED: usize = 3;
+const TIGHT: f64 = 0.5;
+const SLIM: f64 = 0.7;
 
 /// Joins closed meshes: one closed mesh of what is in any of them.
 ///
 /// Where two surfaces meet, all faces within `blend` edge lengths of the line, to both sides along the surface, make room for one
 /// patch, smooth to both sides: a lattice tube between two rims, a grid patch in one, otherwise the union's own surface with
 /// even triangles, faired. With `blend` 0 the line stays as a crease, with even edges along it. Where the parts' faces are so large
-/// that a patch would meet something or take most of a part away, the blend becomes narrower; if that does not help the line
+/// that a patch would meet something or take most of a part away, the blend becomes narrower; so it does where the volume would
+/// differ from the exact union's by more than 3 %, times the square of a blend wider than the default one. If that does not help the line
 /// stays as a crease, and in the end the union's own triangles stay.
 ///
 /// The result is closed and manifold and has the topology of the exact union; this is checked. Elsewhere all vertices and faces are
@@ -132,18 +140,30 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
     let stage = Stage { parts: &parts, union: &union, left: &left, curves: &curves, seams: &seams, options };
     clock.stage("lines");
     let mut most = vec![1.0; curves.count];
+    let enclosed = volume(&union.vertices, &union.triangles);
     let mut rounds = if options.blend > 0.0 { NARROWED } else { 0 };
     let mut from = 0.4;
     let (site, strips, mut closed) = loop {
         let to = 0.5 * (from + 0.9);
         let (site, strips, closed) = stage.closed(&most, progress.part(from, to))?;
-        let tight =
-            strips.iter().zip(&closed).filter(|(_, patch)| [Kind::Crease, Kind::Exact].contains(&patch.kind));
-        let tight = tight.flat_map(|(strip, _)| &strip.curves).collect::<Vec<_>>();
-        if tight.is_empty() || rounds == 0 {
+        let mut scales = most.clone();
+        let gained = closed.iter().map(|patch| patch.gained).sum::<f64>();
+        let wide = (options.blend / JoinOptions::default().blend).max(1.0);
+        let much = gained.abs() > GAINED * wide * wide * enclosed;
+        for (strip, patch) in strips.iter().zip(&closed) {
+            let scale = if [Kind::Crease, Kind::Exact].contains(&patch.kind) {
+                TIGHT
+            } else if much && 2.0 * closed.len() as f64 * patch.gained / gained > 1.0 {
+                SLIM
+            } else {
+                continue;
+            };
+            strip.curves.iter().for_each(|&c| scales[c] = most[c] * scale);
+        }
+        if scales == most || rounds == 0 {
             break (site, strips, closed);
         }
-        tight.into_iter().for_each(|&c| most[c] *= 0.5);
+        most = scales;
         (rounds, from) = (rounds - 1, to);
     };
     clock.stage("patches");

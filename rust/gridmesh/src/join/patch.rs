@@ -136,8 +136,7 @@ impl Place<'_> {
         };
         match made {
             Ok(Fill { vertices, triangles, report, .. }) => Ok(Some(Try {
-                far: self.is_far(&vertices, &triangles),
-                patch: Patch { kind, vertices, triangles },
+                patch: self.patch(kind, vertices, triangles),
                 meetings: report.self_intersections,
                 angle: report.min_angle,
                 odd: report.irregular + report.irregular_loop,
@@ -188,7 +187,7 @@ impl Place<'_> {
             } else {
                 self.regular(local, &ground, beyond, kind, part.part(0.4, 1.0))?
             };
-            let (places, far) = (made.places.clone(), made.far);
+            let (places, far) = (made.places.clone(), made.patch.far);
             let hopeless = best.as_ref().is_some_and(|best| 2 * made.meetings > best.meetings);
             best = best.into_iter().chain([made]).reduce(better);
             if places.is_empty() || far || hopeless {
@@ -267,8 +266,8 @@ impl Place<'_> {
         Ok(None)
     }
 
-    /// Whether triangles in place of the strip change the volume by more than a blend does.
-    fn is_far(&self, vertices: &[DVec3], triangles: &[[u32; 3]]) -> bool {
+    /// With what triangles in place of the strip do to the volume.
+    fn patch(&self, kind: Kind, vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Patch {
         let Site { parts, union, .. } = self.site;
         let n = parts.vertices.len() as u32;
         // Both end at the same rims, so that any point may be the origin.
@@ -282,7 +281,8 @@ impl Place<'_> {
         let volumes = of.into_iter().map(|part| parts.volumes[part]).collect::<Vec<_>>();
         let smaller = volumes.iter().sum::<f64>() - volumes.iter().copied().fold(0.0, f64::max);
         let own = if volumes.len() > 1 { smaller } else { volumes.iter().sum() };
-        (new - old).abs() > 6.0 * CHANGED * own
+        let gained = (new - old) / 6.0;
+        Patch { kind, vertices, triangles, gained, far: gained.abs() > CHANGED * own }
     }
 
     /// Fairs, as far as nothing meets by it; and the triangles that do.
@@ -312,14 +312,10 @@ impl Place<'_> {
         let m = local.border as u32;
         let name = |v: u32| if v < m { self.border[v as usize] } else { n + v - m };
         let off = |v: &u32| local.fan(*v).len() as i64 != local.wanted_at(*v);
-        let patch = Patch {
-            kind,
-            vertices: local.positions[m as usize..].to_vec(),
-            triangles: local.triangles.iter().map(|t| t.map(name)).collect(),
-        };
+        let vertices = local.positions[m as usize..].to_vec();
+        let triangles = local.triangles.iter().map(|t| t.map(name)).collect();
         Try {
-            far: self.is_far(&patch.vertices, &patch.triangles),
-            patch,
+            patch: self.patch(kind, vertices, triangles),
             meetings: bad.len(),
             angle: min_angle(&local.positions, &local.triangles),
             odd: (0..local.positions.len() as u32).filter(off).count(),

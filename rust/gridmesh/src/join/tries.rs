@@ -41,6 +41,10 @@ pub(super) struct Patch {
     pub vertices: Vec<DVec3>,
     /// Numbers from that of the parts' vertices on are the new vertices.
     pub triangles: Vec<[u32; 3]>,
+    /// What the volume gains by it.
+    pub gained: f64,
+    /// That is more than by a blend, or less than minus that.
+    pub far: bool,
 }
 
 impl Patch {
@@ -64,8 +68,6 @@ impl Patch {
 /// A patch and what is wrong with it.
 pub(super) struct Try {
     pub patch: Patch,
-    /// Changes the volume by more than a blend does.
-    pub far: bool,
     /// Triangles, or pairs of them, that meet something.
     pub meetings: usize,
     pub angle: f64,
@@ -78,11 +80,11 @@ pub(super) struct Try {
 impl Try {
     /// Less is better.
     fn faults(&self) -> (bool, usize, f64) {
-        (self.far, self.meetings, self.odd as f64 + FLAT * (1.0 - self.angle / FINE).max(0.0))
+        (self.patch.far, self.meetings, self.odd as f64 + FLAT * (1.0 - self.angle / FINE).max(0.0))
     }
 
     pub fn is_sound(&self) -> bool {
-        !self.far && self.meetings == 0
+        !self.patch.far && self.meetings == 0
     }
 
     pub fn is_fine(&self) -> bool {
