@@ -222,6 +222,9 @@ def test_a_tube_that_would_fold_where_its_loops_turn_is_pulled_tight(number):
     assert not faults(case, fill)
     assert fill.report["folds"] == fill.report["self_intersections"] == 0
     assert np.degrees(fill.report["min_angle"]) > 15
+    told = []
+    gridmesh.bridge(case.vertices, case.triangles, *case.loops, progress=told.append)
+    assert told == sorted(told)
     for kept in (fill, pickle.loads(pickle.dumps(fill))):
         assert np.array_equal(kept.refit(case.vertices), fill.vertices)
 

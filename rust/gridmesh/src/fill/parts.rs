@@ -87,6 +87,7 @@ impl Fill {
             && end >= n
             && patch + n + 2 == 2 * (end + bridged.len())
             && loops.windows(2).all(|pair| pair[0].checked_add(3).is_some_and(|least| least <= pair[1]))
+            && bridged.iter().all(|b| (0.0..=1.0).contains(&b.pull))
             && (bridged.is_empty() || creases.is_empty())
             && positions.len() == end + outer.len()
             && loop_.iter().chain(&outer).all(known)

@@ -45,10 +45,7 @@ pub(super) fn settle(
             if mover.moved(&mut flat[v], spot, positions, v) > RESTS {
                 all_rest = false;
                 awake[v] = true;
-                mover
-                    .star
-                    .iter()
-                    .for_each(|&(i, j, _)| [i, j].iter().for_each(|&w| awake[w as usize] = true));
+                mover.star.iter().flat_map(|&(i, j, _)| [i, j]).for_each(|w| awake[w as usize] = true);
             }
         }
         if all_rest {

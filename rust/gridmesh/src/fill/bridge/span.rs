@@ -113,11 +113,12 @@ impl<'a> Span<'a> {
         };
         clock.stage("grid");
         let mut best = self.placed(&banks, &loft, &found, progress.part(0.6, 0.8))?;
-        for pull in PULLS {
+        for (k, pull) in PULLS.into_iter().enumerate() {
             if best.folds == 0 {
                 break;
             }
-            let other = self.placed(&banks, &pulled(pull), &found, progress.part(0.8, 0.9))?;
+            let at = |k: usize| 0.8 + 0.1 * k as f64 / PULLS.len() as f64;
+            let other = self.placed(&banks, &pulled(pull), &found, progress.part(at(k), at(k + 1)))?;
             if other.folds < best.folds {
                 best = other;
             }
