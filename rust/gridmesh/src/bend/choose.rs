@@ -293,17 +293,19 @@ fn bent(
         let v: Vec<f64> = v.iter().map(|v| turn + share * (v - turn)).collect();
         let mut u: Vec<f64> = u.iter().map(|u| share * u).collect();
         keep_area(&ground.carrier, &mut u);
+        let is_asked = ground.is_asked();
+        let is_free = is_asked || ground.shape == CellShape::Quad;
+        if !is_free && share > SHARES[SHARES.len() - 1] && largest_over_median(ground, &u) > UNEVEN {
+            continue;
+        }
         let mut positions = solver.map(&ground.carrier, &u, &v)?;
         if let Some(mirrored) = mirrored {
             positions = mirrored.symmetric(&positions, turn);
         }
-        let is_asked = ground.is_asked();
         let price = if is_asked { 0.0 } else { price_of_size(ground, &u, narrowest) };
         let price_of_limbs = ground.price_of_limbs * coarseness_of_limbs(ground, &u);
         let image = Image { positions, u, v };
-        let is_free = is_asked || ground.shape == CellShape::Quad;
-        let is_uneven = !is_free && largest_over_median(ground, &image.u) > UNEVEN;
-        if is_uneven && share > SHARES[SHARES.len() - 1] || !image.is_upright(&ground.carrier) {
+        if !image.is_upright(&ground.carrier) {
             continue;
         }
         if let Some(drawing) = BentContours::new(&ground.carrier, &image, &ground.lines) {
