@@ -54,7 +54,7 @@ const FINER: f64 = 0.5;
 /// Coarse limbs that cost fewer turns are not worth it.
 const WORTH: f64 = 1.0;
 /// The largest log of the edge length that 99 % of the edges do not reach, over the median.
-const UNEVEN: f64 = 0.65;
+const UNEVEN: f64 = 0.62;
 /// Shares of a bend that are tried while the bent drawing overlaps itself.
 const SHARES: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 /// Two rotations that differ by less than this everywhere, in radians, are one.
