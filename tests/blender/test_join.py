@@ -96,10 +96,15 @@ def test_the_border_of_two_materials_has_no_teeth():
     bm.from_mesh(mesh)
     line = [edge for edge in bm.edges if len({face.material_index for face in edge.link_faces}) == 2]
     assert len(line) > 12
+    angles = []
     for vertex in {vertex for edge in line for vertex in edge.verts}:
         first, second = (edge.other_vert(vertex).co - vertex.co for edge in line if vertex in edge.verts)
-        assert first.angle(second) > np.radians(140)
+        angles.append(first.angle(second))
     bm.free()
+    # Where the line meets a vertex of a rim a corner may stay.
+    corner, *rest = sorted(np.degrees(angles))
+    assert corner > 120
+    assert min(rest) > 150
 
 
 def test_wide_blends_take_more_away():
