@@ -146,20 +146,7 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
     let (site, strips, mut closed) = loop {
         let to = 0.5 * (from + 0.9);
         let (site, strips, closed) = stage.closed(&most, progress.part(from, to))?;
-        let mut scales = most.clone();
-        let gained = closed.iter().map(|patch| patch.gained).sum::<f64>();
-        let wide = (options.blend / JoinOptions::default().blend).max(1.0);
-        let much = gained.abs() > GAINED * wide * wide * enclosed;
-        for (strip, patch) in strips.iter().zip(&closed) {
-            let scale = if [Kind::Crease, Kind::Exact].contains(&patch.kind) {
-                TIGHT
-            } else if much && 2.0 * closed.len() as f64 * patch.gained / gained > 1.0 {
-                SLIM
-            } else {
-                continue;
-            };
-            strip.curves.iter().for_each(|&c| scales[c] = most[c] * scale);
-        }
+        let scales = stage.narrowed(&most, enclosed, &strips, &closed);
         if scales == most || rounds == 0 {
             break (site, strips, closed);
         }
@@ -239,6 +226,27 @@ impl Stage<'_> {
             _ => in_parallel(&strips, |strip| strip.triangles.len(), closing, each)?,
         };
         Ok((site, strips, closed))
+    }
+
+    /// How much of the blend of each curve to take instead: less where a patch is no blend, or much of the volume that is gained
+    /// too much. `enclosed`: the volume of the union.
+    fn narrowed(&self, most: &[f64], enclosed: f64, strips: &[Strip], patches: &[Patch]) -> Vec<f64> {
+        let gained = patches.iter().map(|patch| patch.gained).sum::<f64>();
+        let wide = (self.options.blend / JoinOptions::default().blend).max(1.0);
+        let much = gained.abs() > GAINED * wide * wide * enclosed;
+        let mut scales = most.to_vec();
+        for (strip, patch) in strips.iter().zip(patches) {
+            let scale = if [Kind::Crease, Kind::Exact].contains(&patch.kind) {
+                TIGHT
+            } else if much && patch.gained / gained > 0.5 / patches.len() as f64 {
+                // More than half of an equal share.
+                SLIM
+            } else {
+                continue;
+            };
+            strip.curves.iter().for_each(|&c| scales[c] = most[c] * scale);
+        }
+        scales
     }
 
     /// What stays, and the strips between; collars of several curves, and those that are not annuli, are made narrower as

@@ -143,6 +143,28 @@ impl Loft {
     }
 }
 
+/// For each vertex of a loop the direction in which the surface around goes on; `apexes`: the third corners of the
+/// triangles beyond the edges. Zero where there are none.
+pub(super) fn onward(points: &[DVec3], apexes: &[Option<DVec3>]) -> Vec<DVec3> {
+    const ROUNDS: usize = 2;
+    let n = points.len();
+    let across = |k: usize| {
+        let (a, b) = (points[k], points[(k + 1) % n]);
+        let along = (b - a).normalize_or_zero();
+        let away = apexes[k].map_or(DVec3::ZERO, |apex| 0.5 * (a + b) - apex);
+        away.reject_from_normalized(along).normalize_or_zero()
+    };
+    let edges = (0..n).map(across).collect::<Vec<_>>();
+    let mut onward = (0..n).map(|k| edges[k] + edges[(k + n - 1) % n]).collect::<Vec<_>>();
+    for _ in 0..ROUNDS {
+        let before = onward.clone();
+        for k in 0..n {
+            onward[k] = 2.0 * before[k] + before[(k + 1) % n] + before[(k + n - 1) % n];
+        }
+    }
+    onward.into_iter().map(|v| v.normalize_or_zero()).collect()
+}
+
 /// The point of a loop at a place around the axis, and where its surface goes on there.
 fn straight_onward(edge: &Edge<'_>, rail: &Rail) -> impl Fn(f64) -> (DVec3, DVec3) {
     move |around: f64| {

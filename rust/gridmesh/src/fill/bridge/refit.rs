@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::align::Ring;
 use super::choose::Bank;
-use super::loft::{Edge, Loft};
+use super::loft::{Edge, Loft, onward};
 use crate::error::{Error, Result};
 use crate::fill::filled::{Bridged, Shape};
 use crate::fill::options::Smooth;
@@ -123,26 +123,4 @@ pub(super) fn edge<'a>(bank: &'a Bank, onward: &'a [DVec3]) -> Edge<'a> {
 
 pub(super) fn reversed<T: Clone>(items: &[T]) -> Vec<T> {
     items.iter().rev().cloned().collect()
-}
-
-/// For each vertex of a loop the direction in which the surface around goes on; `apexes`: the third corners of the
-/// triangles beyond the edges. Zero where there are none.
-pub(super) fn onward(points: &[DVec3], apexes: &[Option<DVec3>]) -> Vec<DVec3> {
-    const ROUNDS: usize = 2;
-    let n = points.len();
-    let across = |k: usize| {
-        let (a, b) = (points[k], points[(k + 1) % n]);
-        let along = (b - a).normalize_or_zero();
-        let away = apexes[k].map_or(DVec3::ZERO, |apex| 0.5 * (a + b) - apex);
-        away.reject_from_normalized(along).normalize_or_zero()
-    };
-    let edges = (0..n).map(across).collect::<Vec<_>>();
-    let mut onward = (0..n).map(|k| edges[k] + edges[(k + n - 1) % n]).collect::<Vec<_>>();
-    for _ in 0..ROUNDS {
-        let before = onward.clone();
-        for k in 0..n {
-            onward[k] = 2.0 * before[k] + before[(k + 1) % n] + before[(k + n - 1) % n];
-        }
-    }
-    onward.into_iter().map(|v| v.normalize_or_zero()).collect()
 }

@@ -5,9 +5,9 @@ use rustc_hash::FxHashSet;
 
 use super::align::{Ring, best_fit, facing};
 use super::choose::{Bank, Chooser, Chosen};
-use super::loft::Loft;
+use super::loft::{Loft, onward};
 use super::options::BridgeOptions;
-use super::refit::{edge, onward, reversed, work_positions};
+use super::refit::{edge, reversed, work_positions};
 use super::settle::settle;
 use crate::error::{Error, Result};
 use crate::fill::filled::{Bridged, Fill, Shape};
