@@ -34,7 +34,7 @@ const ENDS: f64 = 3.0;
 /// A chord counts as off by no more than this, in radians: what is off by more is a detail of the drawing.
 const MOST: f64 = 0.3;
 /// No place of the outline may get coarser than by this factor, as a logarithm.
-const COARSER: f64 = 0.5;
+const COARSER: f64 = 1.0;
 
 impl Solver<'_> {
     /// A rotation under whose map the sides of the contours, stretches that follow one lattice direction, run along

@@ -9,6 +9,7 @@ mod inlets;
 mod lengthen;
 mod limit;
 mod options;
+mod pairs;
 mod polish;
 mod section;
 mod side;

@@ -79,23 +79,25 @@ impl<'a> Fan<'a> {
     /// that is furthest from a right angle; where one is reflex, seen along the surface's normal, [`REFLEX`] or more, the
     /// more the nearer it is to three right angles.
     pub fn sharpest(self, at: impl Fn(u32) -> DVec3, point: DVec3, normal: DVec3) -> f64 {
-        let largest = |(i, j, ideal): (u32, u32, Ideal)| {
-            let (a, b) = (at(i) - point, at(j) - point);
-            let c = b - a;
-            let cosine = match ideal {
-                Ideal::Equilateral => a.dot(b).max(b.dot(c)).max(-a.dot(c)),
-                Ideal::Own => a.dot(b).abs(),
-                Ideal::Next => a.dot(c).abs(),
-                Ideal::Last => b.dot(c).abs(),
-            };
-            let area = a.cross(b);
-            let facing = area.dot(normal);
-            if ideal != Ideal::Equilateral && facing <= 0.0 {
-                return REFLEX * (2.0 - facing / libm::hypot(cosine, facing).max(f64::MIN_POSITIVE));
-            }
-            cosine / area.length()
-        };
-        self.iter().map(largest).fold(f64::NEG_INFINITY, f64::max)
+        self.iter().map(sharpness(at, point, normal)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Whether [`Self::sharpest`] is `limit` or more: known at the first triangle that is so sharp.
+    pub fn is_sharp(self, at: impl Fn(u32) -> DVec3, point: DVec3, normal: DVec3, limit: f64) -> bool {
+        self.iter().map(sharpness(at, point, normal)).any(|sharpness| sharpness >= limit)
+    }
+
+    /// The two others of the vertices of the triangle that [`Self::sharpest`] speaks of.
+    pub fn ends_of_sharpest(
+        self,
+        at: impl Fn(u32) -> DVec3,
+        point: DVec3,
+        normal: DVec3,
+    ) -> Option<[u32; 2]> {
+        let of = sharpness(at, point, normal);
+        let sharpest = self.iter().map(|triangle| (of(triangle), triangle));
+        let sharpest = sharpest.reduce(|best, other| if other.0 > best.0 { other } else { best });
+        sharpest.map(|(_, (i, j, _))| [i, j])
     }
 
     /// Least ratio of area to squared sides of the triangles around a vertex at `point`: one if all are ideal.
@@ -106,5 +108,26 @@ impl<'a> Fan<'a> {
             a.cross(b).length() * ideal.best() / sides
         };
         self.iter().map(ratio).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// What [`Fan::sharpest`] is the largest of.
+#[inline]
+fn sharpness(at: impl Fn(u32) -> DVec3, point: DVec3, normal: DVec3) -> impl Fn((u32, u32, Ideal)) -> f64 {
+    move |(i, j, ideal)| {
+        let (a, b) = (at(i) - point, at(j) - point);
+        let c = b - a;
+        let cosine = match ideal {
+            Ideal::Equilateral => a.dot(b).max(b.dot(c)).max(-a.dot(c)),
+            Ideal::Own => a.dot(b).abs(),
+            Ideal::Next => a.dot(c).abs(),
+            Ideal::Last => b.dot(c).abs(),
+        };
+        let area = a.cross(b);
+        let facing = area.dot(normal);
+        if ideal != Ideal::Equilateral && facing <= 0.0 {
+            return REFLEX * (2.0 - facing / libm::hypot(cosine, facing).max(f64::MIN_POSITIVE));
+        }
+        cosine / area.length()
     }
 }

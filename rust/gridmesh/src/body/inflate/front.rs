@@ -76,10 +76,27 @@ impl Front {
 
     /// Moves `v` to a place.
     pub fn put(&mut self, v: usize, there: &Trial) {
-        self.flat[v] = there.position.truncate();
-        self.height[v] = there.position.z;
-        self.place[v - self.first] = there.place;
+        self.put_at(v, &there.spot());
     }
+
+    /// Where interior vertex `v` is.
+    pub fn spot(&self, v: usize) -> Spot {
+        Spot { position: self.position(v), place: self.place[v - self.first] }
+    }
+
+    /// Moves `v` to where it, or another, may be.
+    pub fn put_at(&mut self, v: usize, spot: &Spot) {
+        self.flat[v] = spot.position.truncate();
+        self.height[v] = spot.position.z;
+        self.place[v - self.first] = spot.place;
+    }
+}
+
+/// A point of the surface, and what it lies above.
+#[derive(Clone, Copy)]
+pub(crate) struct Spot {
+    pub position: DVec3,
+    pub place: Place,
 }
 
 /// A place on the surface that a vertex may be put at.
@@ -96,6 +113,10 @@ impl Trial {
         let (value, gradient) = field.at(point, place);
         let height = value.sqrt();
         Trial { position: point.extend(height), normal: surface_normal(gradient, height), place }
+    }
+
+    pub fn spot(&self) -> Spot {
+        Spot { position: self.position, place: self.place }
     }
 }
 

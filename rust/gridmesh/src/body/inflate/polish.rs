@@ -5,6 +5,7 @@ use std::f64::consts::FRAC_PI_4;
 use glam::DVec2;
 
 use crate::body::inflate::front::{Front, Guide, Trial, project};
+use crate::body::inflate::pairs::has_moved_with_another;
 use crate::error::Result;
 use crate::geometry::active::{ASK_EVERY, Rounds, Visit, turn, visit_active};
 use crate::geometry::corner::{Corner, Ideal};
@@ -12,11 +13,15 @@ use crate::geometry::quadratic::Quadratic;
 use crate::options::CellShape;
 use crate::progress::Progress;
 
-/// Cotangent of the angle, 30 degrees, below which [`sharpen`] acts on triangles.
-const SHARP: f64 = 1.732_050_807_568_877_2;
+/// Cotangent of the angle, 32 degrees, below which [`sharpen`] acts on triangles.
+const SHARP: f64 = 1.600_334_529_041_05;
 
 /// The same for corners of quads, 50 and 130 degrees.
 const SHARP_OF_QUADS: f64 = 0.839_099_631_177_28;
+
+/// Power of a triangle's badness by which it counts in [`sweep`]; of quads all corners are to be near to right angles.
+const POWER: i32 = 8;
+const POWER_OF_QUADS: i32 = 3;
 
 /// A vertex may make its worst triangle worse if it stays better than this, see `Fan::worst`: the quality of an isosceles
 /// triangle with 26 degrees at its apex.
@@ -39,6 +44,10 @@ const REACHES: [f64; 3] = [0.3, 0.12, 0.05];
 /// until no triangle falls below `least_area` in projection.
 pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
     let field = guide.field;
+    let power = match guide.patch.cells() {
+        CellShape::Triangle => POWER,
+        CellShape::Quad => POWER_OF_QUADS,
+    };
     for v in front.first..front.flat.len() {
         if v % ASK_EVERY == 0 {
             progress.report(0.0)?;
@@ -65,7 +74,7 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
                 let k = 2.0 * flatter / corner.area;
                 flat = Quadratic { xx: k * m.x * m.x, xy: k * m.x * m.y, yy: k * m.y * m.y, ..flat };
             }
-            let weight = corner.badness().powi(3);
+            let weight = corner.badness().powi(power);
             model += corner.model(weight, [e, f]);
             model += flat.scaled(weight);
         }
@@ -99,8 +108,9 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
 }
 
 /// Moves the vertices of the sharpest triangles to where the least angle around them is largest, of quads
-/// to where the corner furthest from a right angle is nearest to one, by trial in eight directions. A vertex
-/// is left alone once it has not moved for some rounds, nor its neighbours.
+/// to where the corner furthest from a right angle is nearest to one, by trial in eight directions, together
+/// with another vertex of the sharpest triangle where alone it has no better place. A vertex is left alone once it has not
+/// moved for some rounds, nor its neighbours.
 pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
     let sharp = match guide.patch.cells() {
         CellShape::Triangle => SHARP,
@@ -114,7 +124,9 @@ pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'
             return Visit::Done;
         }
         let reach = REACHES[round % REACHES.len()];
-        if try_around(front, guide, v, present, reach, turn(round)) { Visit::Moved } else { Visit::Stuck }
+        let is_moved = try_around(front, guide, v, present, reach, turn(round))
+            || has_moved_with_another(front, guide, v, reach, turn(round));
+        if is_moved { Visit::Moved } else { Visit::Stuck }
     })
 }
 
@@ -133,7 +145,7 @@ fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reac
         let (sin, cos) = libm::sincos(f64::from(k) * FRAC_PI_4 + turn);
         let target = here + reach * mean * (cos * e + sin * f);
         // Off the surface by a second-order term: a cheap first look.
-        if fan.sharpest(front.positions(), target, normal) >= best {
+        if fan.is_sharp(front.positions(), target, normal, best) {
             continue;
         }
         let Some(there) = front.trial(guide, v, start, target) else { continue };

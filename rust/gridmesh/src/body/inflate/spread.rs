@@ -7,6 +7,7 @@ use super::polish::{sharpen, sweep};
 use crate::body::inflate::front::{Front, Guide};
 use crate::error::Result;
 use crate::geometry::active::ASK_EVERY;
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Spreads the vertices of a front over its surface, the silhouette fixed.
@@ -21,7 +22,11 @@ pub(crate) fn spread(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_
         sweep(front, guide, progress)?;
         progress.report(0.2 * (leg + 1) as f64)?;
     }
-    for _ in 0..2 {
+    let more = match guide.patch.cells() {
+        CellShape::Triangle => 4,
+        CellShape::Quad => 2,
+    };
+    for _ in 0..more {
         sweep(front, guide, progress)?;
     }
     progress.report(0.8)?;

@@ -1,0 +1,87 @@
+//! Two neighbours of a front moved as one, where the triangles between them hold each fast.
+
+use std::f64::consts::FRAC_PI_4;
+
+use glam::DVec3;
+
+use super::front::{Front, Guide, Spot, Trial, project};
+use super::polish::LEVEL;
+
+/// Moves `v` and another vertex of its sharpest triangle by the same way along the surface, to where the least angle around
+/// both is larger (of quads: the corner furthest from a right angle nearer to one). On a steep wall triangles are thin in
+/// projection: a vertex alone soon meets the bound that they stay positive, and its neighbour does not make room
+/// as long as its own triangles are good.
+///
+/// `reach` is the length of the way in mean lengths of the edges around `v`, `turn` turns the eight directions that are tried.
+/// False if no pair has a better place.
+pub(super) fn has_moved_with_another(
+    front: &mut Front,
+    guide: &Guide<'_>,
+    v: usize,
+    reach: f64,
+    turn: f64,
+) -> bool {
+    let here = front.position(v);
+    let normal = front.normal(guide, v);
+    let (e, f) = normal.any_orthonormal_pair();
+    let length = reach * guide.around.fan(v).mean_edge(front.positions(), here);
+    let ways: [DVec3; 8] = std::array::from_fn(|k| {
+        let (sin, cos) = libm::sincos(k as f64 * FRAC_PI_4 + turn);
+        length * (cos * e + sin * f)
+    });
+    let ends = guide.around.fan(v).ends_of_sharpest(front.positions(), here, normal);
+    let others = ends.into_iter().flatten().map(|u| u as usize).filter(|&u| u >= front.first);
+    others.collect::<Vec<_>>().into_iter().any(|u| has_moved(front, guide, [v, u], &ways))
+}
+
+/// Moves two vertices by the best of `ways`; false if none is better.
+fn has_moved(front: &mut Front, guide: &Guide<'_>, pair: [usize; 2], ways: &[DVec3]) -> bool {
+    let starts = pair.map(|v| front.flat[v]);
+    let normals = pair.map(|v| front.normal(guide, v));
+    let mut best = pair.map(|v| sharpest(front, guide, v)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let levels = pair.map(|v| facing(front, guide, v).min(LEVEL));
+    let mut kept = pair.map(|v| front.spot(v));
+    let mut is_moved = false;
+    for &way in ways {
+        let moved = |w: u32| {
+            front.position(w as usize) + if pair.contains(&(w as usize)) { way } else { DVec3::ZERO }
+        };
+        // Off the surface by a second-order term: a cheap first look.
+        let is_sharp = |k: usize| {
+            let fan = guide.around.fan(pair[k]);
+            fan.is_sharp(moved, moved(pair[k] as u32), normals[k], best)
+        };
+        if is_sharp(0) || is_sharp(1) {
+            continue;
+        }
+        let spots = pair.map(|v| spot_near(front, guide, v, front.position(v) + way));
+        let [Some(first), Some(second)] = spots else { continue };
+        front.put_at(pair[0], &first);
+        front.put_at(pair[1], &second);
+        let now = pair.map(|v| sharpest(front, guide, v)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let may = |k: usize| {
+            front.may_move(guide, pair[k], starts[k], front.flat[pair[k]])
+                && facing(front, guide, pair[k]) >= levels[k]
+        };
+        if now < best && may(0) && may(1) {
+            (best, kept, is_moved) = (now, [first, second], true);
+        }
+        front.put_at(pair[0], &kept[0]);
+        front.put_at(pair[1], &kept[1]);
+    }
+    is_moved
+}
+
+fn sharpest(front: &Front, guide: &Guide<'_>, v: usize) -> f64 {
+    guide.around.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v))
+}
+
+fn facing(front: &Front, guide: &Guide<'_>, v: usize) -> f64 {
+    guide.around.fan(v).facing(front.positions(), front.position(v), front.normal(guide, v))
+}
+
+/// The place of the surface nearest to `target`.
+fn spot_near(front: &Front, guide: &Guide<'_>, v: usize, target: DVec3) -> Option<Spot> {
+    let (point, place) = project(guide.field, target, front.spot(v).place.triangle)?;
+    Some(Trial::new(guide.field, point, place).spot())
+}
