@@ -16,6 +16,7 @@ mod islands;
 mod levels;
 mod margin;
 pub mod paper;
+mod sides;
 mod simplify;
 mod smooth;
 mod threshold;
@@ -211,5 +212,6 @@ fn line(
     };
     let samples = corners::restore(samples, noise, evidence, report)?;
     let samples = smooth::smooth(samples, smoothing, noise, report)?;
+    let samples = sides::keep(contour, samples);
     Ok((apart::Line::new(raw, simplify::simplify(samples)), tips))
 }
