@@ -93,7 +93,7 @@ fn keep_one(
     };
     let normal = (right(i) + beside).normalize_or_zero();
     let off = side * (centre - at(i).lerp(at(i + 1), share)).dot(normal);
-    if off >= CLOSE || off < -WRONG {
+    if !(-WRONG..CLOSE).contains(&off) {
         return false;
     }
     let (here, after) = (at(i).lerp(at(i + 1), share), (i + 1) % n);
