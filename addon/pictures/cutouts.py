@@ -33,6 +33,12 @@ EMPTY = 0.03
 EMPTY_OF_BODY = 0.01
 """The same for bodies, whose rims are opaque: seen from the front they overlap their pictures by 99 % where that can be held."""
 
+BETWEEN = 0.0045
+"""Likewise parts of bodies without a margin, if so much of their area lies between mesh and outline."""
+
+FEW = 0.0015
+"""But parts of bodies are not made finer for less than this share of all that the picture shows."""
+
 _MOST = 4
 """Sizes tried at most for parts that are cut off."""
 
@@ -59,10 +65,10 @@ class Options:
     threshold: float | None = None
     """None: the one that parts the pixels best."""
     smooth: float = 1.0
-    min_area: float = 16.0
+    min_area: float = 4.0
     margin: float = 0.0
     cover: bool = False
-    """Without a margin too, edges of the mesh cut nothing off."""
+    """Without a margin the rim of the mesh lies across the outline, as much of it outside as inside; otherwise its vertices lie on it."""
     holes: bool = True
     triangles: int = 1000
     """Of one side, shared by the parts according to their area."""
@@ -173,6 +179,7 @@ def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progres
     if number <= 0:
         raise PictureError(f"{cells.capitalize()} of Each Side is {number}; allowed: 1 or more")
     length = np.sqrt(total / number / FACE_AREA[cells])
+    few = 0.0 if options.body is None else FEW * total
     results: list[Any] = [None] * len(parts)
     left = list(range(len(parts)))
     for step, finer in enumerate(FINER):
@@ -182,7 +189,7 @@ def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progres
             {"cells": cells, "edge_length": finer * length, "least": False, **_bend(cells, options)},
             options,
             # Lines that are thin for the triangles wanted have many as it is.
-            finer >= _AGAIN,
+            few if finer >= _AGAIN else None,
             part_of(progress, step / len(FINER), (step + 1) / len(FINER)),
         )
         for k, surface in zip(left, found, strict=True):
@@ -210,10 +217,10 @@ def _surfaces(
     parts: list[Any],
     options: dict[str, Any],
     chosen: Options,
-    again: bool,
+    few: float | None,
     progress: Progress | None,
 ) -> list[Any]:
-    """Surface or GridMeshError for each part; those that lack something are meshed again, finer, where that is allowed."""
+    """Surface or GridMeshError for each part; those that lack more than a few pixels are meshed again, finer."""
     body = chosen.body
     if body is not None and "corner_angle" in body:
         options = {**options, "corner_angle": body["corner_angle"]}
@@ -222,8 +229,8 @@ def _surfaces(
         part = part_of(progress, at / len(parts), (at + 1) / len(parts))
         try:
             if body is None:
-                return gridmesh.flat(_patch(gridmesh, (outline, holes), options, chosen, again, part))
-            return _body(gridmesh, (outline, holes), options, chosen, again, part)
+                return gridmesh.flat(_patch(gridmesh, (outline, holes), options, chosen, few, part))
+            return _body(gridmesh, (outline, holes), options, chosen, few, part)
         except gridmesh.GridMeshError as error:
             return error
 
@@ -254,17 +261,17 @@ def _body(
     part: tuple[np.ndarray, list[np.ndarray]],
     options: dict[str, Any],
     chosen: Options,
-    again: bool,
+    few: float | None,
     progress: Progress | None,
 ) -> Any:
     """Body on the outline of a part; of a few sizes the first that has no short edge, or the one whose shortest is longest."""
 
     def make(sized: dict[str, Any], of_this: Progress | None) -> Any:
-        patch = _patch(gridmesh, part, sized, chosen, again, part_of(of_this, 0.0, 0.7))
+        patch = _patch(gridmesh, part, sized, chosen, few, part_of(of_this, 0.0, 0.7))
         return gridmesh.inflate(patch, progress=part_of(of_this, 0.7, 1.0), **chosen.body)
 
     # Quads at a rim are low by themselves.
-    sizes = _SIZES if again and options["cells"] == "triangles" else _SIZES[:1]
+    sizes = _SIZES if few is not None and options["cells"] == "triangles" else _SIZES[:1]
     made = []
     for body in _in_sizes(gridmesh, sizes, options, make, progress):
         made.append(body)
@@ -287,30 +294,38 @@ def _patch(
     part: tuple[np.ndarray, list[np.ndarray]],
     options: dict[str, Any],
     chosen: Options,
-    again: bool,
+    few: float | None,
     progress: Progress | None,
 ) -> Any:
-    """Patch on the outline of a part, or one that covers it but for what the margin allows, finer where that takes it."""
+    """Patch on the outline of a part, or one that covers it but for what the margin allows, or lies across it.
+
+    It is finer where it lacks more than `few` pixels, unless that is None, and more than a share of its own area.
+    """
     outline, holes = part
     if chosen.margin <= 0 and not chosen.cover:
         return gridmesh.mesh_sketch(outline, holes, progress=progress, **options)
+    across = chosen.margin <= 0
     slack = max(0.0, chosen.margin - _SQUARE)
-    empty, tries = (EMPTY, 2) if chosen.body is None else (EMPTY_OF_BODY, 3)
     drawn = _area(outline) + sum(map(_area, holes))
+    share, tries = (EMPTY, 2) if chosen.body is None else (BETWEEN if across else EMPTY_OF_BODY, 3)
+    much = max(share * drawn, few or 0.0)
 
     def lacks(one: Any) -> tuple[float, float]:
-        """What is cut off, then the share that is empty; each only from where it shows."""
-        larger = sum(_area(one.vertices[loop]) for loop in one.loops) / drawn - 1
-        return max(one.report["outside"], CUT_OFF), max(larger, empty)
+        """What is cut off, then the area between mesh and outline; each only from where it shows."""
+        if across:
+            area = one.report["between"] * drawn
+        else:
+            area = sum(_area(one.vertices[loop]) for loop in one.loops) - drawn
+        return max(one.report["outside"], CUT_OFF), max(area, much)
 
     def make(sized: dict[str, Any], of_this: Progress | None) -> Any:
-        return gridmesh.cover_sketch(outline, holes, slack=slack, progress=of_this, **sized)
+        return gridmesh.cover_sketch(outline, holes, slack=slack, across=across, progress=of_this, **sized)
 
     found = []
-    for patch in _in_sizes(gridmesh, FINER[: _MOST if again else 1], options, make, progress):
+    for patch in _in_sizes(gridmesh, FINER[: 1 if few is None else _MOST], options, make, progress):
         found.append(patch)
-        cut_off, larger = lacks(min(found, key=lacks))
-        if cut_off <= CUT_OFF and (larger <= empty or len(found) >= tries):
+        cut_off, area = lacks(min(found, key=lacks))
+        if cut_off <= CUT_OFF and (area <= much or len(found) >= tries):
             break
     return min(found, key=lacks)
 

@@ -98,7 +98,7 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
     min_area: FloatProperty(
         name="Least Area",
         description="Islands and holes of fewer pixels are left out",
-        default=16.0,
+        default=4.0,
         min=0.0,
         soft_max=1000.0,
     )

@@ -1,6 +1,7 @@
 //! Drawings to patches.
 
 use glam::DVec2;
+use gridmesh::cover::Rim;
 use gridmesh::options::SketchOptions;
 use gridmesh::sketch::Kept;
 use pyo3::prelude::*;
@@ -167,6 +168,9 @@ pub fn mesh_sketch(
 ///     As of `mesh_sketch`.
 /// slack : float
 ///     So much of the drawing's rim may stay outside, in the units of the outline; at least 0.
+/// across : bool
+///     Instead of around the drawing the boundary lies across its contours: single vertices are moved until the area between
+///     is least, about as much of it outside as inside. `slack` is not used then.
 /// **options
 ///     All others of `mesh_sketch` but `keep`.
 ///
@@ -175,7 +179,8 @@ pub fn mesh_sketch(
 /// Patch
 ///     As of `mesh_sketch`, but its boundary vertices lie near the contours, not on them: `source` tells the nearest
 ///     points of the given contours, `arc` lengths along those moved outward. `report` has "outside" besides: how far the
-///     drawing still reaches beyond the mesh and the slack, in the units of the outline.
+///     drawing still reaches beyond the mesh and the slack, in the units of the outline; and "between": the area between the
+///     boundary and the contours, as a share of the drawing's.
 ///
 /// Raises
 /// ------
@@ -195,24 +200,27 @@ pub fn mesh_sketch(
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (outline, holes = None, *, slack = 0.0, progress = None, **options),
-    text_signature = "(outline, holes=(), *, slack=0.0, progress=None, **options)"
+    signature = (outline, holes = None, *, slack = 0.0, across = false, progress = None, **options),
+    text_signature = "(outline, holes=(), *, slack=0.0, across=False, progress=None, **options)"
 )]
 pub fn cover_sketch(
     py: Python<'_>,
     outline: &Bound<'_, PyAny>,
     holes: Option<&Bound<'_, PyAny>>,
     slack: f64,
+    across: bool,
     progress: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Patch> {
     let drawing = drawing(outline, holes)?;
     let chosen = chosen(py, "cover_sketch", options)?;
+    let rim = if across { Rim::Across } else { Rim::Around(slack) };
     let covering = Watch::new(progress)?.run(py, |progress| {
-        gridmesh::cover::cover_sketch(&drawing.outline, &drawing.holes, slack, &chosen, progress)
+        gridmesh::cover::cover_sketch(&drawing.outline, &drawing.holes, rim, &chosen, progress)
     })?;
     let report = reports::sketch(py, &covering.sketch.report)?;
     report.bind(py).set_item("outside", covering.outside)?;
+    report.bind(py).set_item("between", covering.between)?;
     Ok(Patch::new(covering.sketch.patch, report, covering.sketch.kept))
 }
 

@@ -1,8 +1,10 @@
 //! Patches that cover what was drawn: outlines moved outward where the edges of a mesh cut them off.
 //!
 //! [`cover_sketch`] meshes an outline a few times, each time moved outward where the mesh of before left it outside (`outside`), then
-//! moves ends of short edges apart (`short`), single vertices to tips (`tips`), and others back into inlets (`tight`).
+//! moves ends of short edges apart (`short`), single vertices to tips (`tips`), and others back into inlets (`tight`). Patches that are to
+//! lie [`Rim::Across`] their outline are meshed once, and their boundary vertices are moved until they do (`across`).
 
+mod across;
 mod boundary;
 mod outside;
 mod short;
@@ -44,11 +46,25 @@ pub struct Covering {
     pub sketch: Sketch,
     /// How far the drawing still reaches beyond the patch and the slack, in the units of the outline.
     pub outside: f64,
+    /// The area between the boundary and the contours, of that of the drawing.
+    pub between: f64,
+}
+
+/// How the boundary lies to the contours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rim {
+    /// Nothing of the drawing is outside, but for a rim of this width.
+    Around(f64),
+    /// Edges lie across the contours, so that the area between is least: about as much of the drawing is outside as there is more.
+    Across,
 }
 
 /// Meshes the inside of a drawing as [`mesh_sketch`] does, but so that the patch covers the drawing, except a rim of
-/// `slack`: where boundary edges would cut off what is drawn the outline is moved outward, by a quarter of an edge at
-/// most, and single vertices are moved to tips. For pictures on meshes, whose opaque pixels must not be cut off.
+/// the width of [`Rim::Around`]: where boundary edges would cut off what is drawn the outline is moved outward, by a quarter of an
+/// edge at most, and single vertices are moved to tips. For pictures on meshes, whose opaque pixels must not be cut off.
+///
+/// With [`Rim::Across`] single vertices are moved to tips and the boundary then to where the area between it and the contours is
+/// least, as far as faces and edges stay as they should be. For bodies, whose silhouettes are those of pictures.
 ///
 /// Topology, valences and orientation are as of [`mesh_sketch`]; boundary vertices lie near the contours, not on them.
 /// Takes the time of up to four meshes, three of them on a known lattice.
@@ -58,10 +74,11 @@ pub struct Covering {
 pub fn cover_sketch(
     outline: &[DVec2],
     holes: &[Vec<DVec2>],
-    slack: f64,
+    rim: Rim,
     options: &SketchOptions,
     progress: Progress<'_>,
 ) -> Result<Covering> {
+    let slack = if let Rim::Around(slack) = rim { slack } else { 0.0 };
     if !(slack.is_finite() && slack >= 0.0) {
         let allowed = "a finite length, at least 0";
         return Err(Error::InvalidOption { name: "slack", value: told(slack), allowed });
@@ -75,7 +92,9 @@ pub fn cover_sketch(
     };
     let fine: Vec<Vec<DVec2>> =
         contours.iter().map(|contour| dense(contour, edge_length / POINTS_OF_EDGE)).collect();
-    let Followed { sketch: mut best, followers, mut least } = widened(first, &fine, slack, options, &part)?;
+    let rounds = if rim == Rim::Across { 0 } else { ROUNDS };
+    let Followed { sketch: mut best, followers, mut least } =
+        widened(first, &fine, slack, options, rounds, &part)?;
     let patch = &mut best.patch;
     // Boundary vertices may move where no more is cut off by that than could stay outside anyway.
     let most = least.max(ENOUGH * edge_length);
@@ -91,6 +110,12 @@ pub fn cover_sketch(
         least = tips::moved(patch, &fine, &followers, slack);
     }
     tight::pulled(patch, &fine, &followers, slack, progress.part(1.0, 1.0))?;
+    if rim == Rim::Across {
+        across::settled(patch, &fine, &followers, progress.part(1.0, 1.0))?;
+        least = largest(&needs(&fine, patch, &followers, slack));
+    }
+    let drawn = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
+    let between = across::between(patch, &fine, &followers) / drawn;
     best.report.min_angle = min_angle(patch);
     for (contour, own) in
         best.patch.loops.iter_mut().zip(std::iter::once(outline).chain(holes.iter().map(Vec::as_slice)))
@@ -99,7 +124,7 @@ pub fn cover_sketch(
         contour.source = nearest_sources(own, &vertices[..contour.source.len()]);
     }
     progress.report(1.0)?;
-    Ok(Covering { sketch: best, outside: least })
+    Ok(Covering { sketch: best, outside: least, between })
 }
 
 /// A patch with what follows the points of each contour.
@@ -123,6 +148,7 @@ fn widened<'p>(
     fine: &[Vec<DVec2>],
     slack: f64,
     options: &SketchOptions,
+    rounds: usize,
     part: &impl Fn(usize) -> Progress<'p>,
 ) -> Result<Followed> {
     let reach = first.patch.lattice.edge_length;
@@ -142,7 +168,7 @@ fn widened<'p>(
     let followers = Followed::followers(&first.patch, fine.iter());
     let mut needs = needs(fine, &first.patch, &followers, slack);
     let mut best = Followed { sketch: first, followers, least: largest(&needs) };
-    for round in 1..=ROUNDS {
+    for round in 1..=rounds {
         if largest(&needs) <= ENOUGH * reach {
             break;
         }
@@ -225,10 +251,12 @@ fn spread(contour: &[DVec2], need: &[f64], reach: f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     fn ring(n: usize, radius: f64) -> Vec<DVec2> {
-        (0..n).map(|k| radius * DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect()
+        (0..n).map(|k| radius * DVec2::from_angle(TAU * k as f64 / n as f64)).collect()
     }
 
     #[test]
@@ -267,7 +295,8 @@ mod tests {
         let options = SketchOptions { triangles: Some(300), ..SketchOptions::default() };
         for holes in [vec![], vec![ring(90, 0.8)]] {
             let plain = mesh_sketch(&ring(200, 2.0), &holes, &options, Progress::NONE).unwrap();
-            let covering = cover_sketch(&ring(200, 2.0), &holes, 0.0, &options, Progress::NONE).unwrap();
+            let covering =
+                cover_sketch(&ring(200, 2.0), &holes, Rim::Around(0.0), &options, Progress::NONE).unwrap();
             let (patch, h) = (&covering.sketch.patch, plain.patch.lattice.edge_length);
             assert!(covering.outside <= ENOUGH * h, "{}", covering.outside / h);
             let area = patch.area() / plain.patch.area();
@@ -277,9 +306,33 @@ mod tests {
     }
 
     #[test]
+    fn a_rim_across_is_nearer_to_the_drawing_than_one_around_it_or_on_it() {
+        let options = SketchOptions { triangles: Some(150), ..SketchOptions::default() };
+        for holes in [vec![], vec![ring(90, 0.8)]] {
+            let made =
+                |rim: Rim| cover_sketch(&ring(200, 2.0), &holes, rim, &options, Progress::NONE).unwrap();
+            let (across, around) = (made(Rim::Across), made(Rim::Around(0.0)));
+            assert!(across.between < 0.5 * around.between, "{} {}", across.between, around.between);
+            let drawn = |k: usize, radius: f64| 0.5 * (TAU / k as f64).sin() * k as f64 * radius * radius;
+            let area = drawn(200, 2.0) - if holes.is_empty() { 0.0 } else { drawn(90, 0.8) };
+            let lost = |sketch: &Sketch| 1.0 - sketch.patch.area() / area;
+            let plain = mesh_sketch(&ring(200, 2.0), &holes, &options, Progress::NONE).unwrap();
+            // The edges of vertices on it are chords.
+            assert!(lost(&across.sketch).abs() < 0.4 * lost(&plain).abs());
+            assert!(across.sketch.report.min_angle > 25f64.to_radians());
+        }
+    }
+
+    #[test]
     fn slack_that_is_no_length_is_refused() {
         for slack in [-1.0, f64::NAN, f64::INFINITY] {
-            let made = cover_sketch(&ring(20, 1.0), &[], slack, &SketchOptions::default(), Progress::NONE);
+            let made = cover_sketch(
+                &ring(20, 1.0),
+                &[],
+                Rim::Around(slack),
+                &SketchOptions::default(),
+                Progress::NONE,
+            );
             assert!(matches!(made, Err(Error::InvalidOption { name: "slack", .. })));
         }
     }

@@ -3,7 +3,7 @@
 //! [`trace_image`] conducts: crossings of the level between neighbouring pixels form closed chains
 //! (`levels`, marching squares), each crossing is moved to where the coverage of its column puts the edge
 //! (`heights`), tips finer than a pixel (`tips`) and corners are where lines through both sides meet (`corners`), the rest is smoothed within
-//! what pixels can tell apart (`smooth`), points that add nothing are dropped (`simplify`), and lines that
+//! what pixels can tell apart (`smooth`), and moved a little where the centre of a pixel came to lie on the wrong side (`sides`), points that add nothing are dropped (`simplify`), and lines that
 //! came to cross go back to their crossings (`apart`). `margin` moves outlines outward, [`paper`] reads
 //! drawings on paper, [`decode`] files.
 
@@ -16,6 +16,7 @@ mod islands;
 mod levels;
 mod margin;
 pub mod paper;
+mod sides;
 mod simplify;
 mod smooth;
 mod threshold;
@@ -81,7 +82,8 @@ pub struct Traced {
 /// Coordinates are pixels, x to the right, y up, the origin at the lower left corner of the picture; outside it
 /// nothing is covered. Points lie within half a pixel of the level line of the pixels' centres, corners where
 /// the two sides meet that lead to them, and so do tips finer than a pixel, as far as the coverage says that they go. An edge that was drawn with
-/// anti-aliasing is found where it was drawn. No contour meets itself or another one, so each part can be
+/// anti-aliasing is found where it was drawn. Centres of pixels lie inside where these reach the threshold, and else outside,
+/// but for those that would move the line by more than a sixth of a pixel or bend a corner. No contour meets itself or another one, so each part can be
 /// meshed. With a margin of 1 or more every pixel of the parts (each whole square of at least the threshold)
 /// lies inside; the outline is moved a little more where that needs it. Gaps that a margin leaves narrower than
 /// 0.8 pixels are closed.
@@ -211,5 +213,6 @@ fn line(
     };
     let samples = corners::restore(samples, noise, evidence, report)?;
     let samples = smooth::smooth(samples, smoothing, noise, report)?;
+    let samples = sides::keep(contour, samples);
     Ok((apart::Line::new(raw, simplify::simplify(samples)), tips))
 }

@@ -179,6 +179,7 @@ def cover_sketch(
     holes: Sequence[_Points] = (),
     *,
     slack: float = 0.0,
+    across: bool = False,
     progress: _Progress | None = None,
     **options: Any,
 ) -> Patch: ...
