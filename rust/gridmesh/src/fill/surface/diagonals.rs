@@ -71,6 +71,9 @@ impl Patchwork {
     /// # Errors
     /// [`crate::error::Error::Internal`].
     pub fn recut(&self, positions: &[DVec3]) -> Result<Option<Patchwork>> {
+        if self.quads == 0 {
+            return Ok(None);
+        }
         let quads = self.quads_in_space(positions);
         let mut cut = vec![0; quads.len()];
         for _ in 0..ROUNDS {
