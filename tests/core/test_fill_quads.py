@@ -109,6 +109,80 @@ def test_round_loops_have_good_corners(n: int) -> None:
     assert fill.report["min_angle"] == pytest.approx(np.radians(found.min()), abs=0.6)
 
 
+def wavy_sheet(seed: int, n: int = 12) -> tuple[np.ndarray, np.ndarray]:
+    """An uneven sheet of triangles in waves, with an oval hole."""
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(n + 1.0), np.arange(n + 1.0), indexing="ij")
+    start, rate = rng.uniform(0, np.pi, 2), rng.uniform(0.3, 0.6, 2)
+    z = 1.2 * np.sin(rate[0] * x + start[0]) * np.cos(rate[1] * y + start[1])
+    vertices = np.c_[x.ravel(), y.ravel(), z.ravel()]
+    vertices[:, :2] += rng.uniform(-0.25, 0.25, (len(vertices), 2))
+    low = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    a, b, c, d = low, low + n + 1, low + n + 2, low + 1
+    one = rng.random(n * n)[:, None] < 0.5
+    faces = np.r_[
+        np.where(one, np.c_[a, b, c], np.c_[a, b, d]), np.where(one, np.c_[a, c, d], np.c_[b, c, d])
+    ]
+    from_centre = vertices[faces].mean(axis=1)[:, :2] - n / 2
+    return vertices, faces[(from_centre / [4.2, 3.0]) ** 2 @ [1, 1] >= 1]
+
+
+def seam(vertices: np.ndarray, faces: np.ndarray, fill: gridmesh.Fill) -> float:
+    """Mean squared angle across the loop, in degrees; quads are cut from the corner that is named first."""
+    new = np.r_[fill.quads[:, :3], fill.quads[:, [0, 2, 3]], fill.triangles]
+    points = np.r_[vertices, fill.vertices]
+    normal: dict[tuple[int, int], np.ndarray] = {}
+    for face in (*faces.tolist(), *new.tolist()):
+        a, b, c = points[face]
+        across = np.cross(b - a, c - a)
+        for k in range(3):
+            normal[face[k], face[k - 2]] = across / np.linalg.norm(across)
+    loop = fill.loop.tolist()
+    cosines = [normal[pair] @ normal[pair[::-1]] for pair in zip(loop, loop[1:] + loop[:1], strict=True)]
+    return float(np.mean(np.degrees(np.arccos(np.clip(cosines, -1, 1))) ** 2))
+
+
+def test_quads_go_on_as_smoothly_as_triangles() -> None:
+    """They are cut along the diagonals that bend the surface least."""
+    found = []
+    for seed in range(24):
+        vertices, faces = wavy_sheet(seed)
+        own = []
+        for cells in ("quads", "triangles"):
+            fill = min(gridmesh.fill_holes(vertices, faces, cells=cells), key=lambda fill: len(fill.loop))
+            assert len(fill.loop) < 40, "not the border of the sheet"
+            own.append(seam(vertices, faces, fill))
+        found.append(own)
+    quads, triangles = np.sqrt(np.mean(found, axis=0))
+    assert quads < 1.05 * triangles, (quads, triangles)
+
+
+def narrowing(n: int, square: float, bend: float, long: float) -> tuple[np.ndarray, np.ndarray]:
+    """A tube that widens towards its open end; `square` is 2 for an oval one and more for a rounded rectangle."""
+    t = 2 * np.pi * np.arange(n) / n
+    cos, sin = np.cos(t), np.sin(t)
+    radius = (np.abs(cos) ** square + np.abs(sin) ** square) ** (-1 / square)
+    step = 7 / n
+    rim = np.c_[long * radius * cos, radius * sin, bend * np.cos(2 * t)]
+    end = rim * [1 - 0.8 * step, 1 - 0.8 * step, 1] - [0, 0, step]
+    a = np.arange(n)
+    b = np.roll(a, -1)
+    return np.r_[rim, end], np.r_[np.c_[a, a + n, b], np.c_[b, a + n, b + n]]
+
+
+@pytest.mark.parametrize(
+    "shape", [(8, 2, 0.6, 1), (16, 3, 0, 1), (20, 3, 0.3, 1.8), (24, 3, 0, 1.8), (12, 3, 0, 1)]
+)
+def test_quads_that_are_good_in_the_plane_alone_give_way_to_others(shape: tuple) -> None:
+    """Where a patch bulges, a corner at the loop that is wide in the plane may be concave in space."""
+    vertices, faces = narrowing(*shape)
+    fill = gridmesh.fill_hole(vertices, faces, np.arange(shape[0]), cells="quads")
+    check_quad_fill(vertices, faces, fill)
+    assert fill.report["folds"] == fill.report["self_intersections"] == 0
+    assert fill.report["min_angle"] > np.radians(40)
+    assert fill.report["max_angle"] < np.radians(150)
+
+
 def test_a_sphere_is_restored() -> None:
     vertices, faces = pierced([5 * 24 + 3], rings=4)
     for smooth, limit in [("flat", 1.0), ("tangent", 0.07), ("curvature", 0.07)]:

@@ -86,6 +86,19 @@ impl Fill {
         }
     }
 
+    /// Cuts the quads anew where they are now, see [`Patchwork::recut`].
+    ///
+    /// # Errors
+    /// [`Error::Internal`].
+    pub(in crate::fill) fn recut(&mut self) -> Result<()> {
+        let shape = Arc::make_mut(&mut self.shape);
+        if let Some(work) = shape.work.recut(&shape.positions)? {
+            shape.work = work;
+            self.quads = shape.work.quads().map(|quad| quad.map(|v| shape.name(v))).collect();
+        }
+        Ok(())
+    }
+
     /// The new faces as triangles, quads cut in two.
     pub(crate) fn facets(&self) -> Vec<[u32; 3]> {
         let work = &self.shape.work;

@@ -6,19 +6,31 @@ use rustc_hash::FxHashSet;
 use crate::error::{Error, Result};
 use crate::fill::filled::{Fill, Shape};
 use crate::fill::job::Job;
-use crate::fill::layout::unroll::{Unrolled, unroll, unroll_least_bent};
+use crate::fill::layout::unroll::{Unrolled, Unrolling, unroll, unroll_least_bent};
 use crate::fill::loops::check::Checked;
 use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::{Taken, room, wanted};
 use crate::fill::options::Smooth;
 use crate::fill::planar::flat::{FlatOptions, fill_flat};
 use crate::fill::planar::flat_patch::FlatFill;
-use crate::fill::planar::quads::fill_flat_quads;
+use crate::fill::planar::quads::{fill_flat_quads, flat_quads};
 use crate::fill::report::{FillReport, Grid};
 use crate::fill::surface::fit::{Faults, Solved};
+use crate::fill::surface::looks::Worth;
 use crate::fill::surface::patchwork::Patchwork;
 use crate::options::CellShape;
 use crate::progress::{Clock, Progress};
+
+/// Patches of quads whose faces are less misshapen in space are taken, and no other ones tried.
+const GOOD: f64 = 0.7;
+
+/// By how much a patch of quads must be better than the best so far, and by how much more for each pole that it has more:
+/// the best one in the plane comes first.
+const CLEARLY: f64 = 0.1;
+const MORE: f64 = 1.5;
+
+/// Loops with more vertices get the patch of quads that is best in the plane.
+const LARGE: usize = 300;
 
 /// A patch in space.
 pub(super) struct Attempt {
@@ -26,6 +38,26 @@ pub(super) struct Attempt {
     pub patch: FlatFill,
     pub shape: Shape,
     pub solved: Solved,
+    /// How bad it is in space if it is of quads.
+    pub worth: Option<Worth>,
+}
+
+impl Attempt {
+    fn is_good(&self) -> bool {
+        let shapely = self.worth.is_none_or(|worth| worth.misshape < GOOD && self.solved.repaired == 0);
+        shapely && self.solved.faults == Faults::default()
+    }
+
+    /// Whether it is to be taken instead of one that was found before.
+    fn is_better(&self, best: &Attempt) -> bool {
+        match (&self.worth, &best.worth) {
+            (Some(own), Some(other)) => {
+                let more = own.poles.saturating_sub(other.poles);
+                own.badness + CLEARLY + MORE * (more as f64) < other.badness
+            }
+            _ => self.solved.faults < best.solved.faults,
+        }
+    }
 }
 
 impl Job<'_> {
@@ -51,12 +83,16 @@ impl Job<'_> {
         let unrolled = unroll(&around);
         clock.stage("unroll");
         let mut best = task.attempt(unrolled, &mut clock, progress.part(0.1, 0.7))?;
-        if best.solved.faults != Faults::default()
+        // There is no other way to lay out a loop that is nearly planar already.
+        let bent = best.solved.faults != Faults::default() || best.unrolled.method != Unrolling::Projected;
+        if bent
+            && !best.is_good()
             && let Some(unrolled) = unroll_least_bent(&around, &task.outside())
         {
-            let other = task.attempt(unrolled, &mut clock, progress.part(0.7, 1.0))?;
-            if other.solved.faults < best.solved.faults {
-                best = other;
+            match task.attempt(unrolled, &mut clock, progress.part(0.7, 1.0)) {
+                Ok(other) if other.is_better(&best) => best = other,
+                Ok(_) | Err(Error::NoPatch { .. } | Error::Solver { .. }) => {}
+                Err(error) => return Err(error),
             }
         }
         Ok(task.finish(best, n_creases, clock))
@@ -74,34 +110,69 @@ pub(super) struct Task<'a> {
 impl Task<'_> {
     fn attempt(&self, unrolled: Unrolled, clock: &mut Clock, progress: Progress<'_>) -> Result<Attempt> {
         let loop_ = &self.checked.vertices;
-        let smooth = self.job.options.smooth;
         let polygons = &self.job.options.polygons;
         let is_taken = |i: usize, j: usize| self.taken.has(i, j);
         // A face that the mesh has already is filled with others.
         let single = !self.taken.face;
         let here = progress.part(0.0, 0.6);
+        let room = match self.job.options.cells {
+            CellShape::Triangle => vec![],
+            CellShape::Quad => room(loop_, self.rim, polygons),
+        };
         let made = match self.job.options.cells {
             CellShape::Triangle => {
                 let options = FlatOptions { single, ..FlatOptions::default() };
                 fill_flat(&unrolled.points, &wanted(loop_, self.rim, polygons), &is_taken, &options, here)?
             }
-            CellShape::Quad => {
-                fill_flat_quads(&unrolled.points, &room(loop_, self.rim, polygons), &is_taken, single, here)?
-            }
+            CellShape::Quad => fill_flat_quads(&unrolled.points, &room, &is_taken, single, here)?,
         };
+        clock.stage("grid");
+        progress.report(0.6)?;
         if made.quality.repeated > 0 {
             return Err(Error::NoPatch {
                 reason: "every patch repeats an edge of the mesh".into(),
                 at: self.job.vertices[loop_[0] as usize].truncate().to_array(),
             });
         }
+        let mut best = self.in_space(&unrolled, made, &room, progress.part(0.6, 0.7))?;
+        clock.stage("fair");
+        if self.job.options.cells == CellShape::Triangle || best.is_good() || loop_.len() > LARGE {
+            return Ok(best);
+        }
+        // What is bent in space may be better with another patch than the best one in the plane.
+        let others = flat_quads(&unrolled.points, &room, &is_taken, single, true, progress.part(0.7, 0.8))?;
         clock.stage("grid");
-        progress.report(0.6)?;
+        let first = best.patch.patch.triangles.clone();
+        for made in others {
+            if made.folded || made.patch.triangles == first {
+                continue;
+            }
+            let other = match self.in_space(&unrolled, made, &room, progress.part(0.8, 1.0)) {
+                Err(Error::Solver { .. }) => continue,
+                other => other?,
+            };
+            if other.is_better(&best) {
+                best = other;
+            }
+        }
+        clock.stage("fair");
+        Ok(best)
+    }
 
+    /// A patch in the plane brought to space.
+    fn in_space(
+        &self,
+        unrolled: &Unrolled,
+        made: FlatFill,
+        room: &[f64],
+        progress: Progress<'_>,
+    ) -> Result<Attempt> {
+        let loop_ = &self.checked.vertices;
+        let smooth = self.job.options.smooth;
         let rings = if smooth == Smooth::Curvature { 2 } else { 1 };
         let work = Patchwork::new(loop_, made.patch.interior.len(), &made.patch.triangles, self.rim, rings)?;
         let work = work.of_quads(made.patch.quads);
-        let shape = Shape {
+        let mut shape = Shape {
             work,
             loop_: loop_.clone(),
             reversed: self.checked.reversed,
@@ -112,9 +183,10 @@ impl Task<'_> {
             positions: vec![],
             creases: vec![],
         };
-        let solved = shape.solve(self.job.vertices, progress.part(0.6, 1.0))?;
-        clock.stage("fair");
-        Ok(Attempt { unrolled, patch: made, shape, solved })
+        let solved = shape.cut_and_solve(self.job.vertices, progress)?;
+        let quads = self.job.options.cells == CellShape::Quad;
+        let worth = quads.then(|| Worth::of(&shape.work, &solved, room));
+        Ok(Attempt { unrolled: unrolled.clone(), patch: made, shape, solved, worth })
     }
 
     /// See [`outside`].
@@ -123,7 +195,7 @@ impl Task<'_> {
     }
 
     fn finish(&self, attempt: Attempt, creases: usize, clock: Clock) -> Fill {
-        let Attempt { unrolled, patch, mut shape, solved } = attempt;
+        let Attempt { unrolled, patch, mut shape, solved, .. } = attempt;
         let checked = self.checked;
         let loop_ = &checked.vertices;
         shape.positions = solved.positions;

@@ -169,10 +169,11 @@ fn lay_back(
         progress.report((round + 1) as f64 / ROUNDS as f64)?;
     }
     fill.vertices = positions[work.inner()].to_vec();
-    fill.report.folds = folds(work, &positions);
-    [fill.report.min_angle, fill.report.max_angle] = work.corner_range(&positions);
-    let shape = std::sync::Arc::make_mut(&mut fill.shape);
-    shape.positions = positions;
+    std::sync::Arc::make_mut(&mut fill.shape).positions = positions;
+    fill.recut()?;
+    let shape = fill.shape.as_ref();
+    fill.report.folds = folds(&shape.work, &shape.positions);
+    [fill.report.min_angle, fill.report.max_angle] = shape.work.corner_range(&shape.positions);
     Ok(())
 }
 

@@ -1,9 +1,11 @@
 //! A patch brought to space: smooth to its surroundings, free of intersections.
 
 pub(crate) mod around;
+mod diagonals;
 pub(crate) mod faces;
 pub(crate) mod fair;
 pub(crate) mod fit;
+pub(crate) mod looks;
 pub(crate) mod meet;
 pub(crate) mod patchwork;
 pub(crate) mod sharp;

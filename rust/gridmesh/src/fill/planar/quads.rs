@@ -6,13 +6,13 @@
 //! An odd loop gets one more vertex, outside one of its edges, which is the corner of one quad; without it that quad is the triangle.
 
 mod cells;
-mod measure;
+pub(in crate::fill) mod measure;
 mod paths;
 mod refined;
 
 use glam::DVec2;
 
-use self::cells::{Cells, Plan};
+use self::cells::{Belt, Cells, Plan};
 use self::measure::measure;
 use self::paths::Search;
 use super::flat_patch::{FlatFill, FlatPatch, Method};
@@ -50,20 +50,56 @@ pub(crate) fn fill_flat_quads(
     single: bool,
     progress: Progress<'_>,
 ) -> Result<FlatFill> {
-    let Scaled { points, restore } = Scaled::new(polygon, wanted.len())?;
-    let mut contest = Contest { points: &points, wanted, taken, best: None, candidates: 0 };
-    contest.run(single, progress)?;
-    let (_, mut fill) = contest.best.ok_or_else(|| restore.nothing())?;
-    restore.apply(&mut fill.patch.interior);
-    fill.candidates = contest.candidates;
-    Ok(fill)
+    let mut found = flat_quads(polygon, wanted, taken, single, false, progress)?;
+    Ok(found.swap_remove(0))
 }
+
+/// Several patches as those of [`fill_flat_quads`], the best one first. With `all` every kind is looked for, without it none
+/// after one that is good.
+///
+/// # Errors
+/// As there; the list is never empty.
+pub(crate) fn flat_quads(
+    polygon: &[DVec2],
+    wanted: &[f64],
+    taken: &(dyn Fn(usize, usize) -> bool + Sync),
+    single: bool,
+    all: bool,
+    progress: Progress<'_>,
+) -> Result<Vec<FlatFill>> {
+    let Scaled { points, restore } = Scaled::new(polygon, wanted.len())?;
+    let mut contest =
+        Contest { points: &points, wanted, taken, all, best: [const { vec![] }; KINDS], candidates: 0 };
+    contest.run(single, progress)?;
+    let candidates = contest.candidates;
+    let mut found: Vec<(f64, FlatFill)> = contest.best.into_iter().flatten().collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.truncate(SEVERAL);
+    if found.is_empty() {
+        return Err(restore.nothing());
+    }
+    let restored = found.into_iter().map(|(_, mut fill)| {
+        restore.apply(&mut fill.patch.interior);
+        FlatFill { candidates, ..fill }
+    });
+    Ok(restored.collect())
+}
+
+/// Kinds of patches: with rows along the loop or not, and those that are no lattice's.
+const KINDS: usize = 4;
+
+/// Patches that are kept of each kind, and in all.
+const OF_A_KIND: usize = 3;
+const SEVERAL: usize = 8;
 
 struct Contest<'a> {
     points: &'a [DVec2],
     wanted: &'a [f64],
     taken: &'a (dyn Fn(usize, usize) -> bool + Sync),
-    best: Option<(f64, FlatFill)>,
+    /// Whether to go on after a patch that is good.
+    all: bool,
+    /// Of each kind, the best first.
+    best: [Vec<(f64, FlatFill)>; KINDS],
     candidates: usize,
 }
 
@@ -72,11 +108,11 @@ impl Contest<'_> {
         let n = self.points.len();
         if n <= 4 {
             if single {
-                self.enter(vec![], &Cells::face(n), Method::NoInterior)?;
+                self.enter(vec![], &Cells::face(n), Method::NoInterior, 0)?;
             }
             if n == 3 || !self.is_good() {
                 if !self.is_good() {
-                    self.place(&Cells::of(&Plan::ring(n)), Method::Optimal, progress)?;
+                    self.place(&Cells::of(&Plan::ring(n)), 1, progress)?;
                 }
                 return Ok(());
             }
@@ -86,14 +122,19 @@ impl Contest<'_> {
         if !self.is_good() {
             self.lattice(&search, true, progress.part(0.4, 0.8))?;
         }
-        if self.best.as_ref().is_none_or(|(badness, _)| *badness > refined::WORSE) {
+        if self.all || self.badness() > refined::WORSE {
             self.refined(progress.part(0.8, 1.0))?;
         }
         Ok(())
     }
 
+    /// Of the best patch so far.
+    fn badness(&self) -> f64 {
+        self.best.iter().filter_map(|kind| kind.first()).map(|best| best.0).fold(f64::INFINITY, f64::min)
+    }
+
     fn is_good(&self) -> bool {
-        self.best.as_ref().is_some_and(|(badness, _)| *badness < GOOD)
+        !self.all && self.badness() < GOOD
     }
 
     /// Regions of the lattice, with rows of quads around them or none.
@@ -102,7 +143,12 @@ impl Contest<'_> {
             let share = |part: f64| (round as f64 + part) / Search::ROUNDS as f64;
             let found = search.paths(belts, round, progress.part(share(0.0), share(0.8)))?;
             for plan in found.into_iter().flatten() {
-                self.place(&Cells::of(&plan), Method::Optimal, progress.part(share(0.8), share(1.0)))?;
+                let kind = match plan.belt {
+                    Belt::None => 0,
+                    Belt::Whole => 1,
+                    Belt::Part { .. } => 2,
+                };
+                self.place(&Cells::of(&plan), kind, progress.part(share(0.8), share(1.0)))?;
             }
             if self.is_good() || !search.is_uneven() {
                 break;
@@ -118,13 +164,13 @@ impl Contest<'_> {
             let mut positions = cells.start.clone();
             positions[..self.points.len()].copy_from_slice(self.points);
             place::settle(&stars, &mut positions, progress)?;
-            self.enter(positions.split_off(self.points.len()), &cells, Method::Refined)?;
+            self.enter(positions.split_off(self.points.len()), &cells, Method::Refined, KINDS - 1)?;
         }
         Ok(())
     }
 
     /// Brings the vertices of a region from the lattice to the loop.
-    fn place(&mut self, cells: &Option<Cells>, method: Method, progress: Progress<'_>) -> Result<()> {
+    fn place(&mut self, cells: &Option<Cells>, kind: usize, progress: Progress<'_>) -> Result<()> {
         let Some(cells) = cells else { return Ok(()) };
         progress.report(0.0)?;
         let n = self.points.len();
@@ -137,21 +183,23 @@ impl Contest<'_> {
         extend(&stars, &mut positions, moved, cells.wave(), SWEEPS, progress)?;
         positions[..n].copy_from_slice(self.points);
         place::settle(&stars, &mut positions, progress)?;
-        self.enter(positions.split_off(n), cells, method)
+        self.enter(positions.split_off(n), cells, Method::Optimal, kind)
     }
 
-    fn enter(&mut self, interior: Vec<DVec2>, cells: &Cells, method: Method) -> Result<()> {
+    fn enter(&mut self, interior: Vec<DVec2>, cells: &Cells, method: Method, kind: usize) -> Result<()> {
         let positions = [self.points, &interior].concat();
         let measured = measure(&positions, cells, self.wanted, self.taken);
         self.candidates += 1;
-        if measured.badness < self.best.as_ref().map_or(f64::INFINITY, |b| b.0) {
+        let kept = &mut self.best[kind];
+        let place = kept.partition_point(|other| other.0 <= measured.badness);
+        let triangles = cells.triangles(&positions);
+        let known = kept[..place].iter().any(|(_, other)| other.patch.triangles == triangles);
+        if measured.badness < f64::INFINITY && place < OF_A_KIND && !known {
             let folded = !measured.quality.embedded;
-            let triangles = cells.triangles(&positions);
-            let quads = cells.quads.len();
-            let quality = measured.quality;
-            let patch = FlatPatch { interior, triangles, quads };
-            let fill = FlatFill { patch, method, quality, folded, candidates: 0 };
-            self.best = Some((measured.badness, fill));
+            let patch = FlatPatch { interior, triangles, quads: cells.quads.len() };
+            let fill = FlatFill { patch, method, quality: measured.quality, folded, candidates: 0 };
+            kept.insert(place, (measured.badness, fill));
+            kept.truncate(OF_A_KIND);
         }
         Ok(())
     }

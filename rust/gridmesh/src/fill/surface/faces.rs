@@ -17,7 +17,7 @@ use crate::progress::Progress;
 
 /// Share of the last step that is taken: with all of it patches of few quads bulge, since diagonals stand for curved
 /// quads; with none of it their seams are rougher than those of triangles by a quarter.
-const POLISH: f64 = 0.6;
+const POLISH: f64 = 0.7;
 
 impl Shape {
     /// The same with a vertex in the middle of each quad, and four triangles around it: bent, it is the same in all
@@ -46,15 +46,44 @@ impl Shape {
     /// # Errors
     /// As [`Shape::solved`].
     pub(in crate::fill) fn solve(&self, mesh: &[DVec3], progress: Progress<'_>) -> Result<Solved> {
-        let work = &self.work;
-        if work.quads == 0 {
+        if self.work.quads == 0 {
             return self.solved(mesh, progress);
         }
-        let mut solved = self.centred()?.solved(mesh, progress.part(0.0, 0.6))?;
-        solved.positions.drain(work.end..work.end + work.quads);
+        let middle = self.bent_on_centres(mesh, progress.part(0.0, 0.6))?;
+        self.finished(middle, mesh, progress.part(0.6, 1.0))
+    }
+
+    /// The same for a patch that is new: its quads are cut along the diagonals that bend it least.
+    ///
+    /// # Errors
+    /// As [`Shape::solved`].
+    pub(in crate::fill) fn cut_and_solve(
+        &mut self,
+        mesh: &[DVec3],
+        progress: Progress<'_>,
+    ) -> Result<Solved> {
+        if self.work.quads == 0 {
+            return self.solved(mesh, progress);
+        }
+        let middle = self.bent_on_centres(mesh, progress.part(0.0, 0.6))?;
+        if let Some(work) = self.work.recut(&middle.positions)? {
+            self.work = work;
+        }
+        self.finished(middle, mesh, progress.part(0.6, 1.0))
+    }
+
+    /// Positions that do not depend on how the quads are cut.
+    fn bent_on_centres(&self, mesh: &[DVec3], progress: Progress<'_>) -> Result<Solved> {
+        let mut solved = self.centred()?.solved(mesh, progress)?;
+        solved.positions.drain(self.work.end..self.work.end + self.work.quads);
+        Ok(solved)
+    }
+
+    /// Those brought to the diagonals.
+    fn finished(&self, mut solved: Solved, mesh: &[DVec3], progress: Progress<'_>) -> Result<Solved> {
         let mut polished = solved.positions.clone();
-        if self.smooth != Smooth::Flat && !work.inner().is_empty() {
-            match self.polish(&mut polished, progress.part(0.6, 0.6)) {
+        if self.smooth != Smooth::Flat && !self.work.inner().is_empty() {
+            match self.polish(&mut polished, progress.part(0.0, 0.0)) {
                 Ok(()) => {
                     for (p, to) in solved.positions.iter_mut().zip(polished) {
                         *p = p.lerp(to, POLISH);
@@ -66,14 +95,14 @@ impl Shape {
             }
         }
         let film = solved.faults.film;
-        solved.faults = Faults { film, ..self.faults(&solved.positions, TANGLED, progress.part(0.6, 0.7))? };
+        solved.faults = Faults { film, ..self.faults(&solved.positions, TANGLED, progress.part(0.0, 0.2))? };
         if solved.faults == Faults::default() {
             return Ok(solved);
         }
         // Where much is bent on few quads, the other way may be better.
-        let mut plain = self.solved(mesh, progress.part(0.7, 0.9))?;
+        let mut plain = self.solved(mesh, progress.part(0.2, 0.7))?;
         let film = plain.faults.film;
-        plain.faults = Faults { film, ..self.faults(&plain.positions, TANGLED, progress.part(0.9, 1.0))? };
+        plain.faults = Faults { film, ..self.faults(&plain.positions, TANGLED, progress.part(0.7, 1.0))? };
         Ok(if plain.faults < solved.faults { plain } else { solved })
     }
 

@@ -368,14 +368,29 @@ pub(in crate::fill) fn curvature_target(
 /// Mean angle across the loop's edges, weighted by length.
 pub(in crate::fill) fn rim_angle(work: &Patchwork, positions: &[DVec3]) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
-    for [a, b, c, d] in seams(work) {
+    for (length, angle) in across_seams(work, positions) {
+        sum += length * angle;
+        total += length;
+    }
+    if total > 0.0 { sum / total } else { 0.0 }
+}
+
+/// The root mean square of the angles across the loop's edges.
+pub(in crate::fill) fn seam_angle(work: &Patchwork, positions: &[DVec3]) -> f64 {
+    let angles = across_seams(work, positions);
+    let squares = angles.iter().map(|(_, angle)| angle * angle).sum::<f64>();
+    (squares / angles.len().max(1) as f64).sqrt()
+}
+
+/// The length of each edge of the loop that has triangles on both sides, and the angle across it.
+fn across_seams(work: &Patchwork, positions: &[DVec3]) -> Vec<(f64, f64)> {
+    let across = |[a, b, c, d]: [u32; 4]| {
         let [a, b, c, d] = [a, b, c, d].map(|v| positions[v as usize]);
         let edge = b - a;
         let (inner, outer) = (edge.cross(c - a), (d - a).cross(edge));
-        sum += edge.length() * libm::atan2(inner.cross(outer).length(), inner.dot(outer));
-        total += edge.length();
-    }
-    if total > 0.0 { sum / total } else { 0.0 }
+        (edge.length(), libm::atan2(inner.cross(outer).length(), inner.dot(outer)))
+    };
+    seams(work).into_iter().map(across).collect()
 }
 
 /// Inner edges of a patch whose triangles are more than 120 degrees apart.

@@ -210,7 +210,7 @@ impl Task<'_> {
         };
         let unrolled = Unrolled { points: vec![], method: Unrolling::Projected, distortion: 0.0 };
         let solved = Solved { positions, faults, repaired: 0, rim_angle };
-        Ok(Some(Attempt { unrolled, patch, shape, solved }))
+        Ok(Some(Attempt { unrolled, patch, shape, solved, worth: None }))
     }
 }
 

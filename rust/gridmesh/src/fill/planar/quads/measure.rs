@@ -21,6 +21,44 @@ const LYING: f64 = 2.0;
 /// What a quad too much or too few at each loop vertex costs.
 const EXCESS: f64 = 0.6;
 
+/// What it costs that quads are large, see [`Looks::coarse`], beyond what is usual and up to some more: then the
+/// patch follows a curved surface less well, and turns more sharply at the loop, than triangles there would.
+const COARSE: f64 = 6.0;
+const USUAL: f64 = 0.15;
+const MOST_COARSE: f64 = 0.3;
+
+/// What makes a patch of quads good or bad, in the plane or in space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Looks {
+    /// The least corner of a face, and the greatest of a quad, in radians.
+    pub least: f64,
+    pub most: f64,
+    /// How far corners of quads are from right angles, in the mean.
+    pub off: f64,
+    /// New vertices of another number of faces than four.
+    pub poles: usize,
+    /// Faces too many or too few at a loop vertex, in the mean.
+    pub excess: f64,
+    /// The mean logarithm of the areas of the quads at the loop over the squares on its edges; 0 where it is not known.
+    pub coarse: f64,
+}
+
+impl Looks {
+    /// Less is better.
+    pub fn badness(&self) -> f64 {
+        EXCESS * self.excess + POLE * self.poles as f64 + self.misshape()
+    }
+
+    /// What of it is the shape of the faces.
+    pub fn misshape(&self) -> f64 {
+        let beyond = |degrees: f64, width: f64| (degrees / width).clamp(0.0, 2.0).powi(2);
+        COARSE * (self.coarse - USUAL).clamp(0.0, MOST_COARSE)
+            + self.off.to_degrees() / 30.0
+            + beyond(LEAST - self.least.to_degrees(), 20.0)
+            + beyond(self.most.to_degrees() - MOST, 25.0)
+    }
+}
+
 pub(super) struct Measured {
     pub quality: Quality,
     /// Less is better; infinite for patches that must not be used.
@@ -65,18 +103,12 @@ pub(super) fn measure(
     let count = (4 * cells.quads.len()).max(1) as f64;
     let poles = faces[n..].iter().filter(|&&f| f != 4).count();
     let excess: f64 = wanted.iter().zip(&faces).map(|(w, &f)| (f as f64 - w).abs()).sum();
-    let beyond = |degrees: f64, width: f64| (degrees / width).clamp(0.0, 2.0).powi(2);
+    let looks = Looks { least, most, off: off / count, poles, excess: excess / n as f64, coarse: 0.0 };
     let badness = if repeated > 0 {
         f64::INFINITY
     } else {
         let folded = if embedded { 0.0 } else { 100.0 };
-        folded
-            + EXCESS * excess / n as f64
-            + POLE * poles as f64
-            + LYING * lying as f64
-            + (off / count).to_degrees() / 30.0
-            + beyond(LEAST - least.to_degrees(), 20.0)
-            + beyond(most.to_degrees() - MOST, 25.0)
+        folded + LYING * lying as f64 + looks.badness()
     };
     let quality = Quality {
         irregular: poles,
