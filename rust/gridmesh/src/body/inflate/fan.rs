@@ -10,6 +10,9 @@ use crate::patch::Patch;
 /// What [`Fan::sharpest`] is at least where a corner of a quad is reflex: more than any cotangent that is let be.
 pub(super) const REFLEX: f64 = 1e6;
 
+/// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
+pub(super) const LEVEL: f64 = 0.7;
+
 /// What is around each interior vertex.
 pub(super) enum Around<'a> {
     Triangles(&'a Topology),

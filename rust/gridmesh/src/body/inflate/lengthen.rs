@@ -4,8 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use glam::{DVec2, DVec3};
 
-use super::fan::REFLEX;
-use super::polish::LEVEL;
+use super::fan::{LEVEL, REFLEX};
 use crate::body::inflate::front::{Front, Guide};
 use crate::error::Result;
 use crate::geometry::active::{Visit, turn, visit_active};

@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_PI_4;
 
 use glam::DVec3;
 
+use super::fan::LEVEL;
 use super::front::{Front, Guide, Spot, Trial, project};
-use super::polish::LEVEL;
 
 /// Moves `v` and another vertex of its sharpest triangle by the same way along the surface, to where the least angle around
 /// both is larger (of quads: the corner furthest from a right angle nearer to one). On a steep wall triangles are thin in

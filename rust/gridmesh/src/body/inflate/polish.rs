@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use glam::DVec2;
 
+use crate::body::inflate::fan::LEVEL;
 use crate::body::inflate::front::{Front, Guide, Trial, project};
 use crate::body::inflate::pairs::has_moved_with_another;
 use crate::error::Result;
@@ -26,9 +27,6 @@ const POWER_OF_QUADS: i32 = 3;
 /// A vertex may make its worst triangle worse if it stays better than this, see `Fan::worst`: the quality of an isosceles
 /// triangle with 26 degrees at its apex.
 const GOOD: f64 = 0.692_8;
-
-/// Cosine up to which moves may not turn the triangles around a vertex further from the surface.
-pub(super) const LEVEL: f64 = 0.7;
 
 /// Rounds of [`sharpen`].
 const ROUNDS: Rounds = Rounds { most: 32, stuck: 6 };
