@@ -170,7 +170,9 @@ OPS: Mapping[str, Mapping[str, Param]] = {
             "number", "cover of a pixel that lies inside; 0.5, on paper the best one", least=0.001, most=0.999
         ),
         "smooth": Param("number", "how far along the outline pixels are smoothed (1)", least=0, most=10),
-        "min_area": Param("number", "islands and holes of fewer pixels are left out (4)", least=0, most=1e9),
+        "min_area": Param(
+            "number", "islands and holes of fewer pixels are left out (4, on paper 16)", least=0, most=1e9
+        ),
         "margin": Param(
             "number",
             "pixels that the outline is moved outward (1; of a body, where it is opaque, 0)",

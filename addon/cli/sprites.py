@@ -106,7 +106,7 @@ def sprites(source: Path, _pattern: str | None, options: dict[str, Any], *, scri
         paper=paper,
         threshold=options.get("threshold", None if paper else 0.5),
         smooth=options.get("smooth", 1.0),
-        min_area=options.get("min_area", 4.0),
+        min_area=options.get("min_area", 16.0 if paper else 4.0),
         margin=options.get("margin", 1.0 if flat else 0.0),
         cover=not flat,
         holes=options.get("holes", True),

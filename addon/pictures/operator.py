@@ -97,7 +97,7 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
     )
     min_area: FloatProperty(
         name="Least Area",
-        description="Islands and holes of fewer pixels are left out",
+        description="Islands and holes of fewer pixels are left out; set it higher for specks on paper",
         default=4.0,
         min=0.0,
         soft_max=1000.0,

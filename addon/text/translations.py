@@ -70,7 +70,7 @@ GERMAN = {
     "How far the outline is moved outward, in pixels; from 1 on the mesh covers pixels whole, but for the finest tips": (
         "Wie weit der Umriss nach außen rückt, in Pixeln; ab 1 bedeckt das Mesh ganze Pixel, bis auf die feinsten Spitzen"
     ),
-    "Islands and holes of fewer pixels are left out": "Inseln und Löcher mit weniger Pixeln werden weggelassen",
+    "Islands and holes of fewer pixels are left out; set it higher for specks on paper": "Inseln und Löcher mit weniger Pixeln werden weggelassen; für Flecken auf Papier höher stellen",
     "Least Area": "Kleinste Fläche",
     "Leave holes open; without, closed lines are filled": (
         "Löcher offen lassen; ohne dies werden geschlossene Linien gefüllt"

@@ -198,7 +198,11 @@ def test_a_file_stands_at_the_cursor(tmp_path):
 
 def test_islands_and_holes(tmp_path):
     ring = (
-        disk(28, (34, 32)) - disk(18, (34, 32)) + disk(8, (34, 32)) + disk(10, (78, 20)) + disk(1, (90, 60))
+        disk(28, (34, 32))
+        - disk(18, (34, 32))
+        + disk(8, (34, 32))
+        + disk(10, (78, 20))
+        + disk(0.6, (90.5, 60.5))
     )
     source = empty(picture(tmp_path, drawing(ring)))
     ob = run(shape="SHEET")
