@@ -77,6 +77,8 @@ pub(crate) struct Ground {
     limbs: Vec<f64>,
     /// Price of limbs coarser than on a straight lattice, in turns for an edge of contour and a factor of e.
     price_of_limbs: f64,
+    /// Some density was asked for, or the lattice is one of squares, whose limbs lose their corners where they are coarse.
+    sizes_matter: bool,
     /// The first axis of the frame is an axis of symmetry.
     is_symmetric: bool,
     /// What lattice the plane is bent for.
@@ -131,6 +133,7 @@ impl Ground {
             narrow,
             limbs,
             price_of_limbs,
+            sizes_matter: density.is_some() || shape == CellShape::Quad,
             is_symmetric,
             shape,
         }))

@@ -226,7 +226,13 @@ impl Maker<'_> {
     fn straightened(&self, v: &[f64]) -> Result<Option<Bent>> {
         let Maker { ground, solver, ref mirrored, ref narrowest, .. } = *self;
         let made = |v: Vec<f64>| bent(ground, solver, v, mirrored.as_ref(), narrowest);
-        let straight = solver.straightened(&ground.carrier, v, self.pull, self.turn, ground.shape)?;
+        let straight = solver.straightened(
+            &ground.carrier,
+            v,
+            self.pull,
+            self.turn,
+            (ground.shape, ground.sizes_matter),
+        )?;
         Ok(match made(straight)? {
             Some(bent) if bent.share == 1.0 => Some(bent),
             // Better bent as a whole than straight and bent less.
