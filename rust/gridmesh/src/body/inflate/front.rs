@@ -68,6 +68,11 @@ impl Front {
         surface_normal(gradient, self.height[v])
     }
 
+    /// Largest cotangent of the angles around interior vertex `v`, see [`Fan::sharpest`](super::fan::Fan::sharpest).
+    pub fn sharpest(&self, guide: &Guide<'_>, v: usize) -> f64 {
+        guide.around.fan(v).sharpest(self.positions(), self.position(v), self.normal(guide, v))
+    }
+
     /// The place of the surface nearest to `target`, if `v`, which was at `start`, may go there.
     pub fn trial(&self, guide: &Guide<'_>, v: usize, start: DVec2, target: DVec3) -> Option<Trial> {
         let (point, place) = project(guide.field, target, self.place[v - self.first].triangle)?;

@@ -33,9 +33,8 @@ pub(crate) fn lengthen(front: &mut Front, guide: &Guide<'_>, progress: Progress<
     };
     let near = |v: usize| guide.around.fan(v).iter().flat_map(|(a, b, _)| [a, b]);
     let mean = mean_length(front, guide);
-    let sharp =
-        |v: usize| guide.around.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v));
-    let thinnest = (front.first..front.flat.len()).map(sharp).fold(limits[0], f64::max);
+    let vertices = front.first..front.flat.len();
+    let thinnest = vertices.map(|v| front.sharpest(guide, v)).fold(limits[0], f64::max);
     for ((share, level), thin) in STAGES.into_iter().zip(limits) {
         let (wanted, thin) = (share * mean, thin.min(thinnest));
         visit_active(front.first..front.flat.len(), near, ROUNDS, progress, |v, round| {

@@ -30,15 +30,16 @@ pub(super) fn has_moved_with_another(
         length * (cos * e + sin * f)
     });
     let ends = guide.around.fan(v).ends_of_sharpest(front.positions(), here, normal);
-    let others = ends.into_iter().flatten().map(|u| u as usize).filter(|&u| u >= front.first);
-    others.collect::<Vec<_>>().into_iter().any(|u| has_moved(front, guide, [v, u], &ways))
+    let first = front.first;
+    let mut others = ends.into_iter().flatten().map(|u| u as usize).filter(|&u| u >= first);
+    others.any(|u| has_moved(front, guide, [v, u], &ways))
 }
 
 /// Moves two vertices by the best of `ways`; false if none is better.
 fn has_moved(front: &mut Front, guide: &Guide<'_>, pair: [usize; 2], ways: &[DVec3]) -> bool {
     let starts = pair.map(|v| front.flat[v]);
     let normals = pair.map(|v| front.normal(guide, v));
-    let mut best = pair.map(|v| sharpest(front, guide, v)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let mut best = sharpest(front, guide, pair);
     let levels = pair.map(|v| facing(front, guide, v).min(LEVEL));
     let mut kept = pair.map(|v| front.spot(v));
     let mut is_moved = false;
@@ -58,7 +59,7 @@ fn has_moved(front: &mut Front, guide: &Guide<'_>, pair: [usize; 2], ways: &[DVe
         let [Some(first), Some(second)] = spots else { continue };
         front.put_at(pair[0], &first);
         front.put_at(pair[1], &second);
-        let now = pair.map(|v| sharpest(front, guide, v)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let now = sharpest(front, guide, pair);
         let may = |k: usize| {
             front.may_move(guide, pair[k], starts[k], front.flat[pair[k]])
                 && facing(front, guide, pair[k]) >= levels[k]
@@ -72,8 +73,9 @@ fn has_moved(front: &mut Front, guide: &Guide<'_>, pair: [usize; 2], ways: &[DVe
     is_moved
 }
 
-fn sharpest(front: &Front, guide: &Guide<'_>, v: usize) -> f64 {
-    guide.around.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v))
+/// The largest cotangent around either of two vertices.
+fn sharpest(front: &Front, guide: &Guide<'_>, pair: [usize; 2]) -> f64 {
+    front.sharpest(guide, pair[0]).max(front.sharpest(guide, pair[1]))
 }
 
 fn facing(front: &Front, guide: &Guide<'_>, v: usize) -> f64 {

@@ -116,8 +116,7 @@ pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'
     };
     let near = |v: usize| guide.around.fan(v).iter().flat_map(|(a, b, _)| [a, b]);
     visit_active(front.first..front.flat.len(), near, ROUNDS, progress, |v, round| {
-        let present =
-            guide.around.fan(v).sharpest(front.positions(), front.position(v), front.normal(guide, v));
+        let present = front.sharpest(guide, v);
         if present <= sharp {
             return Visit::Done;
         }
