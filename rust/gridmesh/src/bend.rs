@@ -118,10 +118,9 @@ impl Ground {
         if shape == CellShape::Triangle && densities.is_none() && narrow.is_none() {
             limbs = log_limbs(&carrier, progress)?;
             let (each, count) = LIMBS;
-            let triangles = carrier.areas().iter().sum::<f64>() / (0.5 * ROW_HEIGHT);
             price_of_limbs = match share {
                 Some(_) => MIND_LIMBS,
-                None => (each * triangles / count).min(MOST_LIMBS),
+                None => (each * triangles_of(&carrier) / count).min(MOST_LIMBS),
             };
         }
         Ok(Some(Self {
@@ -146,6 +145,11 @@ impl Ground {
         Operators::new(&self.carrier, &self.widths, &tangents, self.shape, progress)
     }
 
+    /// About how many triangles a straight lattice would have.
+    fn triangles(&self) -> f64 {
+        triangles_of(&self.carrier)
+    }
+
     /// True if sizes are asked for.
     fn is_asked(&self) -> bool {
         self.narrow.is_some() || self.densities.is_some()
@@ -161,6 +165,10 @@ impl Ground {
             None => None,
         }
     }
+}
+
+fn triangles_of(carrier: &Carrier) -> f64 {
+    carrier.areas().iter().sum::<f64>() / (0.5 * ROW_HEIGHT)
 }
 
 /// A contour in a drawing's own frame.

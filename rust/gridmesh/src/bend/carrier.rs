@@ -133,11 +133,16 @@ impl Carrier {
     pub fn areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.vertices.len()];
         for t in &self.triangles {
-            let [a, b, c] = t.map(|i| self.vertices[i as usize]);
-            let third = (b - a).perp_dot(c - a) / 6.0;
+            let third = self.doubled_area(t) / 6.0;
             t.iter().for_each(|&v| areas[v as usize] += third);
         }
         areas
+    }
+
+    /// Twice the area of a triangle.
+    pub fn doubled_area(&self, triangle: &[u32; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|i| self.vertices[i as usize]);
+        (b - a).perp_dot(c - a)
     }
 
     /// Length of contour that each boundary vertex stands for.

@@ -223,10 +223,13 @@ impl Solver<'_> {
     pub fn map(&self, carrier: &Carrier, u: &[f64], v: &[f64]) -> Result<Vec<DVec2>> {
         let n = carrier.vertices.len();
         let mut sums = vec![0.0; 2 * n];
+        // A triangle's exponent is the mean of its corners'.
+        let thirds = u.iter().zip(v).map(|(u, v)| libm::exp(u / 3.0) * DVec2::from_angle(v / 3.0));
+        let thirds: Vec<DVec2> = thirds.collect();
         for t in &carrier.triangles {
             let corner = t.map(|i| carrier.vertices[i as usize]);
-            let mean = |of: &[f64]| t.iter().map(|&i| of[i as usize]).sum::<f64>() / 3.0;
-            let gradient = DVec2::from_angle(mean(v)) * libm::exp(mean(u));
+            let [a, b, c] = t.map(|i| thirds[i as usize]);
+            let gradient = a.rotate(b).rotate(c);
             for k in 0..3 {
                 // Twice the area times the gradient of the corner's hat function.
                 let across = (corner[(k + 2) % 3] - corner[(k + 1) % 3]).perp();
@@ -243,13 +246,18 @@ impl Solver<'_> {
 
 /// Shifts a log scale so that the map keeps the area.
 pub fn keep_area(carrier: &Carrier, u: &mut [f64]) {
-    let (mut before, mut after) = (0.0, 0.0);
-    for t in &carrier.triangles {
-        let [a, b, c] = t.map(|i| carrier.vertices[i as usize]);
-        let doubled = (b - a).perp_dot(c - a);
-        before += doubled;
-        after += doubled * libm::exp(2.0 / 3.0 * t.iter().map(|&i| u[i as usize]).sum::<f64>());
-    }
+    let before: f64 = carrier.triangles.iter().map(|t| carrier.doubled_area(t)).sum();
+    let after: f64 = image_areas(carrier, u).sum();
     let shift = 0.5 * libm::log(after / before);
     u.iter_mut().for_each(|u| *u -= shift);
+}
+
+/// Twice the area that each triangle of a carrier has under a map of this log scale.
+pub fn image_areas<'a>(carrier: &'a Carrier, u: &[f64]) -> impl Iterator<Item = f64> + 'a {
+    // The square of a triangle's scale is the exponential of twice the mean of its corners' logs.
+    let factors: Vec<f64> = u.iter().map(|u| libm::exp(2.0 / 3.0 * u)).collect();
+    carrier.triangles.iter().map(move |t| {
+        let [a, b, c] = t.map(|i| factors[i as usize]);
+        carrier.doubled_area(t) * (a * b * c)
+    })
 }

@@ -41,22 +41,21 @@ pub fn directions(tangents: &[f64], lengths: &[f64], (total, step): (i32, f64), 
     for k in 1..n {
         let (angle, length) = at(k);
         let (before, base) = (bases[k - 1], nearest(angle));
-        let mut next = [f64::INFINITY; STATES];
-        let mut from = [0u8; STATES];
-        for (state, (next, from)) in next.iter_mut().zip(&mut from).enumerate() {
+        let (reached, from) = with_changes(costs, price);
+        let mut next = [0.0; STATES];
+        let mut origin = [0u8; STATES];
+        for (state, (next, origin)) in next.iter_mut().zip(&mut origin).enumerate() {
             let m = base + state as i32 - REACH;
-            for (other, &cost) in costs.iter().enumerate() {
-                let change = (m - (before + other as i32 - REACH)).abs();
-                let sum = cost + price * f64::from(change);
-                if sum < *next {
-                    (*next, *from) = (sum, other as u8);
-                }
-            }
-            *next += length * misfit(angle, m);
+            // Among the states of the sample before; beyond them the last one is nearest.
+            let wanted = m - before + REACH;
+            let nearest = wanted.clamp(0, STATES as i32 - 1);
+            let beyond = f64::from((wanted - nearest).abs());
+            *next = reached[nearest as usize] + price * beyond + length * misfit(angle, m);
+            *origin = from[nearest as usize];
         }
         costs = next;
         bases.push(base);
-        back.push(from);
+        back.push(origin);
     }
     let end = bases[0] + total;
     let closing = |state: usize| (end - (bases[n - 1] + state as i32 - REACH)).abs();
@@ -76,6 +75,25 @@ pub fn directions(tangents: &[f64], lengths: &[f64], (total, step): (i32, f64), 
     let turns = (0..n).map(|i| change(i).unsigned_abs() as usize).sum();
     let misfit = (0..n).map(|i| lengths[i] * misfit(tangents[i], steps[i])).sum();
     Directions { steps, turns, misfit }
+}
+
+/// The least costs of states once changes are made between them, each a step to the state beside for `price`; and from
+/// which state each is reached.
+fn with_changes(mut costs: [f64; STATES], price: f64) -> ([f64; STATES], [u8; STATES]) {
+    let mut from: [u8; STATES] = std::array::from_fn(|state| state as u8);
+    let mut change = |to: usize, other: usize| {
+        let sum = costs[other] + price;
+        if sum < costs[to] {
+            (costs[to], from[to]) = (sum, from[other]);
+        }
+    };
+    for state in 1..STATES {
+        change(state, state - 1);
+    }
+    for state in (1..STATES).rev() {
+        change(state - 1, state);
+    }
+    (costs, from)
 }
 
 /// The nearest integer, halves away from zero: as `round`, which is a call for processors without an instruction for it.

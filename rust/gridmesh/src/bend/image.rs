@@ -17,13 +17,9 @@ pub struct Image {
 }
 
 impl Image {
-    /// The linear part of the map near a vertex, and its inverse.
+    /// The linear part of the map near a vertex.
     pub(super) fn turned(&self, i: usize, d: DVec2) -> DVec2 {
         libm::exp(self.u[i]) * DVec2::from_angle(self.v[i]).rotate(d)
-    }
-
-    fn turned_back(&self, i: usize, d: DVec2) -> DVec2 {
-        libm::exp(-self.u[i]) * DVec2::from_angle(-self.v[i]).rotate(d)
     }
 
     /// True if no triangle of the carrier is turned over (exact).
@@ -159,12 +155,22 @@ pub struct WayBack<'a> {
     image: &'a Image,
     grid: TriangleGrid,
     chords: Chords<'a>,
+    /// The inverse of the map's linear part near each vertex: scale and rotation.
+    backs: Vec<(f64, DVec2)>,
 }
 
 impl<'a> WayBack<'a> {
     pub fn new(carrier: &'a Carrier, image: &'a Image) -> Self {
         let grid = TriangleGrid::new(&image.positions, &carrier.triangles);
-        Self { carrier, image, grid, chords: Chords::new(carrier, &image.positions) }
+        let back = |(u, v): (&f64, &f64)| (libm::exp(-u), DVec2::from_angle(-v));
+        let backs = image.u.iter().zip(&image.v).map(back).collect();
+        Self { carrier, image, grid, chords: Chords::new(carrier, &image.positions), backs }
+    }
+
+    /// A small step from a vertex's image, on the drawing.
+    fn turned_back(&self, i: usize, d: DVec2) -> DVec2 {
+        let (scale, rotation) = self.backs[i];
+        scale * rotation.rotate(d)
     }
 
     /// The point of the drawing that was bent onto `x`: barycentric on the carrier, corrected by the
@@ -190,7 +196,7 @@ impl<'a> WayBack<'a> {
     fn off_chord(&self, x: DVec2, ends: [usize; 2], t: f64) -> DVec2 {
         let (carrier, image) = (self.carrier, self.image);
         let foot = image.positions[ends[0]].lerp(image.positions[ends[1]], t);
-        let [p, q] = ends.map(|e| image.turned_back(e, x - foot));
+        let [p, q] = ends.map(|e| self.turned_back(e, x - foot));
         carrier.vertices[ends[0]].lerp(carrier.vertices[ends[1]], t) + p.lerp(q, t)
     }
 
@@ -199,7 +205,7 @@ impl<'a> WayBack<'a> {
         let (carrier, image) = (self.carrier, self.image);
         let mut sum = DVec2::ZERO;
         for (&c, &w) in corners.iter().zip(weights) {
-            sum += w * (carrier.vertices[c] + 0.5 * image.turned_back(c, x - image.positions[c]));
+            sum += w * (carrier.vertices[c] + 0.5 * self.turned_back(c, x - image.positions[c]));
         }
         sum
     }

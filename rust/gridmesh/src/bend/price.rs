@@ -1,6 +1,7 @@
 //! What unequal sizes of a bent lattice and coarse limbs cost beside turns.
 
 use super::Ground;
+use super::conformal::image_areas;
 use crate::options::CellShape;
 
 /// Price of narrow parts that are coarser than on a straight lattice, in turns for a factor of e.
@@ -22,16 +23,10 @@ struct Sizes(Vec<(f64, f64)>, f64);
 
 impl Sizes {
     fn new(ground: &Ground, u: &[f64]) -> Self {
-        let mut sizes: Vec<(f64, f64)> = ground
-            .carrier
-            .triangles
-            .iter()
-            .map(|t| {
-                let [a, b, c] = t.map(|i| ground.carrier.vertices[i as usize]);
-                let mean = t.iter().map(|&i| u[i as usize]).sum::<f64>() / 3.0;
-                (-mean, (b - a).perp_dot(c - a) * libm::exp(2.0 * mean))
-            })
-            .collect();
+        let carrier = &ground.carrier;
+        let mean = |t: &[u32; 3]| t.iter().map(|&i| u[i as usize]).sum::<f64>() / 3.0;
+        let logs = carrier.triangles.iter().map(|t| -mean(t));
+        let mut sizes: Vec<(f64, f64)> = logs.zip(image_areas(carrier, u)).collect();
         sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
         let whole = sizes.iter().map(|s| s.1).sum();
         Self(sizes, whole)

@@ -14,7 +14,7 @@ use crate::options::{BoundaryMethod, CellShape, Mirror, SketchOptions};
 use crate::path::outline::Outline;
 use crate::path::placement::Lattice;
 use crate::progress::{Meter, Progress};
-use crate::sketch::found::{Found, faults};
+use crate::sketch::found::Found;
 use crate::sketch::job::{Asked, Effort, Job};
 
 /// So many bends are traced at most, and so many for quads.
@@ -118,9 +118,7 @@ impl Job<'_> {
             if placed.fault(self.options).is_some() {
                 continue;
             }
-            let faults = faults(&placed);
-            let bent = Some((Arc::new(bent), lattice));
-            let found = Found { faults, bent, outline, placed, mirror_error };
+            let found = Found::new(Some((Arc::new(bent), lattice)), outline, placed, mirror_error);
             let is_good = found.is_good();
             if best.as_ref().is_none_or(|best| found.score_of_bent() < best.score_of_bent()) {
                 *best = Some(found);
@@ -238,8 +236,7 @@ impl Job<'_> {
         let placed = self.place(Some(&bent), &lattice, &outline, progress.part(0.3, 0.9))?;
         Ok(placed.ok().filter(|(placed, _)| placed.fault(self.options).is_none()).map(
             |(placed, mirror_error)| {
-                let bent = Some((Arc::new(bent), lattice));
-                Found { faults: faults(&placed), bent, outline, placed, mirror_error }
+                Found::new(Some((Arc::new(bent), lattice)), outline, placed, mirror_error)
             },
         ))
     }

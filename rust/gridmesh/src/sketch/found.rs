@@ -1,5 +1,6 @@
 //! A patch on one lattice, and what speaks against it.
 
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 use crate::bend::Bent;
@@ -59,11 +60,32 @@ pub(crate) struct Found {
     pub(crate) outline: Outline,
     pub(crate) placed: Placed,
     pub(crate) mirror_error: Option<f64>,
+    starved: OnceCell<f64>,
+    overlong: OnceCell<f64>,
 }
 
 impl Found {
+    pub(crate) fn new(
+        bent: Option<(Arc<Bent>, Lattice)>,
+        outline: Outline,
+        placed: Placed,
+        mirror_error: Option<f64>,
+    ) -> Self {
+        let (starved, overlong) = (OnceCell::new(), OnceCell::new());
+        Self { faults: faults(&placed), bent, outline, placed, mirror_error, starved, overlong }
+    }
+
     /// How far the least angle is from a good one: 0 to 1.
     fn starved(&self) -> f64 {
+        *self.starved.get_or_init(|| self.measured_starved())
+    }
+
+    /// What the longest edges of a bent lattice cost in turns, see [`LONG`]; those of a straight one nothing.
+    fn overlong(&self) -> f64 {
+        *self.overlong.get_or_init(|| self.measured_overlong())
+    }
+
+    fn measured_starved(&self) -> f64 {
         let patch = &self.placed.patch;
         // At a corner of the drawing two quads share its angle on any lattice.
         let least = match patch.cells() {
@@ -73,8 +95,7 @@ impl Found {
         (1.0 - least / GOOD_ANGLE).max(0.0)
     }
 
-    /// What the longest edges of a bent lattice cost in turns, see [`LONG`]; those of a straight one nothing.
-    fn overlong(&self) -> f64 {
+    fn measured_overlong(&self) -> f64 {
         let patch = &self.placed.patch;
         match &self.bent {
             Some((bent, _)) if !bent.is_sized() => {
@@ -120,7 +141,7 @@ impl Found {
 }
 
 /// How far a placement is from being good enough: zero if it is.
-pub(crate) fn faults(placed: &Placed) -> f64 {
+fn faults(placed: &Placed) -> f64 {
     let (angle, distance) = ENOUGH;
     let starved = (1.0 - min_angle_off_corners(&placed.patch) / angle).max(0.0);
     // A patch that has lost a part of the drawing serves only to say where.

@@ -20,7 +20,7 @@ use crate::patch::{Patch, mirror};
 use crate::path::outline::{Obstacle, Outline};
 use crate::path::placement::{Laid, Lattice};
 use crate::progress::{Meter, Progress};
-use crate::sketch::found::{Found, faults};
+use crate::sketch::found::Found;
 use crate::sketch::kept::Kept;
 
 #[derive(Clone, Copy)]
@@ -164,11 +164,12 @@ impl Job<'_> {
             self.lap("placement", started);
             match placed {
                 Ok((placed, mirror_error)) => {
-                    let faults = faults(&placed);
-                    if best.as_ref().is_none_or(|best| faults < best.faults) {
-                        best = Some(Found { faults, bent: None, outline, placed, mirror_error });
+                    let found = Found::new(None, outline, placed, mirror_error);
+                    let is_faultless = found.faults == 0.0;
+                    if best.as_ref().is_none_or(|best| found.faults < best.faults) {
+                        best = Some(found);
                     }
-                    if faults == 0.0 {
+                    if is_faultless {
                         break;
                     }
                 }
