@@ -6,11 +6,12 @@ use super::Patch;
 const LONGEST: f64 = 1.0 / 150.0;
 const LONG: f64 = 0.01;
 
-/// Mean length of the longest sides of faces, and the length above which one in a hundred is, over the median of all; 1
+/// Mean length of the longest edges, and the length above which one in a hundred is, over the median of all; 1
 /// without any. Linear.
 pub(crate) fn longest_over_median(patch: &Patch) -> (f64, f64) {
     let length = |[a, b]: [u32; 2]| patch.vertices[a as usize].distance_squared(patch.vertices[b as usize]);
-    let mut squared: Vec<f64> = patch.sides().map(length).collect();
+    // Each edge once, but for those that close a contour: the boundary's vertices are numbered in a row.
+    let mut squared: Vec<f64> = patch.sides().filter(|[a, b]| a < b).map(length).collect();
     let n = squared.len();
     let longest = ((n as f64 * LONGEST) as usize).max(1);
     if n < 2 * longest {

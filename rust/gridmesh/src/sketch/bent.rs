@@ -21,8 +21,9 @@ use crate::sketch::job::{Asked, Effort, Job};
 const TRACED: usize = 3;
 const TRACED_OF_QUADS: usize = 2;
 
-/// Share of the bend that quads are tried with where no patch on the whole bend is good.
-const WEAKER: f64 = 0.75;
+/// Shares of the bend that are tried too: of quads the first where no patch on the whole bend is good, of triangles while the
+/// best patch has edges that are too long.
+const WEAKER: [f64; 2] = [0.75, 0.5];
 
 /// What a path on a bent lattice costs beside others, in turns.
 fn expected((bent, _, outline): &(Bent, Lattice, Outline)) -> f64 {
@@ -56,8 +57,18 @@ impl Job<'_> {
         let mut best: Option<Found> = None;
         if let Some(ground) = ground {
             let is_good = self.best_bent_by(1.0, &ground, asked, &mut best, progress)?;
-            if !is_good && self.options.cells == CellShape::Quad {
-                self.best_bent_by(WEAKER, &ground, asked, &mut best, progress)?;
+            match self.options.cells {
+                CellShape::Quad if !is_good => {
+                    self.best_bent_by(WEAKER[0], &ground, asked, &mut best, progress)?;
+                }
+                CellShape::Quad => {}
+                CellShape::Triangle => {
+                    for strength in WEAKER {
+                        if best.as_ref().is_some_and(Found::is_uneven) {
+                            self.best_bent_by(strength, &ground, asked, &mut best, progress)?;
+                        }
+                    }
+                }
             }
         }
         Ok(best)
