@@ -180,7 +180,10 @@ def _surfaces(
         first = part_of(progress, at / len(drawings), (at + meshing) / len(drawings))
         second = part_of(progress, (at + meshing) / len(drawings), (at + 1) / len(drawings))
         try:
-            patch = gridmesh.mesh_sketch(outline, holes, progress=first, **sketch_options)
+            opened = body_options is None
+            patch = gridmesh.mesh_sketch(
+                outline, holes, progress=first, open_corners=opened, **sketch_options
+            )
             if body_options is None:
                 return gridmesh.flat(patch)
             return gridmesh.inflate(patch, progress=second, **body_options)

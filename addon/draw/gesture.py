@@ -126,6 +126,7 @@ class Gesture:
                 angle=0.0,
                 origin=outline[0],
                 self_crossing="union",
+                open_corners=False,
                 least=False,
             )
         except gridmesh.GridMeshError:

@@ -66,7 +66,8 @@ def solve(
         Without the module.
     """
     gridmesh = native("mesh_sketch", "inflate", "flat")
-    options = dict(sketch_options)
+    # Only flat corners have a single quad.
+    options = {**sketch_options, "open_corners": body_options is None}
     if lattice is not None and options.get("mirror") is None:
         sketch = moved(sketch, lattice.plane)
         for name in ("triangles", "edge_length", "angle", "quads"):

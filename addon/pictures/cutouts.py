@@ -222,6 +222,8 @@ def _surfaces(
 ) -> list[Any]:
     """Surface or GridMeshError for each part; those that lack more than a few pixels are meshed again, finer."""
     body = chosen.body
+    # Only flat corners have a single quad.
+    options = {**options, "open_corners": body is None}
     if body is not None and "corner_angle" in body:
         options = {**options, "corner_angle": body["corner_angle"]}
 

@@ -1,4 +1,4 @@
-"""Quads over many drawings: refusals, poles, corners, edges, time.
+"""Quads over many drawings: refusals, poles of bodies and of sheets, corners with a single quad, corners, edges, time.
 
     python tests/campaign/quads.py CURVES [--quads 1000] [--every 1] [--sets hand,icons] [--body] [--worst 5]
 
@@ -36,8 +36,12 @@ def measured(patch: gridmesh.Patch) -> dict[str, float]:
     angles = corners(patch.vertices, patch.quads)
     ends = edges(patch.quads)
     lengths = np.linalg.norm(np.diff(patch.vertices[ends], axis=1)[:, 0], axis=1)
+    of_sheet = np.bincount(patch.quads.ravel())
+    n_rim = sum(map(len, patch.loops))
     return {
         "poles": patch.report["poles"],
+        "single": (of_sheet[:n_rim] == 1).sum(),
+        "flat": (of_sheet[n_rim:] != 4).sum(),
         "least": angles.min(),
         "most": angles.max(),
         "off": np.abs(angles - 90).mean(),
@@ -58,6 +62,7 @@ def drawn_in(patch: gridmesh.Patch, body: gridmesh.Surface) -> np.ndarray:
         np.add.at(across, quads[:, k], at[quads[:, k - 2]])
     limit = (faces**2 * at + 4 * beside + across) / (faces * (faces + 5))
     off = []
+    patch = patch.belt
     for loop, corner in zip(patch.loops, patch.corner, strict=True):
         drawn = patch.vertices[loop]
         tangent = np.roll(drawn, -1, axis=0) - np.roll(drawn, 1, axis=0)
@@ -118,7 +123,7 @@ def main() -> None:
         row["time"] = sum(patch.report["seconds"].values())
         found.setdefault(group, []).append(row | {"name": name})
     print(
-        f"{'set':16s} {'n':>3s} {'refused':>7s} poles  p90  least  p10   most  p90   off  ratio  p90  deviation bent    ms"
+        f"{'set':16s} {'n':>3s} {'refused':>7s} poles  p90  flat single  least  p10   most  p90   off  ratio  p90  deviation bent    ms"
     )
     everything = [row for rows in found.values() for row in rows]
     hand = [row for group, rows in found.items() if group.startswith("hand") for row in rows]
@@ -138,6 +143,7 @@ def main() -> None:
         )
         print(
             f"{group:16s} {len(rows):3d} {n_refused:7d} {np.median(of['poles']):5.0f} {np.percentile(of['poles'], 90):4.0f}"
+            f" {np.median(of['flat']):5.0f} {np.median(of['single']):6.0f}"
             f" {np.median(of['least']):6.1f} {np.percentile(of['least'], 10):5.1f} {np.median(of['most']):6.1f} {np.percentile(of['most'], 90):5.1f}"
             f" {np.median(of['off']):5.1f} {np.median(of['ratio']):5.2f} {np.percentile(of['ratio'], 90):5.2f} {np.median(of['deviation']):8.2f}"
             f" {(of['bend'] > 0).mean():6.2f} {1000 * np.median(of['time']):6.1f}"

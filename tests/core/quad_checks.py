@@ -44,8 +44,32 @@ def check_one_fan_each(quads: np.ndarray, n_vertices: int, n_boundary: int) -> N
         assert steps == len(fan), f"vertex {vertex} has more than one fan"
 
 
+def single_quads(patch) -> np.ndarray:
+    """The boundary vertices of a patch that have one quad."""
+    n_boundary = sum(map(len, patch.loops))
+    return np.flatnonzero(np.bincount(patch.quads.ravel())[:n_boundary] == 1)
+
+
 def check_quad_patch(patch, contours: list[np.ndarray]) -> None:
-    """Everything that is promised for a patch of quads of these contours (outline first, then holes)."""
+    """Everything that is promised for a patch of quads of these contours (outline first, then holes), and for its belt."""
+    check_flat(patch, contours)
+    belt = patch.belt
+    assert belt.belt is belt
+    if belt is not patch:
+        check_flat(belt, contours)
+    assert len(single_quads(belt)) == 0
+    single = single_quads(patch)
+    assert len(patch.quads) == len(belt.quads) + len(single)
+    assert len(patch.vertices) == len(belt.vertices) + 2 * len(single)
+    assert (np.concatenate(patch.corner)[single] > 0).all(), "one quad where nothing is sharp"
+    assert patch.report["quads"] == len(patch.quads)
+    n_boundary = sum(map(len, belt.loops))
+    poles = (np.bincount(belt.quads.ravel())[n_boundary:] != 4).sum()
+    assert patch.report["poles"] == 2 * poles >= patch.report["minimum_poles"] == 8 * len(contours)
+
+
+def check_flat(patch, contours: list[np.ndarray]) -> None:
+    """What is promised for a patch with or without corners of a single quad."""
     vertices, quads = patch.vertices, patch.quads
     check_array(vertices, np.float64, 2)
     check_array(quads, np.int32, 4)
@@ -66,17 +90,14 @@ def check_quad_patch(patch, contours: list[np.ndarray]) -> None:
     check_one_fan_each(quads, len(vertices), n_boundary)
     assert len(vertices) - len(edges) + len(quads) == 2 - len(contours), "wrong topology"
 
-    # The belt: two quads at each boundary vertex, no edge inside between two of them; poles of three or five.
+    # The belt: two quads at each boundary vertex, or one on a sharp corner, no edge inside between two of them; poles of
+    # three or five.
     assert not ((counts == 2) & (edges < n_boundary).all(axis=1)).any(), "chord"
     faces = np.bincount(quads.ravel(), minlength=len(vertices))
-    assert (faces[:n_boundary] == 2).all()
-    inner = faces[n_boundary:]
+    rim, inner = faces[:n_boundary], faces[n_boundary:]
+    assert set(rim.tolist()) <= {1, 2}
     assert set(inner.tolist()) <= {3, 4, 5}
-    assert (4 - inner).sum() == 4 * (2 - len(contours))
-    assert (
-        patch.report["poles"] == 2 * (inner != 4).sum() >= patch.report["minimum_poles"] == 8 * len(contours)
-    )
-    assert patch.report["quads"] == len(quads)
+    assert (4 - inner).sum() + (2 - rim).sum() == 4 * (2 - len(contours))
 
     # Convex and counter-clockwise, also in the precision that Blender stores.
     corners = corner_triangles(quads)
@@ -91,7 +112,7 @@ def check_quad_patch(patch, contours: list[np.ndarray]) -> None:
 
 def check_quad_body(surface, patch, n_holes: int) -> None:
     """Everything that is promised for a closed body of a patch of quads."""
-    quads = surface.quads
+    patch, quads = patch.belt, surface.quads
     check_array(quads, np.int32, 4)
     assert len(surface.triangles) == 0
     assert len(quads) == 2 * len(patch.quads) == surface.report["quads"]

@@ -21,7 +21,7 @@ use crate::{error, options};
 /// Returns
 /// -------
 /// Surface
-///     Watertight; all z are 0. The front is numbered as the patch, the interior vertices of the back follow.
+///     Watertight; all z are 0. The front is numbered as the patch, or its `belt`, the interior vertices of the back follow.
 ///
 /// Raises
 /// ------
@@ -109,7 +109,7 @@ pub fn flat(py: Python<'_>, patch: &Bound<'_, PyAny>) -> PyResult<Surface> {
 /// Returns
 /// -------
 /// Surface
-///     Watertight; the silhouette has the patch's positions bit for bit, at z = 0, unless `subdivided`. Where front and back have
+///     Watertight; the silhouette has the positions of the patch, or of its `belt`, bit for bit, at z = 0, unless `subdivided`. Where front and back have
 ///     equal depths they are exact mirror images. Self-intersections are possible and are counted in
 ///     its report. The same input gives the same bytes.
 ///

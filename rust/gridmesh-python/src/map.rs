@@ -120,6 +120,8 @@ fn job(
         Ok(in_sketch || in_shape)
     })?;
     cells.settle(py, &mut job.sketch)?;
+    // All become bodies.
+    job.sketch.open_corners = false;
     let wanted = inflate
         .map_or(Ok(true), |value| Argument { name: "inflate", value, allowed: "True or False" }.bool())?;
     job.inflate = wanted.then_some(shape);

@@ -134,6 +134,7 @@ fn set_sketch(options: &mut SketchOptions, name: &str, value: &Bound<'_, PyAny>)
             );
             options.density = it.optional(density)?;
         }
+        "open_corners" => options.open_corners = argument("True or False").bool()?,
         "relax" => options.relax = argument("True or False").bool()?,
         "least" => options.least = argument("True or False").bool()?,
         _ => return Ok(false),

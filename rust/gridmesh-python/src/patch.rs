@@ -28,7 +28,8 @@ use crate::error::error;
 ///     also after rounding to float32 relative to `origin`. (0, 3) in a patch of quads.
 /// quads : (q, 4) int32
 ///     Vertex numbers, counter-clockwise; (0, 4) in a patch of triangles. None is concave or folded, also after rounding
-///     to float32 relative to `origin`. Boundary vertices have two; interior ones four, or three or five at poles.
+///     to float32 relative to `origin`. Boundary vertices have two, or one on a sharp convex corner of the drawing;
+///     interior ones four, or three or five at poles.
 /// loops : list of (k,) int32
 ///     The vertices of each contour in order: the outer one first and counter-clockwise, holes clockwise.
 /// arc : list of (k,) float64
@@ -40,6 +41,9 @@ use crate::error::error;
 /// corner : list of (k,) float64
 ///     For each loop the turning angle of the drawn corner that a vertex lies on (radians, positive
 ///     where convex), 0 for all other vertices.
+/// belt : Patch
+///     What bodies are made of: the patch itself, unless corners of it have a single quad. Then a patch with two quads at every
+///     boundary vertex, with vertices and numbers of its own: those of the front of a body. It has the same report.
 /// edge_length : float
 ///     Edge length of the lattice, in the units of the outline.
 /// angle : float
@@ -61,7 +65,10 @@ pub struct Patch {
 
 impl Patch {
     pub fn new(inner: CorePatch, report: Py<PyDict>, kept: Kept) -> Self {
-        let inner = Arc::new(inner);
+        Self::shared(Arc::new(inner), report, kept)
+    }
+
+    fn shared(inner: Arc<CorePatch>, report: Py<PyDict>, kept: Kept) -> Self {
         let (vertices, triangles, quads) = (PyOnceLock::new(), PyOnceLock::new(), PyOnceLock::new());
         Self { inner, kept, report, vertices, triangles, quads }
     }
@@ -105,6 +112,17 @@ impl Patch {
     #[getter]
     fn corner(&self, py: Python<'_>) -> PyResult<Py<PyList>> {
         arrays::list(py, &self.inner.loops, |contour| Ok(arrays::row(py, contour.corner.clone())))
+    }
+
+    #[getter]
+    fn belt(slf: Py<Self>, py: Python<'_>) -> PyResult<Py<Self>> {
+        let this = slf.get();
+        match &this.inner.belt {
+            Some(belt) => {
+                Py::new(py, Self::shared(belt.clone(), this.report.clone_ref(py), this.kept.clone()))
+            }
+            None => Ok(slf),
+        }
     }
 
     #[getter]
@@ -157,6 +175,7 @@ impl Patch {
             (this.inner.lattice.origin.to_array(), this.angle(), this.edge_length()),
             this.report(py),
             this.quads(py)?,
+            this.inner.belt.is_some().then(|| Self::belt(slf.clone().unbind(), py)).transpose()?,
         );
         Ok((py.import("gridmesh._native")?.getattr("_patch")?, fields.into_pyobject(py)?.into_any()))
     }
@@ -171,6 +190,7 @@ type Contours<'py> = (
 
 /// Makes a patch from what `Patch.__reduce__` returned.
 #[pyfunction]
+#[pyo3(signature = (vertices, triangles, contours, inlets, lattice, report, quads, belt = None))]
 #[expect(clippy::too_many_arguments, reason = "the fields of the class")]
 pub fn _patch(
     py: Python<'_>,
@@ -181,6 +201,7 @@ pub fn _patch(
     lattice: ([f64; 2], f64, f64),
     report: Py<PyDict>,
     quads: PyReadonlyArray2<'_, i32>,
+    belt: Option<Py<Patch>>,
 ) -> PyResult<Patch> {
     let broken = || error(py, "invalid_shape", "the pickled patch is damaged");
     let vertices: Vec<DVec2> = vertices
@@ -222,6 +243,7 @@ pub fn _patch(
     let ([x, y], angle, edge_length) = lattice;
     let lattice = Lattice { origin: DVec2::new(x, y), angle, edge_length };
     let inlets = inlets.into_iter().map(|inlet| inlet.into_iter().map(DVec2::from_array).collect()).collect();
-    let inner = CorePatch { vertices, triangles: corners, quads: fours, loops, inlets, lattice };
+    let belt = belt.map(|belt| belt.get().inner.clone());
+    let inner = CorePatch { vertices, triangles: corners, quads: fours, loops, inlets, lattice, belt };
     Ok(Patch::new(inner, report, Kept::straight(lattice)))
 }

@@ -32,10 +32,11 @@ use crate::{options, reports};
 ///     where those cannot follow the outline, the least number that can.
 /// cells : {"triangles", "quads"}, optional
 ///     What the mesh is made of; None: triangles, unless `quads` is given. Quads keep a row along the whole
-///     boundary, all of whose boundary vertices have two; interior vertices have four, but for one pole of three or
-///     five for each turn of the lattice. Not with boundary="grown".
+///     boundary, whose vertices have two; interior vertices have four, but for one pole of three or
+///     five for each turn of the lattice. A vertex on a sharp convex corner of the outline has one quad, in the plane; bodies
+///     have a patch of their own, with two (`Patch.belt`). Not with boundary="grown".
 /// quads : int or "auto", optional
-///     Number of quads of the flat patch, in place of `triangles`; 1000 if none is given with cells="quads".
+///     Number of quads of the flat patch, but for one more at each of its sharp corners, in place of `triangles`; 1000 if none is given with cells="quads".
 /// max_triangles : int
 ///     The largest number, of either, that "auto" chooses.
 /// boundary : {"optimal", "grown"}
@@ -86,6 +87,9 @@ use crate::{options, reports};
 /// relax : bool
 ///     False leaves the interior vertices where the lattice has them; triangles may then be inverted,
 ///     and such a patch is refused (kind "inverted").
+/// open_corners : bool
+///     True: sharp convex corners of quads get a single quad. False: two, as in `Patch.belt`, in a little less time; for patches
+///     of which only bodies are made. Without effect on triangles.
 /// least : bool
 ///     True: the refusal of a drawing too thin for its mesh (kind "too_coarse") names the least number of triangles
 ///     that works, in steps of a tenth; the search may take some seconds. False: it is refused at once.
@@ -100,7 +104,7 @@ use crate::{options, reports};
 ///     is that of the outline minus its holes. The same input gives the same bytes, for any number of
 ///     threads. Of quads none is concave or folded (also in float32), and interior edges may join two vertices of a
 ///     row beside the boundary, but not of the boundary. `report` has "triangles", "quads", "poles" (vertices of
-///     three or five quads after stitching) and "minimum_poles" (the least that any such body has), both 0 for triangles, "irregular" (irregular vertices after stitching),
+///     three or five quads of its bodies) and "minimum_poles" (the least that any such body has), both 0 for triangles, "irregular" (irregular vertices after stitching),
 ///     "minimum_irregular" (the least that any such body has), "turns", "turns_before" (a grown
 ///     boundary's, before it is straightened), "turns_bound", "cost", "cost_bound" (None where none
 ///     was computed), "optimal" (all three about the lattice that was taken, bent or straight), "bend" (how far it is bent, 0 if it is straight), "scale_range" (largest over smallest edge length of the bent lattice), "max_distance_used", "max_deviation" (of the boundary's edges from the outline, in edge lengths), "min_angle"
@@ -133,7 +137,7 @@ use crate::{options, reports};
 #[pyfunction]
 #[pyo3(
     signature = (outline, holes = None, *, keep = None, progress = None, **options),
-    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, cells=None, quads=None, max_triangles=20000, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, bend=None, density=None, keep=None, relax=True, least=True, progress=None)"
+    text_signature = "(outline, holes=(), *, edge_length=None, triangles=None, cells=None, quads=None, max_triangles=20000, boundary='optimal', max_distance=1.5, closeness=0.3, angle=None, origin=None, corner_angle=0.6981317007977318, mirror=None, self_crossing='error', proof_nodes=0, bend=None, density=None, keep=None, relax=True, open_corners=True, least=True, progress=None)"
 )]
 pub fn mesh_sketch(
     py: Python<'_>,

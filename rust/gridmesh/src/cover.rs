@@ -93,11 +93,40 @@ pub fn cover_sketch(
     let fine: Vec<Vec<DVec2>> =
         contours.iter().map(|contour| dense(contour, edge_length / POINTS_OF_EDGE)).collect();
     let rounds = if rim == Rim::Across { 0 } else { ROUNDS };
-    let Followed { sketch: mut best, followers, mut least } =
-        widened(first, &fine, slack, options, rounds, &part)?;
-    let patch = &mut best.patch;
+    let Followed { sketch: mut best, meshed, least } = widened(first, &fine, slack, options, rounds, &part)?;
+    let drawn = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
+    let mut measures = Vec::new();
+    // The patch first, then the one for bodies.
+    best.patch.both(|patch| {
+        let followers = followers_of(patch, &meshed);
+        let least = finished(patch, &fine, &followers, (rim, slack, least), progress)?;
+        let between = across::between(patch, &fine, &followers) / drawn;
+        measures.push((least, between));
+        for (contour, own) in
+            patch.loops.iter_mut().zip(std::iter::once(outline).chain(holes.iter().map(Vec::as_slice)))
+        {
+            let vertices = &patch.vertices[contour.start as usize..];
+            contour.source = nearest_sources(own, &vertices[..contour.source.len()]);
+        }
+        Ok(())
+    })?;
+    let (outside, between) = measures[0];
+    best.report.min_angle = min_angle(&best.patch);
+    progress.report(1.0)?;
+    Ok(Covering { sketch: best, outside, between })
+}
+
+/// Moves single vertices of a patch beyond which the drawing reaches by `least`; returns how far it reaches then.
+fn finished(
+    patch: &mut Patch,
+    fine: &[Vec<DVec2>],
+    followers: &[Followers],
+    (rim, slack, mut least): (Rim, f64, f64),
+    progress: Progress<'_>,
+) -> Result<f64> {
+    let enough = ENOUGH * patch.lattice.edge_length;
     // Boundary vertices may move where no more is cut off by that than could stay outside anyway.
-    let most = least.max(ENOUGH * edge_length);
+    let most = least.max(enough);
     let may = |patch: &Patch, vertex: usize| {
         let k = patch.loops.iter().rposition(|contour| contour.start as usize <= vertex).unwrap_or(0);
         let edges = loop_of(patch, k);
@@ -105,41 +134,29 @@ pub fn cover_sketch(
         near.all(|at| followers[k].beyond(edges, at, fine[k][at]) - slack <= most)
     };
     short::lengthened(patch, may, progress.part(1.0, 1.0))?;
-    least = largest(&needs(&fine, patch, &followers, slack));
-    if least > ENOUGH * edge_length {
-        least = tips::moved(patch, &fine, &followers, slack);
+    least = largest(&needs(fine, patch, followers, slack));
+    if least > enough {
+        least = tips::moved(patch, fine, followers, slack);
     }
-    tight::pulled(patch, &fine, &followers, slack, progress.part(1.0, 1.0))?;
+    tight::pulled(patch, fine, followers, slack, progress.part(1.0, 1.0))?;
     if rim == Rim::Across {
-        across::settled(patch, &fine, &followers, progress.part(1.0, 1.0))?;
-        least = largest(&needs(&fine, patch, &followers, slack));
+        across::settled(patch, fine, followers, progress.part(1.0, 1.0))?;
+        least = largest(&needs(fine, patch, followers, slack));
     }
-    let drawn = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
-    let between = across::between(patch, &fine, &followers) / drawn;
-    best.report.min_angle = min_angle(patch);
-    for (contour, own) in
-        best.patch.loops.iter_mut().zip(std::iter::once(outline).chain(holes.iter().map(Vec::as_slice)))
-    {
-        let vertices = &best.patch.vertices[contour.start as usize..];
-        contour.source = nearest_sources(own, &vertices[..contour.source.len()]);
-    }
-    progress.report(1.0)?;
-    Ok(Covering { sketch: best, outside: least, between })
+    Ok(least)
 }
 
-/// A patch with what follows the points of each contour.
+/// A patch with the contours that it was made of, which have the points of those of the drawing, moved.
 struct Followed {
     sketch: Sketch,
-    followers: Vec<Followers>,
+    meshed: Vec<Vec<DVec2>>,
     /// How far the drawing reaches beyond it.
     least: f64,
 }
 
-impl Followed {
-    /// For a patch made of contours `meshed` that have the points of those of the drawing, moved.
-    fn followers<'m>(patch: &Patch, meshed: impl Iterator<Item = &'m Vec<DVec2>>) -> Vec<Followers> {
-        meshed.enumerate().map(|(k, contour)| Followers::new(patch, k, contour)).collect()
-    }
+/// What follows the points of each contour that a patch was made of.
+fn followers_of(patch: &Patch, meshed: &[Vec<DVec2>]) -> Vec<Followers> {
+    meshed.iter().enumerate().map(|(k, contour)| Followers::new(patch, k, contour)).collect()
 }
 
 /// The best of a few patches of wider and wider outlines.
@@ -165,9 +182,9 @@ fn widened<'p>(
         ..options.clone()
     };
     let mut moved: Vec<Vec<f64>> = fine.iter().map(|contour| vec![0.0; contour.len()]).collect();
-    let followers = Followed::followers(&first.patch, fine.iter());
+    let followers = followers_of(&first.patch, fine);
     let mut needs = needs(fine, &first.patch, &followers, slack);
-    let mut best = Followed { sketch: first, followers, least: largest(&needs) };
+    let mut best = Followed { sketch: first, meshed: fine.to_vec(), least: largest(&needs) };
     for round in 1..=rounds {
         if largest(&needs) <= ENOUGH * reach {
             break;
@@ -196,11 +213,11 @@ fn widened<'p>(
             // Wider, it meets itself or is too thin elsewhere: the best so far serves.
             Err(_) => break,
         };
-        let followers = Followed::followers(&sketch.patch, std::iter::once(&outer).chain(&wider));
-        needs = self::needs(fine, &sketch.patch, &followers, slack);
+        let meshed: Vec<Vec<DVec2>> = std::iter::once(outer).chain(wider).collect();
+        needs = self::needs(fine, &sketch.patch, &followers_of(&sketch.patch, &meshed), slack);
         let most = largest(&needs);
         if most < best.least {
-            best = Followed { sketch, followers, least: most };
+            best = Followed { sketch, meshed, least: most };
         }
     }
     Ok(best)

@@ -90,7 +90,7 @@ pub struct SketchOptions {
     /// Edge length of the lattice in the units of the drawing; exclusive with `triangles`.
     pub edge_length: Option<f64>,
     /// Triangles, or quads, of the flat patch, 6 or more; 2000 triangles or 1000 quads if neither is given. Reached
-    /// within 10 %, below 60 within 6: the report says how many there are.
+    /// within 10 %, below 60 within 6, besides one more quad at each sharp corner: the report says how many there are.
     pub triangles: Option<usize>,
     /// What the patch is made of; `triangles` and `max_triangles` count these cells.
     pub cells: CellShape,
@@ -129,6 +129,9 @@ pub struct SketchOptions {
     /// Whether to relax the interior; without it the patch shows the lattice as it was cut, and is
     /// refused ([`Error::Inverted`]) where that inverts triangles.
     pub relax: bool,
+    /// Whether sharp convex corners of quads get a single quad ([`Patch::belted`](crate::patch::Patch::belted) has two at
+    /// each); without it the patch is only fit for bodies, in less time. Without effect unless `relax` is on.
+    pub open_corners: bool,
     /// Whether a drawing too thin for its mesh is told the least number of triangles that works. The
     /// search may take some seconds; without it such a drawing is refused at once.
     pub least: bool,
@@ -154,6 +157,7 @@ impl Default for SketchOptions {
             bend: 1.0,
             density: None,
             relax: true,
+            open_corners: true,
             least: true,
         }
     }

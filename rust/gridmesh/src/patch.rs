@@ -3,17 +3,22 @@
 pub(crate) mod angles;
 pub(crate) mod deviation;
 pub(crate) mod expel;
+mod judge;
 pub(crate) mod mirror;
+pub(crate) mod open;
 pub(crate) mod place;
+pub(crate) mod placed;
 pub(crate) mod pockets;
 pub(crate) mod sizes;
 mod tips;
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::DVec2;
 
+use crate::error::Result;
 use crate::options::CellShape;
 use crate::path::placement::Lattice;
 
@@ -55,11 +60,12 @@ impl Loop {
 }
 
 /// A planar mesh: of triangles whose interior vertices all have valence six, or of quads whose boundary
-/// vertices all have two of them and whose interior ones have valence four but for one of three or five for each
-/// turn.
+/// vertices have two of them, or one on a sharp convex corner of the drawing, and whose interior ones have valence four but
+/// for one of three or five for each turn, or beside such a corner.
 ///
 /// Boundary vertices are numbered first, loop by loop; they lie on the drawn contours. No interior
-/// edge joins two boundary vertices, so that two copies glued along the boundary are a manifold.
+/// edge joins two boundary vertices, so that two copies glued along the boundary are a manifold; of quads those of [`Patch::belted`] are
+/// glued.
 /// No triangle is inverted and no quad is concave, also after rounding to `f32` relative to `lattice.origin`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patch {
@@ -77,6 +83,8 @@ pub struct Patch {
     pub inlets: Vec<Vec<DVec2>>,
     /// The lattice that the patch was cut from.
     pub lattice: Lattice,
+    /// The patch that bodies are made of, where sharp corners of this one have a single quad; see [`Patch::belted`].
+    pub belt: Option<Arc<Patch>>,
 }
 
 impl Patch {
@@ -88,6 +96,18 @@ impl Patch {
     /// What its cells are.
     pub fn cells(&self) -> CellShape {
         if self.quads.is_empty() { CellShape::Triangle } else { CellShape::Quad }
+    }
+
+    /// The patch that bodies are made of: itself, unless sharp corners of it have a single quad, whose vertex would have two
+    /// edges in a body. There it has two quads at every boundary vertex, and vertices of its own.
+    pub fn belted(&self) -> &Patch {
+        self.belt.as_deref().unwrap_or(self)
+    }
+
+    /// Does the same to the patch and to the one that bodies are made of.
+    pub(crate) fn both(&mut self, mut change: impl FnMut(&mut Patch) -> Result<()>) -> Result<()> {
+        change(self)?;
+        self.belt.as_mut().map_or(Ok(()), |belt| change(Arc::make_mut(belt)))
     }
 
     /// The triangles, or the quads each cut in two along its shorter diagonal.
@@ -124,7 +144,7 @@ impl Patch {
             return Cow::Borrowed(self);
         }
         let triangles = self.triangulated().into_owned();
-        Cow::Owned(Patch { triangles, quads: Vec::new(), ..self.clone() })
+        Cow::Owned(Patch { triangles, quads: Vec::new(), belt: None, ..self.clone() })
     }
 
     /// Signed area of the meshed region.

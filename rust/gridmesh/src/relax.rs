@@ -46,6 +46,8 @@ pub struct RelaxOptions {
     pub rings: usize,
     /// Whether boundary vertices slide along their contours.
     pub slide: bool,
+    /// Whether they are drawn towards the middle of their neighbours before anything else.
+    pub even_out: bool,
     /// Sliding by d edges costs this times d squared; the energy of a triangle is one or more.
     pub stiffness: f64,
     /// Vertices that move by less than this (edges) in a sweep are done.
@@ -57,7 +59,7 @@ pub struct RelaxOptions {
 
 impl Default for RelaxOptions {
     fn default() -> Self {
-        RelaxOptions { rings: 3, slide: true, stiffness: 0.25, tolerance: 0.03, blunt: None }
+        RelaxOptions { rings: 3, slide: true, even_out: true, stiffness: 0.25, tolerance: 0.03, blunt: None }
     }
 }
 
@@ -142,7 +144,7 @@ where
     ) -> Result<Self> {
         check_rims(lattice_positions.len(), contours, rims)?;
         let mut slide = Slide::new(contours, rims);
-        if options.slide {
+        if options.slide && options.even_out {
             slide.even_out();
         }
         let band = movable(cells, lattice_positions, slide.len(), options.rings)?;
@@ -183,10 +185,18 @@ where
             }
         }
         self.motion.place_boundary(3);
+        let around: Vec<u32> = vertices.iter().map(|&(v, _)| v as u32).collect();
+        self.settle_around(&around, progress)
+    }
+
+    /// Places what lies around some vertices of the boundary, which are where they are to begin; the rest stays.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn settle_around(&mut self, around: &[u32], progress: Progress<'_>) -> Result<()> {
         if self.ladder(progress.part(0.0, 0.4))? {
-            let around: Vec<u32> = vertices.iter().map(|&(v, _)| v as u32).collect();
-            self.done.sweeps += self.motion.mend(&around, self.options.tolerance, progress.part(0.4, 0.8))?;
-            self.finish(&around, progress.part(0.8, 1.0))?;
+            self.done.sweeps += self.motion.mend(around, self.options.tolerance, progress.part(0.4, 0.8))?;
+            self.finish(around, progress.part(0.8, 1.0))?;
         }
         self.write();
         Ok(())

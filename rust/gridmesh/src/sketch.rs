@@ -147,8 +147,10 @@ fn mesh(
     let mut sketch = attempted(&mut job, asked, expected, progress)?;
     if let Some((_, slivers)) = union {
         // The sources so far lead to the outer outline.
-        let Patch { vertices, loops, .. } = &mut sketch.patch;
-        loops[0].source = nearest_sources(outline, &vertices[..loops[0].source.len()]);
+        sketch.patch.both(|Patch { vertices, loops, .. }| {
+            loops[0].source = nearest_sources(outline, &vertices[..loops[0].source.len()]);
+            Ok(())
+        })?;
         sketch.report.repaired += slivers;
     }
     progress.report(1.0)?;

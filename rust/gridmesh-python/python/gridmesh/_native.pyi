@@ -69,6 +69,7 @@ class _Options(TypedDict, total=False):
     bend: float | None
     density: Literal["width"] | float | npt.ArrayLike | Sequence[npt.ArrayLike] | None
     relax: bool
+    open_corners: bool
     least: bool
     depth: float
     profile: Literal["round", "even", "flat", "peak"]
@@ -96,6 +97,8 @@ class Patch:
     def source(self) -> list[npt.NDArray[np.float64]]: ...
     @property
     def corner(self) -> list[npt.NDArray[np.float64]]: ...
+    @property
+    def belt(self) -> Patch: ...
     @property
     def edge_length(self) -> float: ...
     @property
@@ -171,6 +174,7 @@ def mesh_sketch(
     density: Literal["width"] | float | npt.ArrayLike | Sequence[npt.ArrayLike] | None = None,
     keep: Patch | None = None,
     relax: bool = True,
+    open_corners: bool = True,
     least: bool = True,
     progress: _Progress | None = None,
 ) -> Patch: ...
@@ -410,7 +414,14 @@ def map_sketches(
     **options: Unpack[_Options],
 ) -> list[Surface | GridMeshError]: ...
 def _patch(
-    vertices: Any, triangles: Any, contours: Any, inlets: Any, lattice: Any, report: Any, quads: Any
+    vertices: Any,
+    triangles: Any,
+    contours: Any,
+    inlets: Any,
+    lattice: Any,
+    report: Any,
+    quads: Any,
+    belt: Any = None,
 ) -> Patch: ...
 def _surface(
     vertices: Any, triangles: Any, silhouette: Any, uv: Any, report: Any, quads: Any, corner: Any

@@ -36,7 +36,7 @@ use section::Section;
 use spread::spread;
 use twins::Twins;
 
-/// Inflates a patch to a closed body: two copies of it glued along its contours, the front at
+/// Inflates a patch to a closed body: two copies of it ([`Patch::belted`]) glued along its contours, the front at
 /// z > 0, the back at z < 0.
 ///
 /// The height of the front is the square root of a smooth field over the drawing, zero on the
@@ -72,6 +72,7 @@ use twins::Twins;
 pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) -> Result<Surface> {
     let mut clock = Clock::new();
     options.check()?;
+    let patch = patch.belted();
     let rising = Rising::new(progress);
     let callback = |fraction: f64| rising.report(fraction);
     let progress = Progress::new(&callback);

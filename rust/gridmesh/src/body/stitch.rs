@@ -13,10 +13,12 @@ use crate::patch::Patch;
 ///
 /// The front is the patch, facing +z; the back is its mirror image, facing -z. A patch has no
 /// chords, so the result is a closed manifold: a sphere, or with `g` holes a body of genus `g`. Its
-/// boundary vertices of patch valence `v` get valence `2 v - 2`; of a patch of quads four. Linear.
+/// boundary vertices of patch valence `v` get valence `2 v - 2`; of a patch of quads, which is its
+/// [belted](Patch::belted) one, four. Linear.
 ///
 /// Source: Nealen et al. 2009, section II.
 pub fn stitch(patch: &Patch) -> Surface {
+    let patch = patch.belted();
     let back = patch.vertices[patch.n_boundary()..].iter().map(|p| p.extend(0.0)).collect();
     build(patch, Some(back))
 }

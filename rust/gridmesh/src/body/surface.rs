@@ -11,7 +11,7 @@ use crate::patch::{Loop, Patch};
 /// The drawing lies in the plane z = 0; the front is the side of positive z.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// Positions in the units of the drawing: the patch's vertices in its numbering, which are the
+    /// Positions in the units of the drawing: the patch's vertices (a body's: those of [`Patch::belted`]) in its numbering, which are the
     /// front, then the back copies of the interior vertices in the same order.
     pub vertices: Vec<DVec3>,
     /// Vertex numbers, counter-clockwise seen from outside: the patch's triangles in its order,

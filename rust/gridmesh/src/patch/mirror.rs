@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec2;
 
-pub(crate) use self::placing::symmetrised;
+pub(crate) use self::placing::{Partners, symmetrised};
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::symmetry::Symmetry;
 use crate::error::{Error, Result};

@@ -34,7 +34,7 @@ mod tests {
 
     fn patch(vertices: Vec<DVec2>, triangles: Vec<[u32; 3]>, quads: Vec<[u32; 4]>) -> Patch {
         let lattice = Lattice { origin: DVec2::ZERO, angle: 0.0, edge_length: 1.0 };
-        Patch { vertices, triangles, quads, loops: vec![], inlets: vec![], lattice }
+        Patch { vertices, triangles, quads, loops: vec![], inlets: vec![], lattice, belt: None }
     }
 
     /// A strip of triangles with edges of one, but for the two at the last vertex, which are `far` longer or so.

@@ -1,5 +1,7 @@
 //! Sharp tips of a drawing, which a mesh may blunt, and its wide corners, which it should keep.
 
+use glam::DVec2;
+
 use crate::drawing::curve::ClosedCurve;
 use crate::patch::deviation::{Beside, Stray};
 use crate::path::mapping::Corner;
@@ -62,19 +64,20 @@ pub(crate) fn stray_off_tips(strays: &[Stray], lines: &[Contour<'_>], h: f64, le
     off.map(|stray| stray.distance).fold(least, f64::max)
 }
 
-/// The number of corners of the drawing wider than tips that the boundary cuts off.
+/// The corners of the drawing wider than tips that the boundary cuts off.
 pub(crate) fn worn(
     contours: &[ClosedCurve],
     beside: &[Vec<Beside>],
     corners: &[Vec<Corner>],
     h: f64,
-) -> usize {
+) -> Vec<DVec2> {
     let is_wide = |turning: f64| turning != 0.0 && turning < std::f64::consts::PI - 2.0 * BLUNT;
-    let of = |((contour, points), corners): ((&ClosedCurve, &Vec<Beside>), &Vec<Corner>)| {
+    let mut worn = Vec::new();
+    for ((contour, points), corners) in contours.iter().zip(beside).zip(corners) {
         let far = points.iter().filter(|point| point.squared > WORN * WORN * h * h);
-        far.filter(|point| is_wide(turning_at(contour, corners, point.arc, h))).count()
-    };
-    contours.iter().zip(beside).zip(corners).map(of).sum()
+        worn.extend(far.filter(|p| is_wide(turning_at(contour, corners, p.arc, h))).map(|p| p.point));
+    }
+    worn
 }
 
 /// The angle of the corner at arc length `s`, however its vertex came there; zero if there is none.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::bend::Bent;
 use crate::options::CellShape;
 use crate::patch::angles::{min_angle, min_angle_off_corners};
-use crate::patch::place::Placed;
+use crate::patch::placed::Placed;
 use crate::patch::sizes::longest_over_median;
 use crate::path::outline::Outline;
 use crate::path::placement::Lattice;
@@ -122,7 +122,7 @@ impl Found {
     /// Cost, faults, starved triangles, long edges and lost corners in turns.
     pub(crate) fn score(&self) -> f64 {
         let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
-        let corners = price_of_corners(self.placed.worn_corners);
+        let corners = price_of_corners(self.placed.worn.len());
         let shape = TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved();
         self.outline.cost + price + shape + self.overlong() + corners
     }
@@ -137,7 +137,7 @@ impl Found {
         self.faults <= SLIGHT
             && self.starved() == 0.0
             && self.overlong() == 0.0
-            && self.placed.worn_corners == 0
+            && self.placed.worn.is_empty()
     }
 
     /// True if a part of the drawing is lost in the mesh.

@@ -1,5 +1,6 @@
 //! What is wanted of a lattice, and how hard it is tried.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
@@ -14,9 +15,12 @@ use crate::error::{Error, Result};
 use crate::lattice::axial::Axial;
 use crate::lattice::grid::{Square, Triangular};
 use crate::options::{CellShape, SketchOptions, SketchReport};
+use crate::patch::Patch;
 use crate::patch::angles::min_angle;
-use crate::patch::place::{Placed, place};
-use crate::patch::{Patch, mirror};
+use crate::patch::mirror::{self, Partners};
+use crate::patch::open::opened;
+use crate::patch::place::place;
+use crate::patch::placed::Placed;
 use crate::path::outline::{Obstacle, Outline};
 use crate::path::placement::{Laid, Lattice};
 use crate::progress::{Meter, Progress};
@@ -103,11 +107,11 @@ impl Job<'_> {
         progress: Progress<'_>,
     ) -> Result<Result<Sketch, Obstacle>> {
         if let Some(found) = self.on_kept(progress)? {
-            return Ok(Ok(self.report(found)));
+            return Ok(Ok(self.report(found, progress)?));
         }
         let mut bent = self.best_bent(asked, effort, progress)?;
         if let Some(found) = bent.take_if(|found| self.is_settled(found)) {
-            return Ok(Ok(self.report(found)));
+            return Ok(Ok(self.report(found, progress)?));
         }
         let mut best: Option<Found> = None;
         let started = Instant::now();
@@ -121,7 +125,7 @@ impl Job<'_> {
                 && let Some(found) = bent.take()
             {
                 self.lap("boundary", started);
-                return Ok(Ok(self.report(found)));
+                return Ok(Ok(self.report(found, progress)?));
             }
         }
         let Boundaries { mut outlines, is_passable, mut obstacle } =
@@ -187,7 +191,7 @@ impl Job<'_> {
                     let at = best.placed.patch.inlets.first().map_or(self.centre, |inlet| inlet[0]);
                     Err(Obstacle::new(reason, at))
                 }
-                None => Ok(self.report(best)),
+                None => Ok(self.report(best, progress)?),
             }),
             (None, Some(obstacle)) => Ok(Err(obstacle)),
             (None, None) => Err(Error::Internal { reason: "no lattice was tried" }),
@@ -262,16 +266,50 @@ impl Job<'_> {
         Ok(match &self.symmetry {
             None => placed.map(|placed| (placed, None)),
             Some(symmetry) => placed
-                .and_then(|p| mirror::symmetrised(&self.contours, symmetry, outline, p, self.options))
+                .and_then(|p| {
+                    let lattice = &p.patch.lattice;
+                    let partners = Partners::of(&self.contours, symmetry, outline, lattice, cells)?;
+                    mirror::symmetrised(&self.contours, symmetry, &partners, p, self.options)
+                })
                 .map(|(placed, error)| (placed, Some(error))),
         })
     }
 
+    /// A patch of quads with its sharp corners opened, if it has any; and by how much it is not symmetric.
+    fn opened(&self, found: &Found, progress: Progress<'_>) -> Result<Option<(Placed, Option<f64>)>> {
+        let Found { placed, outline, .. } = found;
+        let SketchOptions { cells, relax, open_corners, .. } = *self.options;
+        if cells != CellShape::Quad || !relax || !open_corners {
+            return Ok(None);
+        }
+        let Some(symmetry) = &self.symmetry else {
+            return opened(&self.contours, placed, None, self.options, progress);
+        };
+        let partners = Partners::of(&self.contours, symmetry, outline, &placed.patch.lattice, cells);
+        match &partners {
+            Ok(partners) => {
+                opened(&self.contours, placed, Some((symmetry, partners)), self.options, progress)
+            }
+            Err(_) => Ok(None),
+        }
+    }
+
     /// The patch with its numbers.
-    pub(crate) fn report(&mut self, found: Found) -> Sketch {
+    pub(crate) fn report(&mut self, mut found: Found, progress: Progress<'_>) -> Result<Sketch> {
+        let started = Instant::now();
+        let opened = self.opened(&found, progress)?;
+        self.lap("corners", started);
+        let belt = opened.map(|(placed, mirror_error)| {
+            found.mirror_error = mirror_error;
+            std::mem::replace(&mut found.placed, placed).patch
+        });
         let Found { bent, outline, placed, mirror_error, .. } = found;
         let started = Instant::now();
         let mut patch = placed.patch;
+        patch.belt = belt.map(|belt| {
+            let lattice = belt.lattice.of_least_angle(self.options.cells);
+            Arc::new(Patch { lattice, ..belt })
+        });
         let cells = self.options.cells;
         // Each contour turns four times at least.
         let (is_quads, least_poles) = (cells == CellShape::Quad, 8 * self.contours.len());
@@ -307,7 +345,7 @@ impl Job<'_> {
         self.lap("report", started);
         report.seconds = self.seconds.clone();
         let kept = Kept::new(patch.lattice, bent);
-        Sketch { patch, report, kept }
+        Ok(Sketch { patch, report, kept })
     }
 }
 

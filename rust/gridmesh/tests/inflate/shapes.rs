@@ -83,6 +83,7 @@ pub fn hex_patch(from: i32, radius: i32, place: impl Fn(f64, f64) -> DVec2) -> P
         loops,
         inlets: vec![],
         lattice: Lattice { origin: DVec2::ZERO, angle: 0.0, edge_length: 1.0 },
+        belt: None,
     };
     patch.lattice.edge_length = Lattice::edge_length_for(patch.area(), patch.triangles.len() as f64);
     patch

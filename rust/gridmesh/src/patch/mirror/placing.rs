@@ -14,11 +14,14 @@ use crate::lattice::squares::assemble_squares;
 use crate::options::{CellShape, SketchOptions};
 use crate::patch::angles::min_angle;
 use crate::patch::deviation::{beside, crossings, deviation};
+use crate::patch::judge::{INLET, STRAY};
 use crate::patch::mirror::sides::{arc_at, contours_of, reflection};
-use crate::patch::place::{INLET, Placed, STRAY, nearest_drawn};
+use crate::patch::place::nearest_drawn;
+use crate::patch::placed::Placed;
 use crate::patch::pockets::{Fans, pockets};
 use crate::patch::{Loop, Patch};
 use crate::path::outline::{Obstacle, Outline};
+use crate::path::placement::Lattice;
 use crate::relax::first_inverted;
 
 /// A corner of the drawing this near to where a vertex's image belongs gets it, in edges.
@@ -33,22 +36,14 @@ const CORNER_REACH: f64 = 0.5;
 pub(crate) fn symmetrised(
     contours: &[ClosedCurve],
     symmetry: &Symmetry,
-    outline: &Outline,
+    partners: &Partners,
     placed: Placed,
     options: &SketchOptions,
 ) -> Result<(Placed, f64), Obstacle> {
     let lattice = placed.patch.lattice;
-    let axis = reflection(symmetry, &lattice);
     let at = contours[0].points()[0];
-    let partners = match options.cells {
-        CellShape::Triangle => Partners::new::<Triangular>(&assemble(&outline.paths).points, 0, axis),
-        CellShape::Quad => {
-            let belted = assemble_squares(&outline.paths);
-            Partners::new::<Square>(&belted.points, belted.n_rim, axis)
-        }
-    };
-    let Partners { partner, side } = partners.ok_or(Obstacle::new("the boundary is not symmetric", at))?;
-    let both = Both { contours, symmetry, side: &side, partner, placed: &placed };
+    let Partners { partner, side } = partners;
+    let both = Both { contours, symmetry, side, partner, placed: &placed };
     let mut best: Option<(usize, f64, Placed)> = None;
     for side in [Side::Mean, Side::Left, Side::Right] {
         let Some(found) = both.placed_by(side, options) else { continue };
@@ -84,14 +79,34 @@ fn is_exact(symmetry: &Symmetry, edge_length: f64) -> bool {
     symmetry.difference <= 1e-9 * edge_length
 }
 
-struct Partners {
+/// Which vertices of a patch are each other's mirror images.
+pub(crate) struct Partners {
     /// The vertex at the mirror image of each vertex.
-    partner: Vec<usize>,
-    /// On which side of the axis each lies.
-    side: Vec<i32>,
+    pub(crate) partner: Vec<usize>,
+    /// On which side of the axis each lies: above 0 on the left.
+    pub(crate) side: Vec<i32>,
 }
 
 impl Partners {
+    /// Of the patch of a symmetric outline on a lattice.
+    pub(crate) fn of(
+        contours: &[ClosedCurve],
+        symmetry: &Symmetry,
+        outline: &Outline,
+        lattice: &Lattice,
+        cells: CellShape,
+    ) -> Result<Self, Obstacle> {
+        let axis = reflection(symmetry, lattice);
+        let found = match cells {
+            CellShape::Triangle => Self::new::<Triangular>(&assemble(&outline.paths).points, 0, axis),
+            CellShape::Quad => {
+                let belted = assemble_squares(&outline.paths);
+                Self::new::<Square>(&belted.points, belted.n_rim, axis)
+            }
+        };
+        found.ok_or_else(|| Obstacle::new("the boundary is not symmetric", contours[0].points()[0]))
+    }
+
     /// Of vertices at lattice points, before which there is one in a belt for each of the first `n_rim`; none if one has no
     /// image.
     fn new<G: Grid>(points: &[Axial], n_rim: usize, axis: Reflection) -> Option<Self> {
@@ -118,7 +133,7 @@ struct Both<'a> {
     contours: &'a [ClosedCurve],
     symmetry: &'a Symmetry,
     side: &'a [i32],
-    partner: Vec<usize>,
+    partner: &'a [usize],
     placed: &'a Placed,
 }
 
@@ -159,6 +174,7 @@ impl Both<'_> {
                 loops,
                 inlets: found.inlets,
                 lattice: patch.lattice,
+                belt: None,
             },
             released_corners: self.placed.corners.saturating_sub(kept),
             max_deviation: farthest / h,

@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::symmetry::{Pairing, Symmetry};
 use crate::lattice::reflection::Reflection;
-use crate::patch::place::CORNER_WINDOW;
+use crate::patch::judge::CORNER_WINDOW;
 use crate::path::placement::Lattice;
 use crate::path::target::{SPACING, Target};
 use crate::path::trace::Part;
