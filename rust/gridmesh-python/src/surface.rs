@@ -22,7 +22,7 @@ use crate::{arrays, reports};
 ///     projection to the drawing all are convex.
 /// silhouette : list of (k,) int32
 ///     The vertices of the drawn contours, loop by loop, in the order of the patch's loops. Their x
-///     and y are those of the patch, bit for bit; their z is 0.
+///     and y are those of the patch, of a body of quads those of its `belt`, bit for bit; their z is 0.
 /// corner : list of (k,) float64
 ///     For each of them the turning angle of the drawn corner that it lies on (radians, positive where convex), 0 elsewhere.
 /// uv : (3 t, 2) or (4 q, 2) float64

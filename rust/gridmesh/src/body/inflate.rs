@@ -45,8 +45,8 @@ use twins::Twins;
 /// vertices slide along it until its triangles are even and nearly isotropic.
 ///
 /// Guaranteed:
-/// * the silhouette's x and y are the patch's bit for bit (unless [`InflateOptions::subdivided`] moves it), its z is
-///   zero;
+/// * the silhouette's x and y are those of [`Patch::belted`] bit for bit (unless [`InflateOptions::subdivided`] moves it), its
+///   z is zero;
 /// * front and back have the same x and y, and if their depths agree are exact mirror images;
 /// * the body of a patch that is its own mirror image is one too, up to rounding;
 /// * all vertices lie inside the drawing; every triangle is positive in projection, so that the

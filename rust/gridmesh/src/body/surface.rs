@@ -19,8 +19,8 @@ pub struct Surface {
     pub triangles: Vec<[u32; 3]>,
     /// The same for quads; none if it is of triangles.
     pub quads: Vec<[u32; 4]>,
-    /// Vertex numbers of each contour of the patch. Their x and y are the patch's bit for bit,
-    /// their z is zero.
+    /// Vertex numbers of each contour of the patch. Their x and y are the patch's (a body's: those of [`Patch::belted`]) bit
+    /// for bit, their z is zero.
     pub silhouette: Vec<Vec<u32>>,
     /// For each of them the turning angle of the drawn corner that it lies on, as in [`Loop::corner`]; 0 elsewhere.
     pub corner: Vec<Vec<f64>>,
