@@ -1,12 +1,13 @@
 //! Patches that cover what was drawn: outlines moved outward where the edges of a mesh cut them off.
 //!
-//! [`cover_sketch`] meshes an outline a few times, each time moved outward where the mesh of before left it outside (`outside`), then
+//! [`cover_sketch`] meshes an outline a few times, each time moved outward where the mesh of before left it outside (`outside`), as far as there is room (`room`), then
 //! moves ends of short edges apart (`short`), single vertices to tips (`tips`), and others back into inlets (`tight`). Patches that are to
 //! lie [`Rim::Across`] their outline are meshed once, and their boundary vertices are moved until they do (`across`).
 
 mod across;
 mod boundary;
 mod outside;
+mod room;
 mod short;
 mod tight;
 mod tips;
@@ -93,19 +94,19 @@ pub fn cover_sketch(
     let fine: Vec<Vec<DVec2>> =
         contours.iter().map(|contour| dense(contour, edge_length / POINTS_OF_EDGE)).collect();
     let rounds = if rim == Rim::Across { 0 } else { ROUNDS };
-    let Followed { sketch: mut best, followers, mut least } =
+    let Followed { sketch: mut best, followers, needs: left } =
         widened(first, &fine, slack, options, rounds, &part)?;
     let patch = &mut best.patch;
-    // Boundary vertices may move where no more is cut off by that than could stay outside anyway.
-    let most = least.max(ENOUGH * edge_length);
+    // Boundary vertices may move where no more is cut off by that than is outside there as it is.
     let may = |patch: &Patch, vertex: usize| {
         let k = patch.loops.iter().rposition(|contour| contour.start as usize <= vertex).unwrap_or(0);
         let edges = loop_of(patch, k);
-        let mut near = followers[k].points_near(vertex - patch.loops[k].start as usize);
-        near.all(|at| followers[k].beyond(edges, at, fine[k][at]) - slack <= most)
+        let near = || followers[k].points_near(vertex - patch.loops[k].start as usize);
+        let most = near().map(|at| left[k][at]).fold(ENOUGH * edge_length, f64::max);
+        near().all(|at| followers[k].beyond(edges, at, fine[k][at]) - slack <= most)
     };
     short::lengthened(patch, may, progress.part(1.0, 1.0))?;
-    least = largest(&needs(&fine, patch, &followers, slack));
+    let mut least = largest(&needs(&fine, patch, &followers, slack));
     if least > ENOUGH * edge_length {
         least = tips::moved(patch, &fine, &followers, slack);
     }
@@ -131,8 +132,8 @@ pub fn cover_sketch(
 struct Followed {
     sketch: Sketch,
     followers: Vec<Followers>,
-    /// How far the drawing reaches beyond it.
-    least: f64,
+    /// How far the points reach beyond it, of each contour.
+    needs: Vec<Vec<f64>>,
 }
 
 impl Followed {
@@ -167,18 +168,21 @@ fn widened<'p>(
     let mut moved: Vec<Vec<f64>> = fine.iter().map(|contour| vec![0.0; contour.len()]).collect();
     let followers = Followed::followers(&first.patch, fine.iter());
     let mut needs = needs(fine, &first.patch, &followers, slack);
-    let mut best = Followed { sketch: first, followers, least: largest(&needs) };
+    let mut best = Followed { sketch: first, followers, needs: needs.clone() };
+    let outward: Vec<Vec<DVec2>> = fine.iter().map(|contour| normals(contour)).collect();
+    let mut room = None;
     for round in 1..=rounds {
         if largest(&needs) <= ENOUGH * reach {
             break;
         }
+        let room = room.get_or_insert_with(|| room::outward(fine, &outward, MOST * reach, reach));
         let mut wider = Vec::with_capacity(fine.len());
-        for ((contour, far), need) in fine.iter().zip(&mut moved).zip(&needs) {
-            for (far, more) in far.iter_mut().zip(spread(contour, need, reach)) {
-                *far = (*far + more).min(MOST * reach);
+        for (k, (contour, far)) in fine.iter().zip(&mut moved).enumerate() {
+            for ((far, more), room) in far.iter_mut().zip(spread(contour, &needs[k], reach)).zip(&room[k]) {
+                *far = (*far + more).min(*room);
             }
-            let outward = normals(contour);
-            wider.push(contour.iter().zip(&*far).zip(outward).map(|((&p, &far), n)| p + far * n).collect());
+            let points = contour.iter().zip(&*far).zip(&outward[k]);
+            wider.push(points.map(|((&p, &far), &n)| p + far * n).collect());
         }
         let outer: Vec<DVec2> = wider.remove(0);
         let made = |self_crossing: SelfCrossing| {
@@ -198,9 +202,8 @@ fn widened<'p>(
         };
         let followers = Followed::followers(&sketch.patch, std::iter::once(&outer).chain(&wider));
         needs = self::needs(fine, &sketch.patch, &followers, slack);
-        let most = largest(&needs);
-        if most < best.least {
-            best = Followed { sketch, followers, least: most };
+        if squares(&needs) < squares(&best.needs) {
+            best = Followed { sketch, followers, needs: needs.clone() };
         }
     }
     Ok(best)
@@ -213,6 +216,11 @@ fn needs(fine: &[Vec<DVec2>], patch: &Patch, followers: &[Followers], slack: f64
         fine[k].iter().enumerate().map(|(at, &point)| edges.outside(at, point, slack)).collect()
     };
     (0..fine.len()).map(of).collect()
+}
+
+/// What is outside as a whole: a tip that no outline brings in says nothing about the rest.
+fn squares(needs: &[Vec<f64>]) -> f64 {
+    needs.iter().flatten().map(|need| need * need).sum()
 }
 
 fn largest(needs: &[Vec<f64>]) -> f64 {
