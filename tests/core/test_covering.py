@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from rasters import coverage, placed, sampled
 from sketches import DRAWINGS
 
+from addon.pictures import cutouts
 from addon.pictures.cutouts import Options, cut_out
 
 NAMES = sorted(DRAWINGS)[::3]
@@ -280,3 +281,16 @@ def test_outlines_with_a_margin_have_no_tiny_steps():
     for outline, holes in gridmesh.trace_image(alpha_of("brazil", 192), margin=1.0):
         for contour in [outline, *holes]:
             assert np.linalg.norm(contour - np.roll(contour, 1, axis=0), axis=1).min() > 0.02
+
+
+def test_the_number_that_a_refused_picture_needs_works(monkeypatch):
+    """It is that for all parts, though only one of them is too thin."""
+    alpha = np.zeros((64, 160))
+    alpha[:, :64] = wound(64)
+    alpha[8:56, 90:150] = 1.0
+    pixels = np.dstack([np.zeros((*alpha.shape, 3)), alpha])
+    monkeypatch.setattr(cutouts, "finest", lambda number: (1.0,))
+    refused = cut_out(pixels, Options(threshold=0.5, triangles=500)).refused
+    assert len(refused) == 1 and refused[0].startswith("500 triangles are too few")
+    least = int(refused[0].split("; ")[1].split(" work")[0])
+    assert not cut_out(pixels, Options(threshold=0.5, triangles=least)).refused
