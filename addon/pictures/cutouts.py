@@ -11,12 +11,10 @@ import numpy as np
 
 from ..api import FACE_AREA, CancelledError, Progress, cancelling, faces_of, part_of
 from ..native import native
+from .sizes import FINER, SHORT, Lacks, area, even, finest, lacks_of, shortest
 
 PIXELS = 100_000_000
 """The most pixels of a picture, as the module has it; asked for before they are read."""
-
-FINER = (1.0, 0.7, 0.5, 0.35, 0.25)
-"""Edge lengths tried for parts that are too thin, relative to that of the others."""
 
 _SQUARE = 0.75
 """How far whole pixels may reach over the outline of what they cover, at most."""
@@ -24,29 +22,11 @@ _SQUARE = 0.75
 _AGAIN = 0.5
 """Parts whose edges are at least this long, relative to those of the others, are meshed again where their mesh lacks something."""
 
-CUT_OFF = 0.4
-"""Parts of whose outlines this many pixels stay outside, beyond the slack, are meshed finer: middles of pixels lie deeper inside."""
-
-EMPTY = 0.03
-"""Likewise parts whose mesh is larger than the outline by more than this share."""
-
-EMPTY_OF_BODY = 0.01
-"""The same for bodies, whose rims are opaque: seen from the front they overlap their pictures by 99 % where that can be held."""
-
-BETWEEN = 0.0045
-"""Likewise parts of bodies without a margin, if so much of their area lies between mesh and outline."""
-
-FEW = 0.0015
-"""But parts of bodies are not made finer for less than this share of all that the picture shows."""
-
 _MOST = 4
 """Sizes tried at most for parts that are cut off."""
 
-SHORT = 1 / 3
-"""Bodies with edges shorter than this, in mean lengths of their edges, are tried in other sizes: it shows in a texture."""
-
 _SIZES = (1.0, 0.94, 0.88)
-"""Edge lengths tried for these, relative to that wanted: little finer each, as the lattice lies elsewhere at any other size."""
+"""Edge lengths tried for bodies with short edges, relative to that wanted: little finer each, as the lattice lies elsewhere at any other size."""
 
 _TRACING = 0.3
 """Part of the time that tracing takes; the rest is meshing."""
@@ -173,34 +153,78 @@ def _nothing(dropped: int) -> str:
 
 def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progress | None) -> list[Any]:
     """Surface or GridMeshError for each part, all with edges of about the same length."""
-    total = sum(_area(outline) + sum(map(_area, holes)) for outline, holes in parts)
+    total = sum(_drawn(part) for part in parts)
     cells = "triangles" if options.quads is None else "quads"
     number = options.triangles if options.quads is None else options.quads
     if number <= 0:
         raise PictureError(f"{cells.capitalize()} of Each Side is {number}; allowed: 1 or more")
     length = np.sqrt(total / number / FACE_AREA[cells])
-    few = 0.0 if options.body is None else FEW * total
+    lacks = lacks_of(parts, length, options.body is not None, options.margin <= 0)
     results: list[Any] = [None] * len(parts)
-    left = list(range(len(parts)))
-    for step, finer in enumerate(FINER):
-        found = _surfaces(
+
+    def mesh(which: list[int], finer: float, of_these: Progress | None) -> dict[int, Any]:
+        made = _surfaces(
             gridmesh,
-            [parts[k] for k in left],
+            [parts[k] for k in which],
             {"cells": cells, "edge_length": finer * length, "least": False, **_bend(cells, options)},
             options,
             # Lines that are thin for the triangles wanted have many as it is.
-            few if finer >= _AGAIN else None,
-            part_of(progress, step / len(FINER), (step + 1) / len(FINER)),
+            [lacks[k] if finer >= _AGAIN else None for k in which],
+            of_these,
         )
-        for k, surface in zip(left, found, strict=True):
-            results[k] = surface
-        kinds = {k: getattr(results[k], "kind", "") for k in left}
-        if "cancelled" in kinds.values():
+        if any(getattr(surface, "kind", "") == "cancelled" for surface in made):
             raise CancelledError
-        left = [k for k in left if kinds[k] in {"too_coarse", "no_patch"}]
+        return dict(zip(which, made, strict=True))
+
+    left = list(range(len(parts)))
+    sizes = finest(number)
+    for step, finer in enumerate(sizes):
+        # Most parts are made at once.
+        now = part_of(progress, 1 - 0.5**step, 1 - 0.5 ** (step + 1))
+        for k, surface in mesh(left, finer, now).items():
+            results[k] = surface
+        left = [k for k in left if getattr(results[k], "kind", "") in {"too_coarse", "no_patch"}]
         if not left:
             break
+    for k in left:
+        if results[k].kind == "too_coarse":
+            results[k] = _too_few(gridmesh, parts[k], total, (number, cells, length), options, progress)
+    if len(parts) > 1 and cells == "triangles":
+        even(results, lambda which, finer: mesh(which, finer, part_of(progress, 1.0, 1.0)))
     return results
+
+
+def _too_few(
+    gridmesh: Any,
+    part: tuple[np.ndarray, list[np.ndarray]],
+    total: float,
+    asked: tuple[int, str, float],
+    options: Options,
+    progress: Progress | None,
+) -> Any:
+    """The error for a part that no size could follow, with the number for the whole picture that would."""
+    number, cells, length = asked
+    try:
+        gridmesh.mesh_sketch(
+            *part,
+            cells=cells,
+            edge_length=length,
+            least=True,
+            progress=part_of(progress, 1.0, 1.0),
+            **_bend(cells, options),
+        )
+    except gridmesh.GridMeshError as error:
+        if error.kind == "cancelled":
+            raise CancelledError from error
+        if error.least is None:
+            return error
+        least = int(np.ceil(error.least * total / _drawn(part)))
+        refused = gridmesh.GridMeshError(
+            f"{number} {cells} are too few to follow this drawing; {least} work (or a smaller edge length)"
+        )
+        refused.kind, refused.least = error.kind, least
+        return refused
+    return gridmesh.GridMeshError("this drawing can be followed, but not covered; use a margin of 0")
 
 
 def _bend(cells: str, options: Options) -> dict[str, float]:
@@ -217,26 +241,26 @@ def _surfaces(
     parts: list[Any],
     options: dict[str, Any],
     chosen: Options,
-    few: float | None,
+    lacks: list[Lacks | None],
     progress: Progress | None,
 ) -> list[Any]:
-    """Surface or GridMeshError for each part; those that lack more than a few pixels are meshed again, finer."""
+    """Surface or GridMeshError for each part; those that lack more than they may are meshed again, finer."""
     body = chosen.body
     # Only flat corners have a single quad.
     options = {**options, "open_corners": body is None}
     if body is not None and "corner_angle" in body:
         options = {**options, "corner_angle": body["corner_angle"]}
 
-    def surface(at: int, outline: np.ndarray, holes: list[np.ndarray]) -> Any:
+    def surface(at: int) -> Any:
         part = part_of(progress, at / len(parts), (at + 1) / len(parts))
         try:
             if body is None:
-                return gridmesh.flat(_patch(gridmesh, (outline, holes), options, chosen, few, part))
-            return _body(gridmesh, (outline, holes), options, chosen, few, part)
+                return gridmesh.flat(_patch(gridmesh, parts[at], options, chosen, lacks[at], part))
+            return _body(gridmesh, parts[at], options, chosen, lacks[at], part)
         except gridmesh.GridMeshError as error:
             return error
 
-    return [surface(at, *part) for at, part in enumerate(parts)]
+    return [surface(at) for at in range(len(parts))]
 
 
 def _in_sizes(
@@ -263,32 +287,23 @@ def _body(
     part: tuple[np.ndarray, list[np.ndarray]],
     options: dict[str, Any],
     chosen: Options,
-    few: float | None,
+    lacks: Lacks | None,
     progress: Progress | None,
 ) -> Any:
     """Body on the outline of a part; of a few sizes the first that has no short edge, or the one whose shortest is longest."""
 
     def make(sized: dict[str, Any], of_this: Progress | None) -> Any:
-        patch = _patch(gridmesh, part, sized, chosen, few, part_of(of_this, 0.0, 0.7))
+        patch = _patch(gridmesh, part, sized, chosen, lacks, part_of(of_this, 0.0, 0.7))
         return gridmesh.inflate(patch, progress=part_of(of_this, 0.7, 1.0), **chosen.body)
 
     # Quads at a rim are low by themselves.
-    sizes = _SIZES if few is not None and options["cells"] == "triangles" else _SIZES[:1]
+    sizes = _SIZES if lacks is not None and options["cells"] == "triangles" else _SIZES[:1]
     made = []
     for body in _in_sizes(gridmesh, sizes, options, make, progress):
         made.append(body)
-        if _shortest(body) >= SHORT:
+        if shortest(body) >= SHORT:
             return body
-    return max(made, key=_shortest)
-
-
-def _shortest(surface: Any) -> float:
-    """The shortest edge of a surface, in mean lengths of its edges."""
-    faces = faces_of(surface)
-    edges = np.sort(np.stack([faces, np.roll(faces, 1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
-    ends = surface.vertices[np.unique(edges, axis=0)]
-    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
-    return float(lengths.min() / lengths.mean())
+    return max(made, key=shortest)
 
 
 def _patch(
@@ -296,40 +311,30 @@ def _patch(
     part: tuple[np.ndarray, list[np.ndarray]],
     options: dict[str, Any],
     chosen: Options,
-    few: float | None,
+    lacks: Lacks | None,
     progress: Progress | None,
 ) -> Any:
     """Patch on the outline of a part, or one that covers it but for what the margin allows, or lies across it.
 
-    It is finer where it lacks more than `few` pixels, unless that is None, and more than a share of its own area.
+    It is finer where it lacks more than it may, unless nothing is said of that.
     """
     outline, holes = part
     if chosen.margin <= 0 and not chosen.cover:
         return gridmesh.mesh_sketch(outline, holes, progress=progress, **options)
     across = chosen.margin <= 0
     slack = max(0.0, chosen.margin - _SQUARE)
-    drawn = _area(outline) + sum(map(_area, holes))
-    share, tries = (EMPTY, 2) if chosen.body is None else (BETWEEN if across else EMPTY_OF_BODY, 3)
-    much = max(share * drawn, few or 0.0)
-
-    def lacks(one: Any) -> tuple[float, float]:
-        """What is cut off, then the area between mesh and outline; each only from where it shows."""
-        if across:
-            area = one.report["between"] * drawn
-        else:
-            area = sum(_area(one.vertices[loop]) for loop in one.loops) - drawn
-        return max(one.report["outside"], CUT_OFF), max(area, much)
 
     def make(sized: dict[str, Any], of_this: Progress | None) -> Any:
         return gridmesh.cover_sketch(outline, holes, slack=slack, across=across, progress=of_this, **sized)
 
+    if lacks is None:
+        return make(options, progress)
     found = []
-    for patch in _in_sizes(gridmesh, FINER[: 1 if few is None else _MOST], options, make, progress):
+    for patch in _in_sizes(gridmesh, FINER[:_MOST], options, make, progress):
         found.append(patch)
-        cut_off, area = lacks(min(found, key=lacks))
-        if cut_off <= CUT_OFF and (area <= much or len(found) >= tries):
+        if lacks.is_enough(min(found, key=lacks.of), len(found)):
             break
-    return min(found, key=lacks)
+    return min(found, key=lacks.of)
 
 
 def _filled(traced: list[tuple[np.ndarray, list[np.ndarray]]]) -> list[tuple[np.ndarray, list[np.ndarray]]]:
@@ -350,7 +355,6 @@ def _inside(point: np.ndarray, polygon: np.ndarray) -> bool:
     return bool((x > point[0]).sum() % 2)
 
 
-def _area(contour: np.ndarray) -> float:
-    """Signed area; holes run clockwise."""
-    following = np.roll(contour, -1, axis=0)
-    return float((contour[:, 0] * following[:, 1] - contour[:, 1] * following[:, 0]).sum() / 2)
+def _drawn(part: tuple[np.ndarray, list[np.ndarray]]) -> float:
+    outline, holes = part
+    return area(outline) + sum(map(area, holes))

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from rasters import coverage, placed, sampled
 from sketches import DRAWINGS
 
+from addon.pictures import cutouts
 from addon.pictures.cutouts import Options, cut_out
 
 NAMES = sorted(DRAWINGS)[::3]
@@ -238,3 +239,58 @@ def test_lines_a_pixel_wide_become_a_closed_body():
     assert len(cutout.faces) < 20_000
     edges = np.sort(np.concatenate([cutout.faces[:, [k, k - 1]] for k in range(3)]), axis=1)
     assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+
+
+def test_parts_beside_thin_ones_have_no_coarser_edges_than_show():
+    """The thin bar of a body is meshed finer; the disk above it follows, or edges of the bar are short in the picture."""
+    ring = np.column_stack([f(np.linspace(0, 2 * np.pi, 160, endpoint=False)) for f in (np.cos, np.sin)])
+    bar = np.array([[30, 30], [170, 30], [170, 35], [30, 35]], float)
+    alpha = coverage([60 * ring + [128, 150], bar, bar - [0, 20]], 256, 256)
+    cutout = sprite(alpha, cover=True, body={})
+    edges = np.unique(
+        np.sort(np.concatenate([cutout.faces[:, [k, k - 1]] for k in range(3)]), axis=1), axis=0
+    )
+    lengths = np.linalg.norm(np.diff(cutout.vertices[edges], axis=1)[:, 0], axis=1)
+    assert cutout.parts == 3
+    assert lengths.min() >= lengths.mean() / 3
+
+
+def wound(size):
+    """A spiral line a pixel wide, ten pixels apart."""
+    y, x = (np.mgrid[: 4 * size, : 4 * size] + 0.5) / 4 - size / 2
+    turns, radius = np.arctan2(y, x) / (2 * np.pi), np.hypot(x, y)
+    apart = 10 * (size / 2 - 2) / size
+    arm = np.round(radius / apart - turns)
+    line = (
+        (np.abs(radius - (arm + turns) * apart) < 0.5)
+        & (arm < size / 10)
+        & (radius > 1)
+        & (radius < size / 2 - 1)
+    )
+    return line.reshape(size, 4, size, 4).mean(axis=(1, 3))
+
+
+def test_lines_a_pixel_wide_are_meshed_as_fine_as_they_need():
+    """A sixteenth of the cells' size was not enough, and the picture was refused."""
+    pixels = np.dstack([np.zeros((128, 128, 3)), wound(128)])
+    cutout = cut_out(pixels, Options(threshold=0.5, triangles=500))
+    assert cutout.parts == 1 and not cutout.refused
+
+
+def test_outlines_with_a_margin_have_no_tiny_steps():
+    for outline, holes in gridmesh.trace_image(alpha_of("brazil", 192), margin=1.0):
+        for contour in [outline, *holes]:
+            assert np.linalg.norm(contour - np.roll(contour, 1, axis=0), axis=1).min() > 0.02
+
+
+def test_the_number_that_a_refused_picture_needs_works(monkeypatch):
+    """It is that for all parts, though only one of them is too thin."""
+    alpha = np.zeros((64, 160))
+    alpha[:, :64] = wound(64)
+    alpha[8:56, 90:150] = 1.0
+    pixels = np.dstack([np.zeros((*alpha.shape, 3)), alpha])
+    monkeypatch.setattr(cutouts, "finest", lambda number: (1.0,))
+    refused = cut_out(pixels, Options(threshold=0.5, triangles=500)).refused
+    assert len(refused) == 1 and refused[0].startswith("500 triangles are too few")
+    least = int(refused[0].split("; ")[1].split(" work")[0])
+    assert not cut_out(pixels, Options(threshold=0.5, triangles=least)).refused

@@ -60,6 +60,7 @@ WITHOUT_BLENDER = {
     "overlay/quality",
     "regrid/carried",
     "pictures/cutouts",
+    "pictures/sizes",
     "pictures/formats/gltf",
     "pictures/formats/godot",
     "pictures/formats/rig",

@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use gridmesh::error::{Error, Result};
+use gridmesh::error::{Error, Needed, Result};
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -32,13 +32,20 @@ create_exception!(
          \"invalid_face\", \"stroke_too_short\", \"stroke_misses\", \"behind_eye\",\n    \
          \"cut_failed\", \"still_joined\"; of pictures \"picture_size\",
     \
-         \"picture_format\"; or \"internal\" (a bug in gridmesh: please report it)."
+         \"picture_format\"; or \"internal\" (a bug in gridmesh: please report it).\n\
+     least : int or None\n    \
+         Of \"too_coarse\": the least number of triangles, or of quads, that works, where it is known."
 );
 
-/// A [`GridMeshError`] with its `kind`.
+/// A [`GridMeshError`] with its `kind`; `least` is not known.
 pub fn error(py: Python<'_>, kind: &str, message: impl Into<String>) -> PyErr {
     let err = GridMeshError::new_err(message.into());
-    match err.value(py).setattr("kind", kind) {
+    with(py, with(py, err, "kind", kind), "least", None::<usize>)
+}
+
+/// An exception with one more attribute.
+fn with<'py>(py: Python<'py>, err: PyErr, name: &str, value: impl IntoPyObject<'py>) -> PyErr {
+    match err.value(py).setattr(name, value) {
         Ok(()) => err,
         Err(other) => other,
     }
@@ -53,7 +60,11 @@ pub fn is_of_kind(py: Python<'_>, err: &PyErr, kind: &str) -> bool {
 
 /// An error of the library as a [`GridMeshError`].
 pub fn from_core(py: Python<'_>, err: &Error) -> PyErr {
-    error(py, err.kind(), err.to_string())
+    let refused = error(py, err.kind(), err.to_string());
+    match err {
+        Error::TooCoarse { needed: Needed::Least(least), .. } => with(py, refused, "least", *least),
+        _ => refused,
+    }
 }
 
 /// Runs `work` without the interpreter lock; a panic, always a bug, becomes an error of kind `internal`.

@@ -1,12 +1,13 @@
 //! Patches that cover what was drawn: outlines moved outward where the edges of a mesh cut them off.
 //!
-//! [`cover_sketch`] meshes an outline a few times, each time moved outward where the mesh of before left it outside (`outside`), then
+//! [`cover_sketch`] meshes an outline a few times, each time moved outward where the mesh of before left it outside (`outside`), as far as there is room (`room`), then
 //! moves ends of short edges apart (`short`), single vertices to tips (`tips`), and others back into inlets (`tight`). Patches that are to
 //! lie [`Rim::Across`] their outline are meshed once, and their boundary vertices are moved until they do (`across`).
 
 mod across;
 mod boundary;
 mod outside;
+mod room;
 mod short;
 mod tight;
 mod tips;
@@ -93,13 +94,13 @@ pub fn cover_sketch(
     let fine: Vec<Vec<DVec2>> =
         contours.iter().map(|contour| dense(contour, edge_length / POINTS_OF_EDGE)).collect();
     let rounds = if rim == Rim::Across { 0 } else { ROUNDS };
-    let Followed { sketch: mut best, meshed, least } = widened(first, &fine, slack, options, rounds, &part)?;
+    let Followed { sketch: mut best, meshed, .. } = widened(first, &fine, slack, options, rounds, &part)?;
     let drawn = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
     let mut measures = Vec::new();
     // The patch first, then the one for bodies.
     best.patch.both(|patch| {
         let followers = followers_of(patch, &meshed);
-        let least = finished(patch, &fine, &followers, (rim, slack, least), progress)?;
+        let least = finished(patch, &fine, &followers, (rim, slack), progress)?;
         let between = across::between(patch, &fine, &followers) / drawn;
         measures.push((least, between));
         for (contour, own) in
@@ -116,25 +117,26 @@ pub fn cover_sketch(
     Ok(Covering { sketch: best, outside, between })
 }
 
-/// Moves single vertices of a patch beyond which the drawing reaches by `least`; returns how far it reaches then.
+/// Moves single vertices of a patch; returns how far the drawing reaches beyond it then.
 fn finished(
     patch: &mut Patch,
     fine: &[Vec<DVec2>],
     followers: &[Followers],
-    (rim, slack, mut least): (Rim, f64, f64),
+    (rim, slack): (Rim, f64),
     progress: Progress<'_>,
 ) -> Result<f64> {
     let enough = ENOUGH * patch.lattice.edge_length;
-    // Boundary vertices may move where no more is cut off by that than could stay outside anyway.
-    let most = least.max(enough);
+    let left = needs(fine, patch, followers, slack);
+    // Boundary vertices may move where no more is cut off by that than is outside there as it is.
     let may = |patch: &Patch, vertex: usize| {
         let k = patch.loops.iter().rposition(|contour| contour.start as usize <= vertex).unwrap_or(0);
         let edges = loop_of(patch, k);
-        let mut near = followers[k].points_near(vertex - patch.loops[k].start as usize);
-        near.all(|at| followers[k].beyond(edges, at, fine[k][at]) - slack <= most)
+        let near = || followers[k].points_near(vertex - patch.loops[k].start as usize);
+        let most = near().map(|at| left[k][at]).fold(enough, f64::max);
+        near().all(|at| followers[k].beyond(edges, at, fine[k][at]) - slack <= most)
     };
     short::lengthened(patch, may, progress.part(1.0, 1.0))?;
-    least = largest(&needs(fine, patch, followers, slack));
+    let mut least = largest(&needs(fine, patch, followers, slack));
     if least > enough {
         least = tips::moved(patch, fine, followers, slack);
     }
@@ -150,8 +152,8 @@ fn finished(
 struct Followed {
     sketch: Sketch,
     meshed: Vec<Vec<DVec2>>,
-    /// How far the drawing reaches beyond it.
-    least: f64,
+    /// What of the drawing is outside as a whole; see [`squares`].
+    outside: f64,
 }
 
 /// What follows the points of each contour that a patch was made of.
@@ -184,30 +186,44 @@ fn widened<'p>(
     let mut moved: Vec<Vec<f64>> = fine.iter().map(|contour| vec![0.0; contour.len()]).collect();
     let followers = followers_of(&first.patch, fine);
     let mut needs = needs(fine, &first.patch, &followers, slack);
-    let mut best = Followed { sketch: first, meshed: fine.to_vec(), least: largest(&needs) };
+    let mut best = Followed { sketch: first, meshed: fine.to_vec(), outside: squares(&needs) };
+    let outward: Vec<Vec<DVec2>> = fine.iter().map(|contour| normals(contour)).collect();
+    let mut room = None;
     for round in 1..=rounds {
         if largest(&needs) <= ENOUGH * reach {
             break;
         }
+        let room = room.get_or_insert_with(|| room::outward(fine, &outward, MOST * reach, reach));
         let mut wider = Vec::with_capacity(fine.len());
-        for ((contour, far), need) in fine.iter().zip(&mut moved).zip(&needs) {
-            for (far, more) in far.iter_mut().zip(spread(contour, need, reach)) {
-                *far = (*far + more).min(MOST * reach);
+        for (k, (contour, far)) in fine.iter().zip(&mut moved).enumerate() {
+            for ((far, more), room) in far.iter_mut().zip(spread(contour, &needs[k], reach)).zip(&room[k]) {
+                *far = (*far + more).min(*room);
             }
-            let outward = normals(contour);
-            wider.push(contour.iter().zip(&*far).zip(outward).map(|((&p, &far), n)| p + far * n).collect());
+            let points = contour.iter().zip(&*far).zip(&outward[k]);
+            wider.push(points.map(|((&p, &far), &n)| p + far * n).collect());
         }
         let outer: Vec<DVec2> = wider.remove(0);
-        let made = |self_crossing: SelfCrossing| {
-            let options = SketchOptions { self_crossing, ..options.clone() };
-            mesh_sketch_on(&kept, &outer, &wider, &options, part(round))
+        let made = |holes: &[Vec<DVec2>]| {
+            let made = |self_crossing: SelfCrossing| {
+                let options = SketchOptions { self_crossing, ..options.clone() };
+                mesh_sketch_on(&kept, &outer, holes, &options, part(round))
+            };
+            // Only few cross themselves, and to find what these enclose takes longer than to see it.
+            match made(SelfCrossing::Error) {
+                Err(Error::SelfIntersecting { .. }) => made(SelfCrossing::Union),
+                made => made,
+            }
         };
-        // Only few cross themselves, and to find what these enclose takes longer than to see it.
-        let made = match made(SelfCrossing::Error) {
-            Err(Error::SelfIntersecting { .. }) => made(SelfCrossing::Union),
+        let sketch = match made(&wider) {
+            // Holes that cross themselves are not united: they stay where they were drawn.
+            Err(Error::SelfIntersecting { .. }) if !wider.is_empty() => {
+                wider = fine[1..].to_vec();
+                moved[1..].iter_mut().for_each(|far| far.fill(0.0));
+                made(&wider)
+            }
             made => made,
         };
-        let sketch = match made {
+        let sketch = match sketch {
             Ok(sketch) => sketch,
             Err(Error::Cancelled) => return Err(Error::Cancelled),
             // Wider, it meets itself or is too thin elsewhere: the best so far serves.
@@ -215,9 +231,9 @@ fn widened<'p>(
         };
         let meshed: Vec<Vec<DVec2>> = std::iter::once(outer).chain(wider).collect();
         needs = self::needs(fine, &sketch.patch, &followers_of(&sketch.patch, &meshed), slack);
-        let most = largest(&needs);
-        if most < best.least {
-            best = Followed { sketch, meshed, least: most };
+        let outside = squares(&needs);
+        if outside < best.outside {
+            best = Followed { sketch, meshed, outside };
         }
     }
     Ok(best)
@@ -230,6 +246,11 @@ fn needs(fine: &[Vec<DVec2>], patch: &Patch, followers: &[Followers], slack: f64
         fine[k].iter().enumerate().map(|(at, &point)| edges.outside(at, point, slack)).collect()
     };
     (0..fine.len()).map(of).collect()
+}
+
+/// What is outside as a whole: a tip that no outline brings in says nothing about the rest.
+fn squares(needs: &[Vec<f64>]) -> f64 {
+    needs.iter().flatten().map(|need| need * need).sum()
 }
 
 fn largest(needs: &[Vec<f64>]) -> f64 {

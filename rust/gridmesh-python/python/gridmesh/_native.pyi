@@ -80,6 +80,7 @@ class _Options(TypedDict, total=False):
 
 class GridMeshError(ValueError):
     kind: str
+    least: int | None
 
 @final
 class Patch:

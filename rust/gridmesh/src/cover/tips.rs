@@ -9,13 +9,13 @@ use crate::geometry::segments::nearest_on_segment;
 use crate::patch::Patch;
 
 /// Vertices that are moved at most, for each contour.
-const MOVES: usize = 12;
+const MOVES: usize = 48;
 
 /// Ends of edges are moved at most so far, in edge lengths, for the edges to pass through points.
 const FARTHEST: f64 = 0.5;
 
 /// How far outside a point is, in edge lengths, for which a vertex is moved.
-const WORTH: f64 = 0.03;
+const WORTH: f64 = 0.015;
 
 /// Cotangent of the angle, 12 degrees, to which corners of faces may fall for a tip's sake.
 const THINNEST: f64 = 4.704_630_109_478_455;

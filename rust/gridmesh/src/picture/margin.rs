@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::geometry::segments::{SegmentGrid, nearest_on_segment, orientation};
 use crate::picture::islands::Island;
 use crate::picture::levels::Crossing;
+use crate::picture::simplify::needed;
 use crate::progress::Progress;
 
 /// From this margin on, whole pixels lie inside.
@@ -28,6 +29,10 @@ const SLIT: f64 = 0.4;
 
 /// How far contours are looked for around a corner of a pixel, in pixels: nearly all of them pass within the first.
 const REACHES: [f64; 2] = [1.0, 3.0];
+
+/// How far points that are dropped may be from the line, in pixels: offsets leave a stair of tiny steps, which point anywhere.
+/// Less than what is spare.
+const TOLERANCE: f64 = 0.01;
 
 /// Offsets tried where contours come to touch themselves.
 const TRIES: i32 = 6;
@@ -85,7 +90,11 @@ pub fn expand(
 }
 
 fn read(shapes: Vec<Vec<Vec<[f64; 2]>>>, min_area: f64) -> Vec<Part> {
-    let contour = |points: Vec<[f64; 2]>| points.into_iter().map(DVec2::from_array).collect::<Vec<_>>();
+    let contour = |points: Vec<[f64; 2]>| {
+        let points: Vec<DVec2> = points.into_iter().map(DVec2::from_array).collect();
+        let keep = needed(&points, Vec::new(), TOLERANCE);
+        points.into_iter().zip(keep).filter_map(|(point, keep)| keep.then_some(point)).collect::<Vec<_>>()
+    };
     let mut parts = Vec::new();
     for shape in shapes {
         let mut contours = shape.into_iter().map(contour);
@@ -180,6 +189,26 @@ mod tests {
         };
         assert!((area(0.5) - (21.0 * 21.0 - 1.5 * 12.0)).abs() < 1e-6, "{}", area(0.5));
         assert!((area(1.0) - 22.0 * 22.0).abs() < 1e-6, "{}", area(1.0));
+    }
+
+    #[test]
+    fn no_tiny_steps_are_left_in_what_was_moved() {
+        let ring = |radius: f64, sign: f64| -> Vec<DVec2> {
+            let at = |k: i32| radius * DVec2::from_angle(sign * std::f64::consts::TAU * f64::from(k) / 90.0);
+            (0..90).map(at).collect()
+        };
+        let part = vec![Part { outline: ring(20.0, 1.0), holes: vec![ring(9.0, -1.0)] }];
+        let parts = expand(part, 1.0, &[], 0.0, Progress::NONE).unwrap();
+        assert_eq!(parts[0].holes.len(), 1);
+        for (contour, radius) in [(&parts[0].outline, 21.0), (&parts[0].holes[0], 8.0)] {
+            for (k, &point) in contour.iter().enumerate() {
+                let (before, after) =
+                    (contour[(k + contour.len() - 1) % contour.len()], contour[(k + 1) % contour.len()]);
+                assert!(point.distance(after) > 0.1, "{point} {after}");
+                assert!((point - before).angle_to(after - point).abs() < 0.5, "{point}");
+                assert!((point.length() - radius).abs() < 0.05, "{point}");
+            }
+        }
     }
 
     #[test]

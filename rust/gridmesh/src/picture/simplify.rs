@@ -9,11 +9,19 @@ use crate::picture::heights::Sample;
 const TOLERANCE: f64 = 0.03;
 
 /// The fewest samples of a closed line with the same shape, to within the tolerance; corners are kept.
+pub fn simplify(samples: Vec<Sample>) -> Vec<Sample> {
+    let points: Vec<DVec2> = samples.iter().map(|sample| sample.at).collect();
+    let corners = (0..samples.len()).filter(|&i| samples[i].corner).collect();
+    let keep = needed(&points, corners, TOLERANCE);
+    samples.into_iter().zip(keep).filter_map(|(sample, keep)| keep.then_some(sample)).collect()
+}
+
+/// Which points of a closed line it needs to have the same shape, to within the tolerance: the anchors, or three if these are
+/// fewer, and others.
 ///
 /// Source: Ramer, An iterative procedure for the polygonal approximation of plane curves, 1972.
-pub fn simplify(samples: Vec<Sample>) -> Vec<Sample> {
-    let n = samples.len();
-    let mut anchors: Vec<usize> = (0..n).filter(|&i| samples[i].corner).collect();
+pub fn needed(points: &[DVec2], mut anchors: Vec<usize>, tolerance: f64) -> Vec<bool> {
+    let n = points.len();
     if anchors.len() < 3 {
         anchors.extend([0, n / 3, 2 * n / 3]);
         anchors.sort_unstable();
@@ -26,15 +34,15 @@ pub fn simplify(samples: Vec<Sample>) -> Vec<Sample> {
         open.push((anchor, anchors.get(k + 1).copied().unwrap_or(anchors[0] + n)));
     }
     while let Some((first, last)) = open.pop() {
-        let (a, b) = (samples[first % n].at, samples[last % n].at);
-        let off = |i: &usize| distance_squared(samples[i % n].at, a, b);
+        let (a, b) = (points[first % n], points[last % n]);
+        let off = |i: &usize| distance_squared(points[i % n], a, b);
         let Some(far) = (first + 1..last).max_by(|i, j| off(i).total_cmp(&off(j))) else { continue };
-        if off(&far) > TOLERANCE * TOLERANCE {
+        if off(&far) > tolerance * tolerance {
             keep[far % n] = true;
             open.extend([(first, far), (far, last)]);
         }
     }
-    samples.into_iter().zip(keep).filter_map(|(sample, keep)| keep.then_some(sample)).collect()
+    keep
 }
 
 fn distance_squared(point: DVec2, a: DVec2, b: DVec2) -> f64 {
