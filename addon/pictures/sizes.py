@@ -111,7 +111,9 @@ def even(results: list[Any], mesh: Callable[[list[int], float], dict[int, Any]])
     """
     sizes = dict.fromkeys(range(len(results)), 1.0)
     for _ in range(_ROUNDS):
-        edges = {k: edge_lengths(surface) for k, surface in enumerate(results) if hasattr(surface, "vertices")}
+        edges = {
+            k: edge_lengths(surface) for k, surface in enumerate(results) if hasattr(surface, "vertices")
+        }
         if not edges:
             return
         mean = float(np.concatenate(list(edges.values())).mean())

@@ -866,6 +866,8 @@ _LIBRARY = {
     ),
     "{} triangles are too few to follow this drawing": "{0} Dreiecke sind zu wenige für diese Zeichnung",
     "{} quads are too few to follow this drawing": "{0} Vierecke sind zu wenige für diese Zeichnung",
+    "this drawing can be followed, but not covered": "der Zeichnung lässt sich folgen, sie aber nicht bedecken",
+    "use a margin of 0": "den Rand auf 0 setzen",
 }
 
 # What errors of the library name: things, reasons, what is allowed.

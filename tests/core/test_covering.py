@@ -274,7 +274,8 @@ def test_lines_a_pixel_wide_are_meshed_as_fine_as_they_need():
     """A sixteenth of the cells' size was not enough, and the picture was refused."""
     pixels = np.dstack([np.zeros((128, 128, 3)), wound(128)])
     cutout = cut_out(pixels, Options(threshold=0.5, triangles=500))
-    assert cutout.parts == 1 and not cutout.refused
+    assert cutout.parts == 1
+    assert not cutout.refused
 
 
 def test_outlines_with_a_margin_have_no_tiny_steps():
@@ -291,6 +292,7 @@ def test_the_number_that_a_refused_picture_needs_works(monkeypatch):
     pixels = np.dstack([np.zeros((*alpha.shape, 3)), alpha])
     monkeypatch.setattr(cutouts, "finest", lambda number: (1.0,))
     refused = cut_out(pixels, Options(threshold=0.5, triangles=500)).refused
-    assert len(refused) == 1 and refused[0].startswith("500 triangles are too few")
+    assert len(refused) == 1
+    assert refused[0].startswith("500 triangles are too few")
     least = int(refused[0].split("; ")[1].split(" work")[0])
     assert not cut_out(pixels, Options(threshold=0.5, triangles=least)).refused

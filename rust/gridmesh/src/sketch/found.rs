@@ -34,9 +34,8 @@ const FEW_CORNERS: usize = 4;
 /// 3.5 medians: parts of some had lost their shape.
 const LONG: f64 = 2.4;
 
-/// The same for quads, whose sizes vary more: 16 of 99 hand-drawn outlines have straight lattices at 1000 quads, 23 with
-/// the limit of triangles.
-const LONG_OF_QUADS: f64 = 3.6;
+/// The same for quads, whose sizes vary more.
+const LONG_OF_QUADS: f64 = 4.0;
 
 /// So many turns each median beyond it costs.
 const TURNS_OF_LENGTH: f64 = 20.0;
