@@ -219,12 +219,16 @@ def _too_few(
         if error.least is None:
             return error
         least = int(np.ceil(error.least * total / _drawn(part)))
-        refused = gridmesh.GridMeshError(
-            f"{number} {cells} are too few to follow this drawing; {least} work (or a smaller edge length)"
-        )
+        few = {
+            "triangles": f"{number} triangles are too few to follow this drawing",
+            "quads": f"{number} quads are too few to follow this drawing",
+        }
+        refused = gridmesh.GridMeshError(few[cells] + "; " + f"{least} work (or a smaller edge length)")
         refused.kind, refused.least = error.kind, least
         return refused
-    return gridmesh.GridMeshError("this drawing can be followed, but not covered; use a margin of 0")
+    return gridmesh.GridMeshError(
+        "this drawing can be followed, but not covered" + "; " + "use a margin of 0"
+    )
 
 
 def _bend(cells: str, options: Options) -> dict[str, float]:

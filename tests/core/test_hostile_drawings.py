@@ -185,7 +185,7 @@ def test_a_proof_is_not_made_for_every_lattice_that_gives_no_patch():
     assert error.kind == "inverted"
     # Asked once in 16,384 states of a search: 9,500 times with four proofs of 6 million states at most, 109,000 times
     # with sixteen of 30 million.
-    assert len(asked) < 12_000
+    assert len(asked) < 14_000
 
 
 @pytest.mark.parametrize("seed", [700_216, 700_943, 700_951])
@@ -196,7 +196,7 @@ def test_proofs_for_all_lattices_together_are_bounded(seed):
     asked: list[float] = []
     patch = gridmesh.mesh_sketch(case.outline, case.holes, **case.options, progress=asked.append)
     check_patch(patch, [case.outline])
-    assert len(asked) < 12_000
+    assert len(asked) < 14_000
 
 
 DEPTHS = [

@@ -51,9 +51,10 @@ const GRAIN: f64 = 1.0 / 1_048_576.0;
 /// Price of coarse limbs where thin parts shall be no coarser than on a straight lattice.
 const MIND_LIMBS: f64 = 4.0;
 /// The same where nothing is asked for, in meshes of so many triangles; in others in proportion, as a turn is a share of the
-/// mesh, up to the last. With 2000 triangles .71 % of the vertices are irregular so, else .88 % (medians of 317 drawings).
+/// mesh, up to the last. With 2000 triangles .71 % of the vertices are irregular so, else .88 % (medians of 317 drawings). With
+/// half of the last thin parts of 10,000 triangles have .97 times as many across as on a straight lattice, not 1.00.
 const LIMBS: (f64, f64) = (0.4, 2000.0);
-const MOST_LIMBS: f64 = 1.0;
+const MOST_LIMBS: f64 = 2.0;
 
 /// Distances of a path on a bent lattice of triangles count so much of what they do on a straight one.
 const BENT_SHARE: f64 = 0.1;
