@@ -112,10 +112,9 @@ impl Found {
         }
     }
 
-    /// True if more than one edge of a bent lattice in a hundred is too long, see [`MANY_LONG`].
+    /// True if more than one edge in a hundred is too long for a bend of triangles, see [`MANY_LONG`].
     pub(crate) fn is_uneven(&self) -> bool {
-        self.bent.as_ref().is_some_and(|(bent, _)| !bent.is_sized())
-            && longest_over_median(&self.placed.patch).1 > MANY_LONG.0
+        self.overlong() > 0.0 && longest_over_median(&self.placed.patch).1 > MANY_LONG.0
     }
 
     /// Cost, faults, starved triangles, long edges and lost corners in turns.
