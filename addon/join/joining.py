@@ -90,7 +90,7 @@ def _united(target: Target, options: Options, progress: api.Progress | None) -> 
         blend=options.blend,
         edge_length=options.edge_length,
         strict=options.strict,
-        border=target.has_several_materials,
+        colors=target.colors,
         progress=progress,
     )
 

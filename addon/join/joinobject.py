@@ -69,9 +69,14 @@ class Target:
         return [ob.name for ob in self.objects if frames.is_linked(ob)]
 
     @property
-    def has_several_materials(self) -> bool:
-        """Whether not all faces are of one material."""
-        return len({material for source in self.sources for material in _materials(source.mesh)}) > 1
+    def colors(self) -> list[int]:
+        """A number for each part, the same for parts that are of one and the same material alone."""
+        found: dict[object, int] = {}
+        each = [_materials(source.mesh) for source in self.sources]
+        return [
+            found.setdefault(own[0] if len(own) == 1 else ("several", number), len(found))
+            for number, own in enumerate(each)
+        ]
 
     def _source(self, ob: bpy.types.Object, matrix: Matrix, transaction: Transaction) -> Source:
         mesh = transaction.remember(bpy.data.meshes, ob.data.copy())

@@ -67,10 +67,10 @@ def unite(
     blend: float,
     edge_length: float | None,
     strict: bool,
-    border: bool,
+    colors: Sequence[int],
     progress: api.Progress | None = None,
 ) -> United:
-    """Join the parts. border : the lines between them are to run along edges.
+    """Join the parts. colors : a number for each part; lines between parts with different ones run along edges.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def unite(
                 blend=blend,
                 edge_length=edge_length,
                 strict=strict,
-                border=border,
+                border=colors if len(set(colors)) > 1 else False,
                 progress=progress,
             )
     except gridmesh.GridMeshError as error:

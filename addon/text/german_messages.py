@@ -945,6 +945,7 @@ _LIBRARY_PARTS = {
     "part {}": "Teil {0}",
     "{} of part {}": "{0} von Teil {1}",
     "no part": "kein Teil",
+    "as many numbers as parts": "so viele Zahlen wie Teile",
     "a number above 0, or nothing": "eine Zahl über 0, oder nichts",
     "a number from 0 to 1000, of edge lengths": "eine Zahl von 0 bis 1000, in Kantenlängen",
     "one closed mesh or more": "ein geschlossenes Mesh oder mehrere",

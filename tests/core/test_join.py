@@ -169,17 +169,41 @@ def test_the_border_between_parts_runs_along_the_line_without_teeth(at, blend):
     assert np.percentile(np.abs(off), 90) < 0.03
 
 
-def test_the_border_in_narrow_patches_has_few_teeth():
-    """Where the line meets a vertex of a rim, which stays where it is, it has a corner: in one of three narrow patches."""
+def test_the_border_in_narrow_patches_has_no_teeth():
+    """Edges run from rim to rim there, and the line gets vertices of its own; it had teeth in one of three such patches."""
     random = np.random.default_rng(3)
-    corners = []
+    corners, angles = [], []
     for _ in range(30):
         way = random.normal(size=3)
         at = way / np.linalg.norm(way) * random.uniform(0.8, 1.35)
         made = joined(ball(), ball(tuple(at), random.uniform(0.4, 0.7), edge=0.1), blend=1.5, border=True)
         corners.append((border_of(made)[1] > 40).sum())
-    assert np.mean(np.array(corners) == 0) >= 0.55
-    assert np.mean(corners) <= 2
+        angles.append(np.degrees(made.report["min_angle"]))
+    assert np.mean(np.array(corners) == 0) >= 0.9
+    assert max(corners) <= 2
+    assert min(angles) > 12
+
+
+def test_lines_run_only_between_parts_of_different_colors():
+    parts = ball(), ball((1.1, 0, 0), 0.5, edge=0.1), ball((0, 1.1, 0), 0.5, edge=0.1)
+    plain, made, every = (joined(*parts, blend=1.0, border=it) for it in (False, [4, 4, 7], True))
+    assert set(made.near_part) == {0, 1, 2}
+    # Of the two joints the one between parts of one colour is as it is without lines, the other one as with all of them.
+    places = [{tuple(p) for p in it.vertices[it.vertex_part < 0]} for it in (plain, made, every)]
+    assert places[1] <= places[0] | places[2]
+    assert places[1] & (places[0] - places[2])
+    assert places[1] & (places[2] - places[0])
+    same = joined(*parts, blend=1.0, border=[1, 1, 1])
+    assert np.array_equal(same.vertices, plain.vertices)
+    assert np.array_equal(same.triangles, plain.triangles)
+
+
+def test_colors_of_a_border_that_are_not_one_for_each_part():
+    kind, message = kind_of(ball(), ball((1.1, 0, 0), 0.5), border=[1, 2, 3])
+    assert kind == "invalid_option"
+    assert "as many numbers as parts" in message
+    with pytest.raises(TypeError, match="border"):
+        gridmesh.join([ball()], border="red")
 
 
 def test_the_border_of_one_material_over_three_parts():

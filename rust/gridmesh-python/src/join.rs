@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use gridmesh::cut::Polygons;
-use gridmesh::join::{JoinOptions, JoinReport, Joined as CoreJoined, Part};
+use gridmesh::join::{Border, JoinOptions, JoinReport, Joined as CoreJoined, Part};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -28,9 +28,10 @@ use crate::{arrays, reports};
 ///     The edge length that `blend` counts in. None: of each part its own mean near the line.
 /// strict : bool
 ///     Refuse joints that meet themselves or the parts; otherwise the report counts that.
-/// border : bool
+/// border : bool or sequence of int
 ///     Let the lines where surfaces of two parts meet run along edges of the collars, for borders of colours without teeth. `near_part` then
-///     tells of new triangles, too, to which part they belong. Vertices next to a line are moved onto it, by half an edge at most.
+///     tells of new triangles, too, to which part they belong. Vertices next to a line are moved onto it, by half an edge at most; where there
+///     are none it gets some of its own. True: between all parts; numbers, one for each part: between parts with different ones.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
 ///
@@ -90,7 +91,7 @@ pub fn join(
         options.strict = Argument { name: "strict", value, allowed: "True or False" }.bool()?;
     }
     if let Some(value) = border {
-        options.border = Argument { name: "border", value, allowed: "True or False" }.bool()?;
+        options.border = border_of(value)?;
     }
     let given = parts.try_iter()?.map(|part| read(&part?)).collect::<PyResult<Vec<_>>>()?;
     let parts = given
@@ -99,6 +100,15 @@ pub fn join(
         .collect::<Vec<_>>();
     let done = Watch::new(progress)?.run(py, |progress| gridmesh::join::join(&parts, &options, progress))?;
     Joined::new(py, &done)
+}
+
+/// Yes, no, or a number for each part.
+fn border_of(value: &Bound<'_, PyAny>) -> PyResult<Border> {
+    let it = Argument { name: "border", value, allowed: "True, False, or a whole number for each part" };
+    if let Ok(yes) = it.bool() {
+        return Ok(if yes { Border::Parts } else { Border::None });
+    }
+    value.extract::<Vec<u32>>().map(Border::Colors).map_err(|_| it.wrong_type())
 }
 
 /// Positions, corners and offsets of a part.

@@ -21,7 +21,7 @@ mod union;
 
 pub use self::assemble::Joined;
 use self::collar::{Curves, Left};
-pub use self::options::{JoinOptions, JoinReport};
+pub use self::options::{Border, JoinOptions, JoinReport};
 pub use self::parts::Part;
 use self::parts::{Parts, volume};
 use self::rims::Outside;
@@ -121,7 +121,7 @@ pub fn join(parts: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -
 }
 
 fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> Result<Joined> {
-    options.check()?;
+    options.check(given.len())?;
     if given.is_empty() {
         let allowed = "one closed mesh or more";
         return Err(Error::InvalidOption { name: "parts", value: "empty".into(), allowed });
@@ -154,8 +154,10 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
         (rounds, from) = (rounds - 1, to);
     };
     clock.stage("patches");
-    let sides =
-        if options.border { border(&site, &strips, &mut closed, progress.part(0.9, 0.9))? } else { vec![] };
+    let sides = match options.border {
+        Border::None => vec![],
+        _ => border(&site, &strips, &mut closed, progress.part(0.9, 0.9))?,
+    };
     clock.stage("border");
     let patches = strips.into_iter().map(|strip| strip.rims).zip(closed).collect::<Vec<_>>();
     let last = progress.part(0.9, 1.0);

@@ -402,7 +402,7 @@ def join(
     blend: float = 2.0,
     edge_length: float | None = None,
     strict: bool = False,
-    border: bool = False,
+    border: bool | Sequence[int] = False,
     progress: _Progress | None = None,
 ) -> Joined: ...
 def map_sketches(

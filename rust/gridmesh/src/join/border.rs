@@ -2,7 +2,10 @@
 //!
 //! A patch runs smoothly from one part to another, and its triangles keep to no line between them. Where each part has a colour of
 //! its own, the border of the colours would have teeth. So vertices next to the line are moved onto it, along the surface,
-//! nearest first and as far as their triangles allow, until no edge crosses it; then each triangle lies on one side.
+//! nearest first and as far as their triangles allow, until no edge crosses it; then each triangle lies on one side. In narrow
+//! patches, where edges run from rim to rim, the line gets vertices of its own (`divide`).
+
+mod divide;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,6 +13,7 @@ use glam::DVec3;
 
 use super::site::Site;
 use super::strips::Strip;
+use super::take::surroundings;
 use super::tries::{Kind, Patch};
 use crate::error::{Error, Result};
 use crate::fill::even::local::{Local, quality};
@@ -35,49 +39,69 @@ pub(super) fn straighten(
     progress: Progress<'_>,
 ) -> Result<Vec<i32>> {
     progress.report(0.0)?;
-    let surfaces = surfaces(site, strip);
-    if let [(part, _)] = surfaces.as_slice() {
-        return Ok(vec![*part as i32; patch.triangles.len()]);
+    let parts = surfaces(site, strip, |part| part as u32);
+    let surfaces = surfaces(site, strip, |part| site.options.border.color(part));
+    if let [_] = surfaces.as_slice() {
+        let middles = patch.middles(site);
+        return Ok(middles.into_iter().map(|p| nearest_part(site, &parts, None, p)).collect());
     }
     let border = strip.border(&site.outside);
-    let Some(local) = patch.local(site, &border) else {
+    let Some(mut local) = patch.local(site, &border) else {
         return Err(Error::Internal { reason: "a patch of a joint has vertices beyond its rims" });
     };
+    let place = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
+    surroundings(site, strip, &border, &place, &mut local);
     let mut line = Line::new(site, &border, local, &surfaces);
+    let mut sides = None;
     if patch.kind != Kind::Exact {
         for (round, poor) in (0..).zip(POOR) {
-            progress.report(f64::from(round) / POOR.len() as f64)?;
+            progress.report(0.5 * f64::from(round) / POOR.len() as f64)?;
             line.snap(poor);
             line.spread(poor);
         }
-        patch.vertices.copy_from_slice(&line.local.positions[line.local.border..]);
+        sides = line.divide(progress.part(0.5, 1.0))?;
+        patch.retake(site, &border, &line.local);
     }
     progress.report(1.0)?;
-    Ok(line.sides().into_iter().map(|side| surfaces[side].0 as i32).collect())
+    let sides = sides.unwrap_or_else(|| line.sides());
+    let each = sides.into_iter().zip(patch.middles(site));
+    Ok(each.map(|(side, p)| nearest_part(site, &parts, Some(surfaces[side].0), p)).collect())
 }
 
-/// Of each part in the strip, ascending, what is left of its surface there.
-fn surfaces(site: &Site<'_>, strip: &Strip) -> Vec<(usize, Facets)> {
-    let mut corners: BTreeMap<usize, Vec<[DVec3; 3]>> = BTreeMap::new();
+/// What is left of the parts' surfaces in the strip, by a number of each part, ascending.
+fn surfaces(site: &Site<'_>, strip: &Strip, number: impl Fn(usize) -> u32) -> Vec<(u32, Facets)> {
+    let mut corners: BTreeMap<u32, Vec<[DVec3; 3]>> = BTreeMap::new();
     for &t in &strip.triangles {
         let own = site.union.triangles[t as usize].map(|v| site.union.vertices[v as usize]);
-        corners.entry(site.union.part(site.parts, t as usize)).or_default().push(own);
+        corners.entry(number(site.union.part(site.parts, t as usize))).or_default().push(own);
     }
     corners.into_iter().map(|(part, corners)| (part, Facets::new(corners))).collect()
 }
 
-/// A patch and the line between the parts that it lies over.
+/// The part, of those of a colour, whose surface is nearest to a point.
+fn nearest_part(site: &Site<'_>, parts: &[(u32, Facets)], color: Option<u32>, p: DVec3) -> i32 {
+    let alike = |part: u32| color.is_none_or(|color| site.options.border.color(part as usize) == color);
+    let own = parts.iter().filter(|(part, _)| alike(*part)).collect::<Vec<_>>();
+    match own.as_slice() {
+        [(part, _)] => *part as i32,
+        _ => own
+            .get(least(own.iter().map(|(_, facets)| facets.distance(p))))
+            .map_or(-1, |(part, _)| *part as i32),
+    }
+}
+
+/// A patch and the line between the colours that it lies over.
 struct Line<'a> {
-    surfaces: &'a [(usize, Facets)],
+    surfaces: &'a [(u32, Facets)],
     local: Local,
-    /// For each vertex its distance from each part's surface.
+    /// For each vertex its distance from the surface of each colour.
     off: Vec<Vec<f64>>,
     /// Vertices that were moved onto the line.
     on: BTreeSet<u32>,
 }
 
 impl<'a> Line<'a> {
-    fn new(site: &Site<'_>, border: &[u32], mut local: Local, surfaces: &'a [(usize, Facets)]) -> Line<'a> {
+    fn new(site: &Site<'_>, border: &[u32], mut local: Local, surfaces: &'a [(u32, Facets)]) -> Line<'a> {
         let off = local.positions.iter().map(|&p| distances(surfaces, p)).collect();
         for v in 0..local.positions.len() as u32 {
             let p = local.positions[v as usize];
@@ -88,20 +112,20 @@ impl<'a> Line<'a> {
         let mut line = Line { surfaces, local, off, on: BTreeSet::new() };
         // Vertices of a rim are their own part's.
         for (v, &old) in border.iter().enumerate() {
-            let part = site.parts.part_of_vertex(old);
-            if let Some(k) = surfaces.iter().position(|(own, _)| *own == part) {
+            let color = site.options.border.color(site.parts.part_of_vertex(old));
+            if let Some(k) = surfaces.iter().position(|(own, _)| *own == color) {
                 line.off[v][k] = 0.0;
             }
         }
         line
     }
 
-    /// The part whose surface is nearest to a vertex.
+    /// The colour whose surface is nearest to a vertex, by its place.
     fn nearest(&self, v: u32) -> usize {
         least(self.off[v as usize].iter().copied())
     }
 
-    /// The part that a triangle belongs to: its vertices on the line do not count.
+    /// The colour that a triangle belongs to: its vertices on the line do not count.
     fn side(&self, t: u32) -> usize {
         let own = self.local.triangles[t as usize];
         let sum = |k: usize, all: bool| {
@@ -112,7 +136,7 @@ impl<'a> Line<'a> {
         least((0..self.off[own[0] as usize].len()).map(|k| sum(k, all)))
     }
 
-    /// Where the line crosses an edge between vertices of different parts.
+    /// Where the line crosses an edge between vertices of different colours.
     fn crossing(&self, u: u32, v: u32) -> Option<DVec3> {
         let (i, j) = (self.nearest(u), self.nearest(v));
         if i == j {
@@ -233,7 +257,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// The part of each triangle. Triangles that the line still crosses go to the side that makes the border shorter.
+    /// The colour of each triangle. Triangles that the line still crosses go to the side that makes the border shorter.
     fn sides(&self) -> Vec<usize> {
         let mut sides = (0..self.local.triangles.len() as u32).map(|t| self.side(t)).collect::<Vec<_>>();
         let open = |[u, v]: &[u32; 2]| self.is_open(*u, *v);
@@ -270,7 +294,7 @@ impl<'a> Line<'a> {
 }
 
 /// The distance of a point from each surface.
-fn distances(surfaces: &[(usize, Facets)], p: DVec3) -> Vec<f64> {
+fn distances(surfaces: &[(u32, Facets)], p: DVec3) -> Vec<f64> {
     surfaces.iter().map(|(_, own)| own.distance(p)).collect()
 }
 

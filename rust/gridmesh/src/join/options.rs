@@ -12,14 +12,36 @@ pub struct JoinOptions {
     pub edge_length: Option<f64>,
     /// Refuse joints that meet themselves or the parts, instead of counting that.
     pub strict: bool,
-    /// Let the line where surfaces of two parts meet run along edges of the patches, for borders of colours without teeth, and tell
-    /// for each new triangle on which part's side of it it lies.
-    pub border: bool,
+    /// Which lines run along edges of the patches.
+    pub border: Border,
+}
+
+/// Where surfaces of two parts meet: whether the line runs along edges of the patch there, for borders of colours without teeth. It is
+/// then told for each new triangle on which part's side of the line it lies.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Border {
+    /// Nowhere; nothing is told.
+    #[default]
+    None,
+    /// Between all parts.
+    Parts,
+    /// Between parts of different colours, one number for each part. New triangles between parts of one colour belong to the nearest.
+    Colors(Vec<u32>),
+}
+
+impl Border {
+    /// The colour of a part.
+    pub(super) fn color(&self, part: usize) -> u32 {
+        match self {
+            Border::Colors(colors) => colors.get(part).copied().unwrap_or(0),
+            Border::None | Border::Parts => part as u32,
+        }
+    }
 }
 
 impl Default for JoinOptions {
     fn default() -> Self {
-        JoinOptions { blend: 2.0, edge_length: None, strict: false, border: false }
+        JoinOptions { blend: 2.0, edge_length: None, strict: false, border: Border::None }
     }
 }
 
@@ -27,8 +49,8 @@ impl Default for JoinOptions {
 const WIDEST: f64 = 1000.0;
 
 impl JoinOptions {
-    /// Refuses values that are not allowed.
-    pub(super) fn check(&self) -> Result<()> {
+    /// Refuses values that are not allowed for so many parts.
+    pub(super) fn check(&self, parts: usize) -> Result<()> {
         if !(0.0..=WIDEST).contains(&self.blend) {
             let allowed = "a number from 0 to 1000, of edge lengths";
             return Err(Error::InvalidOption { name: "blend", value: told(self.blend), allowed });
@@ -36,6 +58,12 @@ impl JoinOptions {
         if let Some(length) = self.edge_length.filter(|l| !(l.is_finite() && *l > 0.0)) {
             let allowed = "a number above 0, or nothing";
             return Err(Error::InvalidOption { name: "edge_length", value: told(length), allowed });
+        }
+        if let Border::Colors(colors) = &self.border
+            && colors.len() != parts
+        {
+            let (value, allowed) = (colors.len().to_string(), "as many numbers as parts");
+            return Err(Error::InvalidOption { name: "border", value, allowed });
         }
         Ok(())
     }

@@ -63,6 +63,22 @@ impl Patch {
         let sides = vec![0; triangles.len()];
         Some(Local::new(positions, triangles, sides, border.len()))
     }
+
+    /// The middle of each triangle.
+    pub fn middles(&self, site: &Site<'_>) -> Vec<DVec3> {
+        let old = &site.parts.vertices;
+        let at =
+            |v: u32| old.get(v as usize).copied().unwrap_or_else(|| self.vertices[v as usize - old.len()]);
+        self.triangles.iter().map(|t| t.map(at).iter().sum::<DVec3>() / 3.0).collect()
+    }
+
+    /// Takes vertices and triangles from what was made of [`local`](Patch::local).
+    pub fn retake(&mut self, site: &Site<'_>, border: &[u32], local: &Local) {
+        let (n, m) = (site.parts.vertices.len() as u32, border.len() as u32);
+        let name = |v: u32| if v < m { border[v as usize] } else { n + v - m };
+        self.vertices = local.positions[border.len()..].to_vec();
+        self.triangles = local.triangles.iter().map(|t| t.map(name)).collect();
+    }
 }
 
 /// A patch and what is wrong with it.

@@ -25,6 +25,10 @@ pub(super) struct Net {
     pub border: usize,
     /// Vertices whose triangles stay as they are; those that come later are none of them.
     pub held: Vec<bool>,
+    /// Vertices of hard lines, which stay where they are.
+    pub fixed: Vec<bool>,
+    /// Edges of hard lines, lower vertex first.
+    hard: FxHashSet<[u32; 2]>,
     taken: FxHashSet<[u32; 2]>,
     /// For each corner of a triangle the triangle beyond the edge that faces it.
     across: Vec<[u32; 3]>,
@@ -72,12 +76,16 @@ impl Net {
             }
         }
         let off = (0..n).map(|v| count[v] - local.wanted_at(v as u32) as i32).collect();
+        let mut fixed = vec![false; n];
+        local.hard.iter().flatten().for_each(|&v| fixed[v as usize] = true);
         Net {
             positions: local.positions.clone(),
             sizes: local.sizes.clone(),
             taken: local.taken.clone(),
             border: local.border,
             held: vec![false; n],
+            fixed,
+            hard: local.hard.iter().copied().collect(),
             triangles,
             across,
             count,
@@ -94,6 +102,7 @@ impl Net {
         made.sizes = self.sizes;
         made.wanted = std::mem::take(&mut local.wanted);
         made.taken = self.taken;
+        made.hard = self.hard.into_iter().collect();
         *local = made;
         local.compact();
     }
@@ -112,14 +121,14 @@ impl Net {
         self.positions[a as usize].distance(self.positions[b as usize]) / wanted
     }
 
-    /// The triangles at the edge that faces a corner, each edge once.
+    /// The triangles at the edge that faces a corner, each edge once; none at hard ones.
     pub fn pair(&self, t: u32, k: usize) -> Option<Pair> {
         let s = self.across[t as usize][k];
         if s == NONE || s < t {
             return None;
         }
         let [c, a, b] = [0, 1, 2].map(|i| self.triangles[t as usize][(k + i) % 3]);
-        if c == NONE {
+        if c == NONE || !self.hard.is_empty() && self.hard.contains(&edge(a, b)) {
             return None;
         }
         let [p, q, r] = self.triangles[s as usize];
@@ -291,6 +300,7 @@ impl Net {
         self.positions.push(there);
         self.sizes.push(self.sizes[v as usize]);
         self.held.push(false);
+        self.fixed.push(false);
         self.at.push(first);
         self.at[v as usize] = after;
         self.count.push(m as i32 + 2);
@@ -314,7 +324,8 @@ impl Net {
             }
         }
         for (v, (sum, normals)) in sums.into_iter().enumerate().skip(self.border) {
-            let (true, Some(up)) = (self.count[v] > 0 && !self.held[v], normals.try_normalize()) else {
+            let moves = self.count[v] > 0 && !self.held[v] && !self.fixed[v];
+            let (true, Some(up)) = (moves, normals.try_normalize()) else {
                 continue;
             };
             let p = self.positions[v];

@@ -62,6 +62,18 @@ pub(crate) fn regularize(local: &mut Local, ground: Option<&Ground>, progress: P
     regularize_beside(local, ground, &[], progress)
 }
 
+/// The same for a mesh with hard lines on one surface: their edges and vertices stay.
+///
+/// # Errors
+/// [`Error::Cancelled`](crate::error::Error::Cancelled).
+pub(crate) fn regularize_along(
+    local: &mut Local,
+    ground: Option<&Ground>,
+    progress: Progress<'_>,
+) -> Result<()> {
+    anneal(local, ground, &[], progress)
+}
+
 /// The same where the triangles of some vertices stay as they are.
 ///
 /// # Errors
@@ -75,6 +87,10 @@ pub(crate) fn regularize_beside(
     if !local.hard.is_empty() {
         return Ok(());
     }
+    anneal(local, ground, held, progress)
+}
+
+fn anneal(local: &mut Local, ground: Option<&Ground>, held: &[u32], progress: Progress<'_>) -> Result<()> {
     let mut net = Net::new(local);
     held.iter().for_each(|&v| net.held[v as usize] = true);
     let before = cost(&net);
@@ -237,9 +253,10 @@ impl Annealer {
         for v in self.net.border as u32..self.net.positions.len() as u32 {
             self.net.ring(v, &mut ring);
             let regular = self.off(v) == 0 && ring.iter().all(|r| self.off(r[0]) == 0);
-            // A vertex where two fans meet stays.
+            // A vertex where two fans meet stays, and so do those of hard lines.
             let held = |v: u32| self.net.held[v as usize];
             if regular
+                || self.net.fixed[v as usize]
                 || ring.len() as i32 != self.net.count[v as usize]
                 || held(v)
                 || ring.iter().any(|r| held(r[0]))

@@ -46,7 +46,7 @@ impl Ground {
     }
 
     /// The nearest point of a part's surface that faces the same way.
-    pub(super) fn nearest(&self, side: u32, p: DVec3, normal: DVec3) -> DVec3 {
+    pub fn nearest(&self, side: u32, p: DVec3, normal: DVec3) -> DVec3 {
         let side = if self.lines.is_some() { side } else { 0 };
         self.sides.get(&side).map_or(p, |facets| facets.nearest(p, normal))
     }
