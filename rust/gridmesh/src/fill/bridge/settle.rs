@@ -16,7 +16,7 @@ const HALVINGS: usize = 4;
 const SWEEPS: usize = 10;
 
 /// A vertex that gains less than this share of a good corner rests until one beside it gains more.
-const RESTS: f64 = 0.005;
+const RESTS: f64 = 0.04;
 
 /// The badness of a corner counts to this power, and one: the worst ones most.
 const POWER: i32 = 6;
