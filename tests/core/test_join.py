@@ -184,6 +184,16 @@ def test_the_border_in_narrow_patches_has_no_teeth():
     assert min(angles) > 12
 
 
+@pytest.mark.parametrize(("number", "blend"), [(17, 2.0), (21, 2.0), (25, 0.5), (34, 0.5)])
+def test_a_border_makes_no_patch_worse(number, blend):
+    """In these patches a smooth line made triangles meet, or left angles of 3 degrees."""
+    parts = joins.case(5, number).parts
+    plain, made = (gridmesh.join(parts, blend=blend, border=border) for border in (False, True))
+    assert made.report["self_intersections"] <= plain.report["self_intersections"]
+    assert np.degrees(made.report["min_angle"]) >= 8
+    assert not faults(parts, made)
+
+
 def test_lines_run_only_between_parts_of_different_colors():
     parts = ball(), ball((1.1, 0, 0), 0.5, edge=0.1), ball((0, 1.1, 0), 0.5, edge=0.1)
     plain, made, every = (joined(*parts, blend=1.0, border=it) for it in (False, [4, 4, 7], True))

@@ -19,11 +19,16 @@ use crate::error::{Error, Result};
 use crate::fill::even::local::{Local, quality};
 use crate::fill::even::nearest::Facets;
 use crate::fill::even::polish::improve;
+use crate::fill::even::untangle::{Near, tangled};
+use crate::geometry::metrics::min_angle;
 use crate::progress::Progress;
 
 /// In each round vertices are moved onto the line if no triangle becomes worse than this, unless it was before; then vertices
 /// on it are spread evenly along it, and those beside it make room.
 const POOR: [f64; 5] = [0.7, 0.6, 0.5, 0.45, 0.42];
+
+/// No patch gets a smaller angle, unless it had one.
+const THIN: f64 = 0.15;
 
 /// Times that triangles are looked at which the line still crosses.
 const TEETH: usize = 8;
@@ -52,20 +57,48 @@ pub(super) fn straighten(
     let place = border.iter().zip(0..).map(|(&v, k)| (v, k)).collect();
     surroundings(site, strip, &border, &place, &mut local);
     let mut line = Line::new(site, &border, local, &surfaces);
-    let mut sides = None;
+    let mut sides = line.sides();
     if patch.kind != Kind::Exact {
+        let near = site.near(strip, &place);
+        let before = Harm::of(&line.local, &near, progress)?;
         for (round, poor) in (0..).zip(POOR) {
-            progress.report(0.5 * f64::from(round) / POOR.len() as f64)?;
+            progress.report(0.3 * f64::from(round) / POOR.len() as f64)?;
             line.snap(poor);
             line.spread(poor);
         }
-        sides = line.divide(progress.part(0.5, 1.0))?;
-        patch.retake(site, &border, &line.local);
+        let snapped = (line.sides(), line.local.clone());
+        let divided = line.divide(progress.part(0.3, 0.9))?.map(|sides| (sides, line.local));
+        // What is smooth gives way to what is sound.
+        for (new, local) in divided.into_iter().chain([snapped]) {
+            if Harm::of(&local, &near, progress)?.is_no_more(&before) {
+                patch.retake(site, &border, &local);
+                sides = new;
+                break;
+            }
+        }
     }
     progress.report(1.0)?;
-    let sides = sides.unwrap_or_else(|| line.sides());
     let each = sides.into_iter().zip(patch.middles(site));
     Ok(each.map(|(side, p)| nearest_part(site, &parts, Some(surfaces[side].0), p)).collect())
+}
+
+/// What is wrong with a patch.
+struct Harm {
+    /// Triangles that meet something.
+    meetings: usize,
+    /// The least angle, in radians.
+    angle: f64,
+}
+
+impl Harm {
+    fn of(local: &Local, near: &Near, progress: Progress<'_>) -> Result<Harm> {
+        let meetings = tangled(local, near, progress.part(1.0, 1.0))?.len();
+        Ok(Harm { meetings, angle: min_angle(&local.positions, &local.triangles) })
+    }
+
+    fn is_no_more(&self, other: &Harm) -> bool {
+        self.meetings <= other.meetings && self.angle >= other.angle.min(THIN)
+    }
 }
 
 /// What is left of the parts' surfaces in the strip, by a number of each part, ascending.

@@ -18,7 +18,6 @@ use crate::fill::even::regular::{regularize, regularize_beside};
 use crate::fill::even::remesh::{Ground, flip_valences, mend_thin, remesh};
 use crate::fill::even::slivers::mend_slivers;
 use crate::fill::even::untangle::{Near, tangled, untangle};
-use crate::fill::surface::meet::Box3;
 use crate::fill::{BridgeOptions, Fill, FillOptions, bridge, fill_hole};
 use crate::geometry::metrics::min_angle;
 use crate::progress::Progress;
@@ -108,14 +107,7 @@ impl Place<'_> {
 
     /// What stays near the strip.
     fn near(&self) -> &Near {
-        self.near.get_or_init(|| {
-            let Site { parts, union, .. } = self.site;
-            let corners = self.strip.triangles.iter().flat_map(|&t| union.triangles[t as usize]);
-            let own = Box3::around(corners.map(|v| union.vertices[v as usize]));
-            let wide = 0.2 * (own.high - own.low).max_element();
-            let around = Box3 { low: own.low - wide, high: own.high + wide };
-            Near::new(around, &parts.vertices, &self.site.kept, &self.place)
-        })
+        self.near.get_or_init(|| self.site.near(self.strip, &self.place))
     }
 
     /// A tube or a fill, where the strip is an annulus or a disk.
