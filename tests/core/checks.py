@@ -15,8 +15,10 @@ def half_edges(triangles: np.ndarray) -> np.ndarray:
 
 def edges_of(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Undirected edges, (e, 2), and the number of triangles at each."""
-    edges, counts = np.unique(np.sort(half_edges(triangles), axis=1), axis=0, return_counts=True)
-    return edges, counts
+    n = int(triangles.max()) + 1
+    ends = np.sort(half_edges(triangles), axis=1).astype(np.int64)
+    keys, counts = np.unique(ends[:, 0] * n + ends[:, 1], return_counts=True)
+    return np.stack([keys // n, keys % n], axis=1), counts
 
 
 def valences(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
@@ -62,23 +64,30 @@ def check_array(array: np.ndarray, dtype: type, columns: int | None) -> None:
 
 def check_fans(triangles: np.ndarray, n_vertices: int, n_boundary: int) -> None:
     """Around every vertex the triangles form one fan: open at boundary vertices, closed elsewhere."""
-    following: list[dict[int, int]] = [{} for _ in range(n_vertices)]
-    for a, b, c in triangles.tolist():
-        for vertex, first, second in ((a, b, c), (b, c, a), (c, a, b)):
-            assert first not in following[vertex], "two triangles with the same directed edge"
-            following[vertex][first] = second
-    for vertex, fan in enumerate(following):
-        ends = set(fan.values())
-        starts = [first for first in fan if first not in ends]
-        assert len(starts) == (1 if vertex < n_boundary else 0), f"vertex {vertex} is not manifold"
-        at = first = starts[0] if starts else next(iter(fan))
-        steps = 0
-        while at in fan:
-            at = fan[at]
-            steps += 1
-            if at == first:
-                break
-        assert steps == len(fan), f"vertex {vertex} has more than one fan"
+    # A triangle leads at each of its vertices from the one after it to the one before it.
+    vertex, first = half_edges(triangles).T.astype(np.int64)
+    second = np.concatenate([triangles[:, 2], triangles[:, 0], triangles[:, 1]])
+    order = np.argsort(vertex * n_vertices + first)
+    keys, vertex = (vertex * n_vertices + first)[order], vertex[order]
+    assert (np.diff(keys) > 0).all(), "two triangles with the same directed edge"
+    wanted = vertex * n_vertices + second[order]
+    n = len(keys)
+    place = np.minimum(np.searchsorted(keys, wanted), n - 1)
+    # The number of the next triangle around the vertex, `n` behind the last one.
+    following = np.append(np.where(keys[place] == wanted, place, n), n)
+    starts = np.ones(n + 1, bool)
+    starts[following] = False
+    open_fans = np.bincount(vertex[starts[:n]], minlength=n_vertices)
+    # Fans that close: the least number in each, found by steps that double.
+    least = np.arange(n + 1)
+    for _ in range(int(np.bincount(vertex).max()).bit_length()):
+        least = np.minimum(least, least[following])
+        following = following[following]
+    closed = (following[:n] < n) & (least[:n] == np.arange(n))
+    closed_fans = np.bincount(vertex[closed], minlength=n_vertices)
+    at_boundary = np.arange(n_vertices) < n_boundary
+    wrong = np.flatnonzero((open_fans != at_boundary) | (closed_fans != ~at_boundary))
+    assert not len(wrong), f"vertices {wrong[:5]} are not in one fan"
 
 
 def check_patch(patch, contours: list[np.ndarray]) -> None:
@@ -96,12 +105,15 @@ def check_patch(patch, contours: list[np.ndarray]) -> None:
     assert np.array_equal(np.concatenate(patch.loops), np.arange(n_boundary))
 
     # An oriented manifold whose boundary is exactly the loops, with the patch on their left.
-    directed = {tuple(edge) for edge in half_edges(triangles).tolist()}
-    assert len(directed) == 3 * len(triangles), "an edge is used twice in one direction"
+    from_to = half_edges(triangles).astype(np.int64)
+    keys, opposite = (ends[:, 0] * len(vertices) + ends[:, 1] for ends in (from_to, from_to[:, ::-1]))
+    assert len(np.unique(keys)) == 3 * len(triangles), "an edge is used twice in one direction"
     edges, counts = edges_of(triangles)
-    rim = {(a, b) for a, b in directed if (b, a) not in directed}
-    drawn = {(int(a), int(b)) for loop in patch.loops for a, b in zip(loop, np.roll(loop, -1), strict=True)}
-    assert rim == drawn
+    rim = np.setdiff1d(keys, opposite)
+    drawn = np.concatenate(
+        [loop.astype(np.int64) * len(vertices) + np.roll(loop, -1) for loop in patch.loops]
+    )
+    assert np.array_equal(rim, np.sort(drawn))
     check_fans(triangles, len(vertices), n_boundary)
     assert len(vertices) - len(edges) + len(triangles) == 2 - len(contours), "wrong topology"
     label = np.arange(len(vertices))
