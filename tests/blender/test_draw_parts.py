@@ -572,11 +572,13 @@ class Play:
             bpy.ops.ed.undo_push(message=kind)
         self.done[kind] = self.done.get(kind, 0) + 1
 
-    def check(self):
+    def check(self, with_fresh_builds):
         wholes = self.wholes()
         for whole in wholes:
             self.looked += 1
             self.check_whole(whole)
+            if with_fresh_builds and not whole.gridmesh_joined.problem:
+                self.check_against_fresh_build(whole)
         bodies = [ob for ob in engine.bodies() if ob.users_scene]
         for ob in bodies:
             if following.whole_of(ob) is None:
@@ -594,6 +596,9 @@ class Play:
             self.waiting += 1
             return
         check_sound(whole)
+
+    def check_against_fresh_build(self, whole):
+        joined = whole.gridmesh_joined
         there = vertices(whole.data)
         fresh = characters.beside(whole, whole.data.copy())
         following.joining.again(
@@ -616,11 +621,11 @@ class Play:
 def test_random_actions(tmp_path, seed):
     play = Play(seed, tmp_path)
     deck = []
-    for _ in range(STEPS):
+    for number in range(STEPS):
         if not deck:
             deck = list(play.random.permutation(play.KINDS))
         play.step(str(deck.pop()))
-        play.check()
+        play.check(with_fresh_builds=number % 3 == 0 or number == STEPS - 1)
     assert play.looked > STEPS / 2
     assert play.waiting <= 0.1 * play.looked, f"{play.waiting} of {play.looked} looks found one that waits"
     print(f"steps {play.done}, waiting {play.waiting} of {play.looked}, parts {len(play.parts())}, "

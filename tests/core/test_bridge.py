@@ -15,6 +15,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
 import bridges
 from bridges import NO_FACES, Case, faults, measure
 
+pytestmark = pytest.mark.native
+
 TAU = 2 * np.pi
 
 

@@ -18,6 +18,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "campaign"))
 import arguments
 import fills
 
+pytestmark = pytest.mark.native
+
 LOOP = [30, 31, 32, 41, 50, 49, 48, 39]
 
 

@@ -12,6 +12,8 @@ from hypothesis import given, settings
 from test_fill import NO_FACES, RANDOM_LOOPS, pierced, random_loop, ring, sheet_of_quads, tube
 from test_fill_hostile import HOLES, box, volume
 
+pytestmark = pytest.mark.native
+
 
 def sides_of(fill: gridmesh.Fill) -> np.ndarray:
     """Directed edges of the new faces."""

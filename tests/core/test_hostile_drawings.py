@@ -14,6 +14,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
 import bodies
 import drawings
 
+pytestmark = pytest.mark.native
+
 CIRCLE = drawings.circle(60) * [1, 0.7]
 
 

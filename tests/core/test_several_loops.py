@@ -15,6 +15,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
 import several
 from several import ball, boundary_loops
 
+pytestmark = pytest.mark.native
+
 
 def opened(vertices, faces, poles, angle):
     """Faces without those near the poles, and the loops around what is missing."""
