@@ -1,12 +1,13 @@
 //! Patches that cover what was drawn: outlines moved outward where the edges of a mesh cut them off.
 //!
-//! [`cover_sketch`] meshes an outline a few times, each time moved outward where the mesh of before left it outside (`outside`), as far as there is room (`room`), then
+//! [`cover_sketch`] meshes an outline a few times, each time moved outward where the mesh of before left it outside (`outside`, `outward`), as far as there is room (`room`), then
 //! moves ends of short edges apart (`short`), single vertices to tips (`tips`), and others back into inlets (`tight`). Patches that are to
 //! lie [`Rim::Across`] their outline are meshed once, and their boundary vertices are moved until they do (`across`).
 
 mod across;
 mod boundary;
 mod outside;
+mod outward;
 mod room;
 mod short;
 mod tight;
@@ -15,11 +16,12 @@ mod tips;
 use glam::DVec2;
 
 use crate::cover::outside::{Followers, LoopEdges, loop_of};
+use crate::cover::outward::{moved_outward, normals, spread};
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::union::{nearest_sources, outer_outline};
 use crate::error::{Error, Result, told};
-use crate::options::{SelfCrossing, SketchOptions};
+use crate::options::{CellShape, SelfCrossing, SketchOptions};
 use crate::patch::Patch;
 use crate::patch::angles::min_angle;
 use crate::progress::Progress;
@@ -33,8 +35,10 @@ const ROUNDS: usize = 3;
 const ENOUGH: f64 = 0.01;
 
 /// How far an outline is moved at most, in edge lengths: tips that the mesh cannot follow are left to single vertices.
-///
 const MOST: f64 = 0.25;
+
+/// How far beyond the drawing the edges of quads that lie across it may come to lie when they are made longer, in edge lengths.
+const EMPTY: f64 = 0.1;
 
 /// Points of a contour for each edge of the mesh: where it is compared with the mesh.
 const POINTS_OF_EDGE: f64 = 5.0;
@@ -127,13 +131,22 @@ fn finished(
 ) -> Result<f64> {
     let enough = ENOUGH * patch.lattice.edge_length;
     let left = needs(fine, patch, followers, slack);
-    // Boundary vertices may move where no more is cut off by that than is outside there as it is.
+    // Quads are small in tips; those of bodies would crumple there to be longer.
+    let (deep, far) = match (rim, patch.cells()) {
+        (Rim::Across, CellShape::Quad) => (depths(fine, patch, followers), EMPTY * patch.lattice.edge_length),
+        _ => (Vec::new(), f64::INFINITY),
+    };
+    // Boundary vertices may move where no more is cut off by that than is outside there as it is, nor more is left empty.
     let may = |patch: &Patch, vertex: usize| {
         let k = patch.loops.iter().rposition(|contour| contour.start as usize <= vertex).unwrap_or(0);
         let edges = loop_of(patch, k);
         let near = || followers[k].points_near(vertex - patch.loops[k].start as usize);
         let most = near().map(|at| left[k][at]).fold(enough, f64::max);
-        near().all(|at| followers[k].beyond(edges, at, fine[k][at]) - slack <= most)
+        near().all(|at| {
+            let beyond = followers[k].beyond(edges, at, fine[k][at]);
+            let empty = deep.get(k).map_or(far, |deep| far.max(deep[at]));
+            beyond - slack <= most && -beyond <= empty
+        })
     };
     short::lengthened(patch, may, progress.part(1.0, 1.0))?;
     let mut least = largest(&needs(fine, patch, followers, slack));
@@ -194,42 +207,28 @@ fn widened<'p>(
             break;
         }
         let room = room.get_or_insert_with(|| room::outward(fine, &outward, MOST * reach, reach));
-        let mut wider = Vec::with_capacity(fine.len());
         for (k, (contour, far)) in fine.iter().zip(&mut moved).enumerate() {
             for ((far, more), room) in far.iter_mut().zip(spread(contour, &needs[k], reach)).zip(&room[k]) {
                 *far = (*far + more).min(*room);
             }
-            let points = contour.iter().zip(&*far).zip(&outward[k]);
-            wider.push(points.map(|((&p, &far), &n)| p + far * n).collect());
         }
-        let outer: Vec<DVec2> = wider.remove(0);
-        let made = |holes: &[Vec<DVec2>]| {
-            let made = |self_crossing: SelfCrossing| {
-                let options = SketchOptions { self_crossing, ..options.clone() };
-                mesh_sketch_on(&kept, &outer, holes, &options, part(round))
-            };
-            // Only few cross themselves, and to find what these enclose takes longer than to see it.
-            match made(SelfCrossing::Error) {
-                Err(Error::SelfIntersecting { .. }) => made(SelfCrossing::Union),
-                made => made,
-            }
+        let wider = moved_outward(fine, &outward, &mut moved);
+        let made = |self_crossing: SelfCrossing| {
+            let options = SketchOptions { self_crossing, ..options.clone() };
+            mesh_sketch_on(&kept, &wider[0], &wider[1..], &options, part(round))
         };
-        let sketch = match made(&wider) {
-            // Holes that cross themselves are not united: they stay where they were drawn.
-            Err(Error::SelfIntersecting { .. }) if !wider.is_empty() => {
-                wider = fine[1..].to_vec();
-                moved[1..].iter_mut().for_each(|far| far.fill(0.0));
-                made(&wider)
-            }
+        // Only few cross themselves, and to find what these enclose takes longer than to see it.
+        let made = match made(SelfCrossing::Error) {
+            Err(Error::SelfIntersecting { .. }) => made(SelfCrossing::Union),
             made => made,
         };
-        let sketch = match sketch {
+        let sketch = match made {
             Ok(sketch) => sketch,
             Err(Error::Cancelled) => return Err(Error::Cancelled),
             // Wider, it meets itself or is too thin elsewhere: the best so far serves.
             Err(_) => break,
         };
-        let meshed: Vec<Vec<DVec2>> = std::iter::once(outer).chain(wider).collect();
+        let meshed = wider;
         needs = self::needs(fine, &sketch.patch, &followers_of(&sketch.patch, &meshed), slack);
         let outside = squares(&needs);
         if outside < best.outside {
@@ -244,6 +243,15 @@ fn needs(fine: &[Vec<DVec2>], patch: &Patch, followers: &[Followers], slack: f64
     let of = |k: usize| {
         let edges = LoopEdges::new(patch, k, &followers[k]);
         fine[k].iter().enumerate().map(|(at, &point)| edges.outside(at, point, slack)).collect()
+    };
+    (0..fine.len()).map(of).collect()
+}
+
+/// For each contour how far its points lie inside the patch; 0 or less outside.
+fn depths(fine: &[Vec<DVec2>], patch: &Patch, followers: &[Followers]) -> Vec<Vec<f64>> {
+    let of = |k: usize| {
+        let edges = loop_of(patch, k);
+        fine[k].iter().enumerate().map(|(at, &point)| -followers[k].beyond(edges, at, point)).collect()
     };
     (0..fine.len()).map(of).collect()
 }
@@ -267,26 +275,6 @@ fn dense(contour: &ClosedCurve, step: f64) -> Vec<DVec2> {
     points
 }
 
-/// Unit vectors out of the drawing at the points of a contour that has the drawing on its left.
-fn normals(contour: &[DVec2]) -> Vec<DVec2> {
-    let n = contour.len();
-    let along = |k: usize| (contour[(k + 1) % n] - contour[k]).normalize_or_zero();
-    (0..n).map(|k| -(along((k + n - 1) % n) + along(k)).normalize_or_zero().perp()).collect()
-}
-
-/// A smooth course along a contour that is nowhere below the need: its largest value within `reach`, averaged.
-fn spread(contour: &[DVec2], need: &[f64], reach: f64) -> Vec<f64> {
-    let n = contour.len();
-    let length: f64 = (0..n).map(|k| contour[k].distance(contour[(k + 1) % n])).sum();
-    let steps = ((reach * n as f64 / length).round().max(1.0) as usize).min((n - 1) / 2);
-    let around = |values: &[f64], k: usize, half: usize| -> Vec<f64> {
-        (0..=2 * half).map(|at| values[(k + n - half + at) % n]).collect()
-    };
-    let highest: Vec<f64> = (0..n).map(|k| around(need, k, steps).into_iter().fold(0.0, f64::max)).collect();
-    let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
-    (0..n).map(|k| mean(around(&highest, k, steps / 2))).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::TAU;
@@ -295,24 +283,6 @@ mod tests {
 
     fn ring(n: usize, radius: f64) -> Vec<DVec2> {
         (0..n).map(|k| radius * DVec2::from_angle(TAU * k as f64 / n as f64)).collect()
-    }
-
-    #[test]
-    fn what_is_spread_is_nowhere_below_the_need() {
-        let contour = ring(240, 3.0);
-        let need: Vec<f64> = (0..240).map(|k| if k % 37 == 5 { 0.1 * (k % 7) as f64 } else { 0.0 }).collect();
-        let course = spread(&contour, &need, 0.4);
-        assert!(course.iter().zip(&need).all(|(course, need)| course + 1e-12 >= *need));
-        let steps = course.iter().zip(course.iter().cycle().skip(1)).map(|(a, b)| (a - b).abs());
-        assert!(steps.fold(0.0, f64::max) < 0.2);
-    }
-
-    #[test]
-    fn normals_point_out_of_the_drawing() {
-        let contour = ring(50, 2.0);
-        for (normal, point) in normals(&contour).into_iter().zip(contour) {
-            assert!(normal.dot(point) > 1.99);
-        }
     }
 
     #[test]

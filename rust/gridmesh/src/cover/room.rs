@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::cover::spread;
+use crate::cover::outward::spread;
 use crate::geometry::segments::SegmentGrid;
 
 /// Part of the way to what lies opposite that a point may go: both sides may.
@@ -58,7 +58,7 @@ fn crossing([from, to]: [DVec2; 2], [a, b]: [DVec2; 2]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cover::normals;
+    use crate::cover::outward::normals;
 
     #[test]
     fn walls_of_an_inlet_leave_each_other_room() {
