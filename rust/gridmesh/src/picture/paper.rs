@@ -1,7 +1,7 @@
 //! Drawings on paper: what is not paper is covered.
 //!
 //! Light that falls unevenly on a sheet changes slowly: the brightness of the paper is a parabola of place, fitted
-//! to the brightest pixels of blocks, without the blocks that a drawing darkens.
+//! to the brightest pixels of blocks, without the blocks that a drawing darkens. Of chalk on a board all is the other way round.
 
 use crate::error::Result;
 use crate::geometry::cholesky::Pattern;
@@ -21,21 +21,35 @@ const DRAWN: f64 = 0.93;
 /// Of a picture of this contrast or less, nothing is drawn: the noise of a camera.
 const CONTRAST: f64 = 0.06;
 
+/// Dark paper is what so much of the rim of a picture shows, and so much of all of it.
+const AROUND: (f64, f64) = (0.8, 0.5);
+
 /// How much of each pixel is drawn on, from its red, green and blue (0 to 1), row by row from the top.
 ///
 /// What is darker or more colourful than the paper counts, against the paper's own colour where it lies: 0 is
 /// the typical paper, 1 the typical ink, where the two groups are those of `otsu`; a blank sheet is 0
-/// throughout. O(pixels).
+/// throughout. If that is nearly all of the rim of the picture and most of the picture, the paper is dark, and what is brighter
+/// counts. O(pixels).
 ///
 /// # Errors
 /// [`Error::PictureSize`](crate::error::Error::PictureSize) and
 /// [`Error::PixelNotFinite`](crate::error::Error::PixelNotFinite).
 pub fn coverage(width: usize, height: usize, colours: &[[f32; 3]]) -> Result<Picture> {
     Picture::check_size(width, height)?;
-    let channel = |c: usize| Picture::new(width, height, colours.iter().map(|colour| colour[c]).collect());
+    let drawn = darker(width, height, |k, c| colours[k][c])?;
+    if !is_around(&drawn) {
+        return Ok(drawn);
+    }
+    let brighter = darker(width, height, |k, c| 1.0 - colours[k][c])?;
+    let is_told = brighter.values().iter().any(|&value| value > 0.0) && !is_around(&brighter);
+    Ok(if is_told { brighter } else { drawn })
+}
+
+/// How much darker than the paper each pixel is in the channel in which it is most, from 0, as typical paper, to 1, as typical ink.
+fn darker(width: usize, height: usize, value: impl Fn(usize, usize) -> f32) -> Result<Picture> {
     let mut drawn = vec![0.0_f32; width * height];
     for c in 0..3 {
-        let channel = channel(c)?;
+        let channel = Picture::new(width, height, (0..width * height).map(|k| value(k, c)).collect())?;
         let light = Light::fit(&channel);
         for (k, (drawn, &value)) in drawn.iter_mut().zip(channel.values()).enumerate() {
             let paper = light.at((k % width) as f64, (k / width) as f64).max(0.05);
@@ -43,6 +57,21 @@ pub fn coverage(width: usize, height: usize, colours: &[[f32; 3]]) -> Result<Pic
         }
     }
     stretch(Picture::new(width, height, drawn)?)
+}
+
+/// Whether what is drawn lies all around the rest.
+fn is_around(drawn: &Picture) -> bool {
+    let (width, height) = (drawn.width(), drawn.height());
+    let (mut rim, mut rims, mut all) = (0_usize, 0_usize, 0_usize);
+    for (k, &value) in drawn.values().iter().enumerate() {
+        let (x, y) = (k % width, k / width);
+        let is_rim = x == 0 || y == 0 || x + 1 == width || y + 1 == height;
+        let is_drawn = value >= 0.5;
+        rim += usize::from(is_rim && is_drawn);
+        rims += usize::from(is_rim);
+        all += usize::from(is_drawn);
+    }
+    rim as f64 >= AROUND.0 * rims as f64 && all as f64 >= AROUND.1 * (width * height) as f64
 }
 
 /// Stretches values so that the means of the two groups become 0 and 1.
@@ -175,6 +204,25 @@ mod tests {
                 assert_eq!(value >= 0.5, inside, "{ink:?} {k} {value}");
             }
         }
+    }
+
+    #[test]
+    fn on_a_board_chalk_is_what_is_drawn() {
+        let board = |k: usize, inside: f32| -> [f32; 3] {
+            let (x, y) = ((k % 300) as f32, (k / 300) as f32);
+            let light = 0.3 - 0.1 * x / 300.0;
+            let drawn = (x - 150.0).hypot(y - 100.0) < 50.0;
+            [0.6, 1.0, 0.7].map(|green| if drawn { inside } else { light * green })
+        };
+        let covered = coverage(300, 200, &(0..60_000).map(|k| board(k, 0.9)).collect::<Vec<_>>()).unwrap();
+        for (k, &value) in covered.values().iter().enumerate() {
+            let inside = ((k % 300) as f64 - 150.0).hypot((k / 300) as f64 - 100.0) < 50.0;
+            assert_eq!(value >= 0.5, inside, "{k} {value}");
+        }
+        // A large drawing does not make its paper one.
+        let dark: Vec<[f32; 3]> = sheet([0.2; 3], 95.0);
+        let covered = coverage(300, 200, &dark).unwrap();
+        assert!(covered.values()[100 * 300 + 150] >= 0.5 && covered.values()[0] < 0.5);
     }
 
     #[test]
