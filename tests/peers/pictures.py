@@ -66,6 +66,17 @@ def asked(about: str | None) -> argparse.Namespace:
     return parser.parse_args()
 
 
+def filtered(alpha: np.ndarray, samples: int) -> np.ndarray:
+    """Alpha at samples x samples places of each pixel, as graphics cards see it between the middles of pixels."""
+    for _ in range(2):
+        n = len(alpha)
+        at = np.clip((np.arange(n * samples) + 0.5) / samples - 0.5, 0, n - 1)
+        low = np.minimum(at.astype(int), max(n - 2, 0))
+        share = (at - low)[:, None]
+        alpha = ((1 - share) * alpha[low] + share * alpha[np.minimum(low + 1, n - 1)]).T
+    return alpha
+
+
 def measure(pixels: np.ndarray, triangles: int, body: bool) -> dict[str, float]:
     """Mesh a picture, and compare it with its pixels."""
     started = time.process_time()
@@ -76,8 +87,10 @@ def measure(pixels: np.ndarray, triangles: int, body: bool) -> dict[str, float]:
     seconds = time.process_time() - started  # of all threads
     height, width = pixels.shape[:2]
     loops = [cutout.vertices[loop, :2] for loop in cutout.silhouette]
-    inside = sampled(loops, width, height, 8)[::-1].reshape(height, 8, width, 8).mean(axis=(1, 3))
+    fine = sampled(loops, width, height, 8)[::-1]
+    inside = fine.reshape(height, 8, width, 8).mean(axis=(1, 3))
     alpha = pixels[..., 3]
+    unlit = fine & (filtered(alpha, 8) < 0.02)
     outlines = gridmesh.trace_image(pixels, threshold=0.5, margin=1.0, min_area=0.0)
     drawn = [contour for outline, holes in outlines for contour in [outline, *holes]]
     around = sampled(drawn, width, height, 8)[::-1].reshape(height, 8, width, 8).mean(axis=(1, 3))
@@ -92,6 +105,7 @@ def measure(pixels: np.ndarray, triangles: int, body: bool) -> dict[str, float]:
         "cut": int(((alpha >= 0.5) & (inside < 0.5)).sum()),
         "opaque_cut": float(np.maximum((alpha >= 0.5) - inside, 0).sum() / (alpha >= 0.5).sum()),
         "empty": float(inside[alpha < 0.02].sum() / inside.sum()),
+        "unlit": float(unlit.sum() / fine.sum()),
         "margin": float(around[alpha < 0.02].sum() / around.sum()),
         "shortest": float(lengths.min() / lengths.mean()),
         "closed": bool((counts == 2).all()),
@@ -136,7 +150,11 @@ def tell(what: str, results: dict[str, dict[str, float]], refused: dict[str, str
     print(
         f"  opaque area outside: mean {100 * columns['opaque_cut'].mean():.3f} %, most {100 * columns['opaque_cut'].max():.2f} %"
     )
-    for what, key in (("empty area", "empty"), ("that of the outline with its margin", "margin")):
+    for what, key in (
+        ("empty area", "empty"),
+        ("that of the outline with its margin", "margin"),
+        ("area that is empty between the middles of pixels, too", "unlit"),
+    ):
         share = 100 * columns[key]
         print(
             f"  {what}: mean {share.mean():.2f} %, most {share.max():.2f} %, over 3 % in {(share > 3).sum()}"
