@@ -167,7 +167,10 @@ OPS: Mapping[str, Mapping[str, Param]] = {
             ("auto", "transparent", "paper"),
         ),
         "threshold": Param(
-            "number", "cover of a pixel that lies inside; 0.5, on paper the best one", least=0.001, most=0.999
+            "number",
+            "cover of a pixel that lies inside; 0.5, less for glows and shadows of sheets, on paper the best one",
+            least=0.001,
+            most=0.999,
         ),
         "smooth": Param("number", "how far along the outline pixels are smoothed (1)", least=0, most=10),
         "min_area": Param(

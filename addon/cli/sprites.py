@@ -15,9 +15,10 @@ from ..data import defaults
 from ..data.placing import Transaction
 from ..native import native
 from ..pictures import images, placing
-from ..pictures.cutouts import Cutout, Options, cut_out
+from ..pictures.cutouts import Cutout, cut_out
 from ..pictures.formats import gltf, godot, rig, spine
 from ..pictures.formats.sheet import Sheet
+from ..pictures.tracing import Options
 from . import files, loading, outputs, params
 from .making import MakeError
 
@@ -37,6 +38,10 @@ class MadeSprite:
             "min_angle": _least_angle(cutout),
         }
         self.notes = [f"a part is left out: {reason}" for reason in cutout.refused]
+        if cutout.widened:
+            self.notes.append(
+                f"lines are too thin for a mesh; all is {cutout.widened:g} pixels wider to each side"
+            )
         if cutout.dropped:
             self.notes.append(f"{cutout.dropped} islands left out, smaller than min_area")
 
@@ -104,7 +109,7 @@ def sprites(source: Path, _pattern: str | None, options: dict[str, Any], *, scri
     }
     chosen = Options(
         paper=paper,
-        threshold=options.get("threshold", None if paper else 0.5),
+        threshold=options.get("threshold"),
         smooth=options.get("smooth", 1.0),
         min_area=options.get("min_area", 16.0 if paper else 4.0),
         margin=options.get("margin", 1.0 if flat else 0.0),

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,9 +12,7 @@ import numpy as np
 from ..api import FACE_AREA, CancelledError, Progress, cancelling, faces_of, part_of
 from ..native import native
 from .sizes import FINER, SHORT, Lacks, area, even, finest, lacks_of, shortest
-
-PIXELS = 100_000_000
-"""The most pixels of a picture, as the module has it; asked for before they are read."""
+from .tracing import Options, Outlines, PictureError, check_size, traced
 
 _SQUARE = 0.75
 """How far whole pixels may reach over the outline of what they cover, at most."""
@@ -28,34 +26,14 @@ _MOST = 4
 _SIZES = (1.0, 0.94, 0.88)
 """Edge lengths tried for bodies with short edges, relative to that wanted: little finer each, as the lattice lies elsewhere at any other size."""
 
+_MISSING = 0.01
+"""Share of the area that may be missing because lines are too thin, before all is widened."""
+
+_WIDER = (0.5, 1.0)
+"""By how many pixels."""
+
 _TRACING = 0.3
 """Part of the time that tracing takes; the rest is meshing."""
-
-
-class PictureError(ValueError):
-    """Nothing can be made of a picture. The message says why and what to do, without naming the picture."""
-
-
-@dataclass(frozen=True)
-class Options:
-    """How a picture is read, and what is made of it."""
-
-    paper: bool = False
-    """What is not paper counts, instead of what is not transparent."""
-    threshold: float | None = None
-    """None: the one that parts the pixels best."""
-    smooth: float = 1.0
-    min_area: float = 4.0
-    margin: float = 0.0
-    cover: bool = False
-    """Without a margin the rim of the mesh lies across the outline, as much of it outside as inside; otherwise its vertices lie on it."""
-    holes: bool = True
-    triangles: int = 1000
-    """Of one side, shared by the parts according to their area."""
-    quads: int | None = None
-    """The same of quads; None makes triangles."""
-    body: dict[str, Any] | None = None
-    """Keyword arguments of `gridmesh.inflate`; None for a flat sheet."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,14 +55,8 @@ class Cutout:
     """Islands that were too small."""
     refused: list[str]
     """Why parts are missing."""
-
-
-def check_size(width: int, height: int) -> None:
-    """Raise PictureError for a picture that has no pixels or too many."""
-    if not 0 < width * height <= PIXELS:
-        raise PictureError(
-            f"it has {width} by {height} pixels; allowed: 1 to {PIXELS} pixels in all, scale it"
-        )
+    widened: float = 0.0
+    """How many pixels the margin is wider than asked for, because lines were too thin to be meshed."""
 
 
 def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = None) -> Cutout:
@@ -104,19 +76,14 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
     check_size(width, height)
     try:
         with cancelling(gridmesh):
-            traced = gridmesh.trace_image(
-                pixels,
-                background="paper" if options.paper else "transparent",
-                threshold="auto" if options.threshold is None else options.threshold,
-                smooth=options.smooth,
-                min_area=options.min_area,
-                margin=options.margin,
-                progress=part_of(progress, 0.0, _TRACING),
-            )
-            parts = list(traced) if options.holes else _filled(traced)
-            if not parts:
-                raise PictureError(_nothing(traced.dropped))
-            surfaces = _meshed(gridmesh, parts, options, part_of(progress, _TRACING, 1.0))
+            outlines = traced(gridmesh, pixels, options, part_of(progress, 0.0, _TRACING))
+            if not outlines.parts:
+                raise PictureError(_nothing(outlines.dropped))
+            surfaces = _meshed(gridmesh, outlines, options, part_of(progress, _TRACING, 1.0))
+            parts, dropped, widened = outlines.parts, outlines.dropped, 0.0
+            if _is_thin(parts, surfaces):
+                parts, surfaces, widened = _widened(gridmesh, pixels, (parts, surfaces), options, progress)
+            _tell_numbers(gridmesh, parts, surfaces, options, progress)
     except gridmesh.GridMeshError as error:
         raise PictureError(str(error)) from error
     refused = [str(surface) for surface in surfaces if isinstance(surface, gridmesh.GridMeshError)]
@@ -140,9 +107,38 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
         starts=starts[:-1],
         corner=[row for surface in meshed for row in surface.corner],
         parts=len(meshed),
-        dropped=traced.dropped,
+        dropped=dropped,
         refused=refused,
+        widened=widened,
     )
+
+
+def _is_coarse(surface: Any) -> bool:
+    """Whether no size could follow a part."""
+    return getattr(surface, "kind", "") in {"too_coarse", "no_patch"}
+
+
+def _is_thin(parts: list[Any], surfaces: list[Any]) -> bool:
+    """Whether lines are too thin in more of the picture than specks."""
+    missing = sum(_drawn(part) for part, surface in zip(parts, surfaces, strict=True) if _is_coarse(surface))
+    return missing > _MISSING * sum(map(_drawn, parts))
+
+
+def _widened(
+    gridmesh: Any,
+    pixels: np.ndarray,
+    first: tuple[list[Any], list[Any]],
+    options: Options,
+    progress: Progress | None,
+) -> tuple[list[Any], list[Any], float]:
+    """Parts and surfaces with a wider margin, if lines are no longer too thin with it, and by how much it is wider; else the first ones."""
+    for more in _WIDER:
+        outlines = traced(gridmesh, pixels, options, part_of(progress, 1.0, 1.0), more)
+        wider = replace(options, margin=options.margin + more)
+        surfaces = _meshed(gridmesh, outlines, wider, part_of(progress, 1.0, 1.0))
+        if not _is_thin(outlines.parts, surfaces):
+            return outlines.parts, surfaces, more
+    return *first, 0.0
 
 
 def _nothing(dropped: int) -> str:
@@ -151,15 +147,11 @@ def _nothing(dropped: int) -> str:
     return "nothing in it is covered; choose another background or a lower threshold"
 
 
-def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progress | None) -> list[Any]:
+def _meshed(gridmesh: Any, outlines: Outlines, options: Options, progress: Progress | None) -> list[Any]:
     """Surface or GridMeshError for each part, all with edges of about the same length."""
-    total = sum(_drawn(part) for part in parts)
-    cells = "triangles" if options.quads is None else "quads"
-    number = options.triangles if options.quads is None else options.quads
-    if number <= 0:
-        raise PictureError(f"{cells.capitalize()} of Each Side is {number}; allowed: 1 or more")
-    length = np.sqrt(total / number / FACE_AREA[cells])
-    lacks = lacks_of(parts, length, options.body is not None, options.margin <= 0)
+    parts = outlines.parts
+    number, cells, length = _asked(parts, options)
+    lacks = lacks_of(parts, length, options.body is not None, options.margin <= 0, outlines.faint)
     results: list[Any] = [None] * len(parts)
 
     def mesh(which: list[int], finer: float, of_these: Progress | None) -> dict[int, Any]:
@@ -183,23 +175,40 @@ def _meshed(gridmesh: Any, parts: list[Any], options: Options, progress: Progres
         now = part_of(progress, 1 - 0.5**step, 1 - 0.5 ** (step + 1))
         for k, surface in mesh(left, finer, now).items():
             results[k] = surface
-        left = [k for k in left if getattr(results[k], "kind", "") in {"too_coarse", "no_patch"}]
+        left = [k for k in left if _is_coarse(results[k])]
         if not left:
             break
-    for k in left:
-        if results[k].kind == "too_coarse":
-            results[k] = _too_few(gridmesh, parts[k], total, (number, cells, length), options, progress)
     if len(parts) > 1 and cells == "triangles":
         even(results, lambda which, finer: mesh(which, finer, part_of(progress, 1.0, 1.0)))
     return results
+
+
+def _asked(parts: list[Any], options: Options) -> tuple[int, str, float]:
+    """The number asked for, of which cells, and the length of their edges."""
+    cells = "triangles" if options.quads is None else "quads"
+    number = options.triangles if options.quads is None else options.quads
+    if number <= 0:
+        raise PictureError(f"{cells.capitalize()} of Each Side is {number}; allowed: 1 or more")
+    return number, cells, float(np.sqrt(sum(map(_drawn, parts)) / number / FACE_AREA[cells]))
+
+
+def _tell_numbers(
+    gridmesh: Any, parts: list[Any], surfaces: list[Any], options: Options, progress: Progress | None
+) -> None:
+    """Have the errors of parts that no size could follow tell the numbers that can, in place."""
+    for k, surface in enumerate(surfaces):
+        if getattr(surface, "kind", "") == "too_coarse":
+            surfaces[k] = _too_few(
+                gridmesh, parts[k], sum(map(_drawn, parts)), options, _asked(parts, options), progress
+            )
 
 
 def _too_few(
     gridmesh: Any,
     part: tuple[np.ndarray, list[np.ndarray]],
     total: float,
-    asked: tuple[int, str, float],
     options: Options,
+    asked: tuple[int, str, float],
     progress: Progress | None,
 ) -> Any:
     """The error for a part that no size could follow, with the number for the whole picture that would."""
@@ -339,24 +348,6 @@ def _patch(
         if lacks.is_enough(min(found, key=lacks.of), len(found)):
             break
     return min(found, key=lacks.of)
-
-
-def _filled(traced: list[tuple[np.ndarray, list[np.ndarray]]]) -> list[tuple[np.ndarray, list[np.ndarray]]]:
-    """Outlines without their holes, and without what lies in the holes; the largest come first."""
-    kept: list[np.ndarray] = []
-    for outline, _ in traced:
-        if not any(_inside(outline[0], other) for other in kept):
-            kept.append(outline)
-    return [(outline, []) for outline in kept]
-
-
-def _inside(point: np.ndarray, polygon: np.ndarray) -> bool:
-    """Whether a point lies inside a polygon (even-odd)."""
-    a, b = polygon, np.roll(polygon, -1, axis=0)
-    crossed = (a[:, 1] <= point[1]) != (b[:, 1] <= point[1])
-    a, b = a[crossed], b[crossed]
-    x = a[:, 0] + (point[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
-    return bool((x > point[0]).sum() % 2)
 
 
 def _drawn(part: tuple[np.ndarray, list[np.ndarray]]) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .cutouts import PictureError, check_size
+from .tracing import PictureError, check_size
 
 FLAT = 1e-3
 """How far corners of an image plane may be from where its UV map puts them, relative to its size."""

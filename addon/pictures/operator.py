@@ -29,8 +29,9 @@ from ..text.telling import told
 from ..ui.progress import Pointer
 from ..ui.properties import FACES, ShapeOptions
 from . import images, placing
-from .cutouts import Cutout, Options, PictureError, cut_out
+from .cutouts import Cutout, cut_out
 from .dropping import ENDINGS
+from .tracing import Options, PictureError
 
 READ = ";".join(f"*{ending}" for ending in ENDINGS)
 _BETWEEN = 0.1
@@ -71,13 +72,17 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
         items=[
             ("AUTO", "Automatic", "What is transparent; paper where nothing is"),
             ("TRANSPARENT", "Transparent", "What is transparent"),
-            ("PAPER", "Paper", "The paper of a scan or photograph, also under uneven light"),
+            (
+                "PAPER",
+                "Paper",
+                "The paper of a scan or photograph, also under uneven light; a dark board around what is bright",
+            ),
         ],
         default="AUTO",
     )
     use_threshold: BoolProperty(
         name="Give a Threshold",
-        description="Give the threshold, instead of the one that parts the pixels best on paper, and 0.5 elsewhere",
+        description="Give the threshold, instead of the one that parts the pixels best on paper, and elsewhere 0.5, or less for glows and shadows of flat sheets",
         default=False,
     )
     threshold: FloatProperty(
@@ -248,11 +253,10 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
 
     def _options(self, transparent: bool) -> Options:
         paper = self.background == "PAPER" or (self.background == "AUTO" and not transparent)
-        given = self.threshold if self.use_threshold else None
         body = self.body_options()
         return Options(
             paper=paper,
-            threshold=given if given is not None or paper else 0.5,
+            threshold=self.threshold if self.use_threshold else None,
             smooth=self.smooth,
             min_area=self.min_area,
             margin=self.margin if body is None else self.body_margin,
@@ -397,6 +401,10 @@ def _left_out(made: list[tuple[images.Picture, Options, bool, Cutout]]) -> list[
     told_of = []
     for picture, *_, cutout in made:
         told_of += [f"{picture.label}: a part is left out: {reason}" for reason in cutout.refused[:3]]
+        if cutout.widened:
+            told_of.append(
+                f"{picture.label}: lines are too thin for a mesh; all is {cutout.widened:g} pixels wider to each side"
+            )
         if cutout.dropped:
             told_of.append(
                 f"{picture.label}: {counted(cutout.dropped, 'island')} left out, smaller than Least Area"

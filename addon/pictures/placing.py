@@ -12,8 +12,9 @@ import numpy as np
 from ..api import Body
 from ..data import meshes
 from ..data.placing import Transaction
-from .cutouts import Cutout, Options
+from .cutouts import Cutout
 from .images import Picture
+from .tracing import Options
 from .weights import Kept
 
 LINK = "gridmesh_picture"

@@ -14,7 +14,7 @@ from ..api import faces_of
 FINER = (1.0, 0.7, 0.5, 0.35, 0.25)
 """Edge lengths tried for parts that are too thin, relative to that of the others."""
 
-FINEST = (0.18, 0.125)
+FINEST = (0.18, 0.125, 0.09, 0.063)
 """And for lines as thin as a pixel or two, as long as no more cells than `MOST_CELLS` would fill the picture."""
 
 MOST_CELLS = 100_000
@@ -78,10 +78,13 @@ class Lacks:
         return patch.report["outside"] <= self.cut_off and (lost <= self.much or tries >= self.tries)
 
 
-def lacks_of(parts: list[Any], edge_length: float, is_body: bool, across: bool) -> list[Lacks]:
+def lacks_of(
+    parts: list[Any], edge_length: float, is_body: bool, across: bool, faint: float = 1.0
+) -> list[Lacks]:
     """What each part may lack: the share of the picture that may be lost, parted along the outlines.
 
-    So the sizes of the parts differ little: edges of one length lose about as much anywhere along outlines.
+    So the sizes of the parts differ little: edges of one length lose about as much anywhere along outlines. Of rims that are fainter than
+    edges more may be cut off.
     """
     drawn = [area(outline) + sum(map(area, holes)) for outline, holes in parts]
     rims = [sum(_length(contour) for contour in [outline, *holes]) for outline, holes in parts]
@@ -92,7 +95,7 @@ def lacks_of(parts: list[Any], edge_length: float, is_body: bool, across: bool) 
         share, tries = max(least, most - PIXELS * sum(rims) / sum(drawn)), 3
     else:
         share, tries = EMPTY_OF_BODY, 3
-    cut_off = max(CUT_OFF, CUT_OFF_ACROSS * edge_length) if across else CUT_OFF
+    cut_off = faint * (max(CUT_OFF, CUT_OFF_ACROSS * edge_length) if across else CUT_OFF)
     return [
         Lacks(own, share * sum(drawn) * rim / sum(rims), cut_off, across, tries)
         for own, rim in zip(drawn, rims, strict=True)

@@ -1127,6 +1127,9 @@ _LIBRARY_PARTS = {
     "Select a sprite or a body made from a picture": "Ein Sprite oder einen Körper auswählen, der aus einem Bild gemacht ist",
     "{} updated": "{0} aktualisiert",
     "{}: a part is left out: {}": "{0}: ein Teil ist weggelassen: {1}",
+    "{}: lines are too thin for a mesh; all is {} pixels wider to each side": (
+        "{0}: Linien sind zu dünn für ein Mesh; alles ist auf jeder Seite {1} Pixel breiter"
+    ),
     "{}: {} left out, smaller than Least Area": "{0}: {1} weggelassen, kleiner als „Kleinste Fläche“",
     "{} picture": "{0} Bild",
     "{} pictures": "{0} Bilder",

@@ -51,8 +51,8 @@ GERMAN = {
     "Weights from Bones": "Gewichte von Knochen",
     "Background": "Hintergrund",
     "Give a Threshold": "Schwelle angeben",
-    "Give the threshold, instead of the one that parts the pixels best on paper, and 0.5 elsewhere": (
-        "Die Schwelle angeben, statt auf Papier der, die die Pixel am besten trennt, und sonst 0,5"
+    "Give the threshold, instead of the one that parts the pixels best on paper, and elsewhere 0.5, or less for glows and shadows of flat sheets": (
+        "Die Schwelle angeben, statt auf Papier der, die die Pixel am besten trennt, und sonst 0,5, oder weniger bei Schein und Schatten flacher Meshes"
     ),
     "Hide Picture": "Bild verbergen",
     "Hide the object that shows the picture, which is in the same place": (
@@ -92,8 +92,8 @@ GERMAN = {
         "Die Bilder der ausgewählten Sprites und Körper neu lesen und ihre Meshes neu machen"
     ),
     "Smoothing": "Glättung",
-    "The paper of a scan or photograph, also under uneven light": (
-        "Das Papier eines Scans oder Fotos, auch unter ungleichmäßigem Licht"
+    "The paper of a scan or photograph, also under uneven light; a dark board around what is bright": (
+        "Das Papier eines Scans oder Fotos, auch unter ungleichmäßigem Licht; eine dunkle Tafel um das, was hell ist"
     ),
     "Threshold": "Schwelle",
     "Transparent": "Durchsichtig",

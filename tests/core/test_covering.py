@@ -296,3 +296,32 @@ def test_the_number_that_a_refused_picture_needs_works(monkeypatch):
     assert refused[0].startswith("500 triangles are too few")
     least = int(refused[0].split("; ")[1].split(" work")[0])
     assert not cut_out(pixels, Options(threshold=0.5, triangles=least)).refused
+
+
+def turned_at(cutout):
+    """The turns of the silhouette at its vertices, in radians."""
+    turns = []
+    for loop in cutout.silhouette:
+        points = cutout.vertices[loop, :2]
+        along = np.diff(np.vstack([points, points[:2]]), axis=0)
+        angles = np.arctan2(along[:, 1], along[:, 0])
+        turns.append(np.abs((np.diff(angles) + np.pi) % (2 * np.pi) - np.pi))
+    return np.concatenate(turns)
+
+
+@pytest.mark.parametrize("body", [None, {}])
+def test_quads_do_not_crumple_in_tips(body):
+    """Small quads of a star's tips were to be as long as those elsewhere, so the rim went back and forth there, and the mesh became finer in vain."""
+    turns = np.arange(10) * np.pi / 5 - 0.3
+    radii = np.where(np.arange(10) % 2, 90, 40)
+    star = np.column_stack([radii * np.cos(turns), -radii * np.sin(turns)]) + [120, 141]
+    alpha = coverage([star], 256, 256)
+    shadow = 0.45 * np.roll(alpha, (14, 12), (0, 1))
+    alpha = alpha + shadow * (1 - alpha)
+    pixels = np.dstack([np.zeros((256, 256, 3)), alpha])
+    cutout = cut_out(
+        pixels, Options(threshold=0.5, quads=500, cover=True, margin=float(body is None), body=body)
+    )
+    assert len(cutout.faces) < 1500
+    # Of a body at the ten corners, and at few other vertices.
+    assert body is None or (turned_at(cutout) > 1.2).sum() <= 14
