@@ -1,5 +1,6 @@
 //! Vertices visited round by round, as long as they or their neighbours move.
 
+use std::f64::consts::FRAC_PI_4;
 use std::ops::Range;
 
 use crate::error::Result;
@@ -76,4 +77,40 @@ pub(crate) fn visit_active<I: Iterator<Item = u32>>(
 /// How far the directions that are tried are turned in a round, in radians.
 pub(crate) fn turn(round: usize) -> f64 {
     0.3 * round as f64
+}
+
+/// The eight directions that are tried in a round, as sine and cosine; those of the round asked for last are kept.
+pub(crate) struct Directions {
+    round: usize,
+    of_round: [(f64, f64); 8],
+}
+
+impl Directions {
+    pub fn new() -> Self {
+        Self { round: 0, of_round: Self::made(0) }
+    }
+
+    pub fn of(&mut self, round: usize) -> &[(f64, f64); 8] {
+        if round != self.round {
+            *self = Self { round, of_round: Self::made(round) };
+        }
+        &self.of_round
+    }
+
+    fn made(round: usize) -> [(f64, f64); 8] {
+        std::array::from_fn(|k| libm::sincos(k as f64 * FRAC_PI_4 + turn(round)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_those_of_the_round_asked_for() {
+        let mut directions = Directions::new();
+        for round in [0, 3, 3, 1, 0] {
+            assert_eq!(*directions.of(round), Directions::made(round));
+        }
+    }
 }

@@ -90,6 +90,11 @@ impl<'a> Fan<'a> {
         self.iter().map(sharpness(at, point, normal)).any(|sharpness| sharpness >= limit)
     }
 
+    /// Whether [`Self::sharpest`] is more than `limit`: known at the first triangle that is sharper.
+    pub fn is_sharper(self, at: impl Fn(u32) -> DVec3, point: DVec3, normal: DVec3, limit: f64) -> bool {
+        self.iter().map(sharpness(at, point, normal)).any(|sharpness| sharpness > limit)
+    }
+
     /// The two others of the vertices of the triangle that [`Self::sharpest`] speaks of.
     pub fn ends_of_sharpest(
         self,
@@ -103,14 +108,39 @@ impl<'a> Fan<'a> {
         sharpest.map(|(_, (i, j, _))| [i, j])
     }
 
-    /// Least ratio of area to squared sides of the triangles around a vertex at `point`: one if all are ideal.
-    pub fn worst(self, at: impl Fn(u32) -> DVec3, point: DVec3) -> f64 {
-        let ratio = |(i, j, ideal): (u32, u32, Ideal)| {
+    /// How good the triangles around a vertex at `point` are, and how well they stand for the surface.
+    pub fn shape(self, at: impl Fn(u32) -> DVec3, point: DVec3, normal: DVec3) -> Shape {
+        let mut shape = Shape::BEST;
+        for (i, j, ideal) in self.iter() {
             let (a, b) = (at(i) - point, at(j) - point);
             let sides = ideal.sides([a.length_squared(), b.length_squared(), (b - a).length_squared()]);
-            a.cross(b).length() * ideal.best() / sides
-        };
-        self.iter().map(ratio).fold(f64::INFINITY, f64::min)
+            shape.with(ideal, a.cross(b), sides, normal);
+        }
+        shape
+    }
+}
+
+/// What the worst of some triangles is like.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shape {
+    /// Least ratio of area to squared sides: one if all are ideal.
+    pub worst: f64,
+    /// See [`Fan::facing`].
+    pub facing: f64,
+}
+
+impl Shape {
+    /// That of no triangles.
+    pub const BEST: Self = Self { worst: f64::INFINITY, facing: f64::INFINITY };
+
+    /// Takes a triangle in: the product of its two sides at the vertex, and the sum of squared sides that its ideal compares.
+    #[inline]
+    pub fn with(&mut self, ideal: Ideal, cross: DVec3, sides: f64, normal: DVec3) {
+        let length = cross.length();
+        self.worst = self.worst.min(length * ideal.best() / sides);
+        let inverse = length.recip();
+        let facing = if inverse.is_finite() && inverse > 0.0 { cross * inverse } else { DVec3::ZERO };
+        self.facing = self.facing.min(facing.dot(normal));
     }
 }
 

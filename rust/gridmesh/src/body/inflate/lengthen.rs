@@ -1,13 +1,11 @@
 //! Ends of a front's short edges moved apart.
 
-use std::f64::consts::FRAC_PI_4;
-
 use glam::{DVec2, DVec3};
 
 use super::fan::{LEVEL, REFLEX};
 use crate::body::inflate::front::{Front, Guide};
 use crate::error::Result;
-use crate::geometry::active::{Visit, turn, visit_active};
+use crate::geometry::active::{Directions, Visit, visit_active};
 use crate::geometry::lengthen::{ROUNDS, THIN, THIN_OF_QUADS, lack};
 use crate::options::CellShape;
 use crate::progress::Progress;
@@ -35,10 +33,11 @@ pub(crate) fn lengthen(front: &mut Front, guide: &Guide<'_>, progress: Progress<
     let mean = mean_length(front, guide);
     let vertices = front.first..front.flat.len();
     let thinnest = vertices.map(|v| front.sharpest(guide, v)).fold(limits[0], f64::max);
+    let mut directions = Directions::new();
     for ((share, level), thin) in STAGES.into_iter().zip(limits) {
         let (wanted, thin) = (share * mean, thin.min(thinnest));
         visit_active(front.first..front.flat.len(), near, ROUNDS, progress, |v, round| {
-            let limits = Limits { wanted, level, thin, turn: turn(round) };
+            let limits = Limits { wanted, level, thin, directions: directions.of(round) };
             if lacking(front, guide, v, front.position(v), wanted) == 0.0 {
                 Visit::Done
             } else if moved_apart(front, guide, v, &limits) || has_made_room(front, guide, v, &limits) {
@@ -52,15 +51,15 @@ pub(crate) fn lengthen(front: &mut Front, guide: &Guide<'_>, progress: Progress<
 }
 
 /// What moves are tried.
-struct Limits {
+struct Limits<'a> {
     /// The length wanted.
     wanted: f64,
     /// See [`STAGES`].
     level: f64,
     /// See [`THIN`].
     thin: f64,
-    /// Of the directions.
-    turn: f64,
+    /// The directions tried, as sine and cosine.
+    directions: &'a [(f64, f64); 8],
 }
 
 /// Mean length of the edges of the body: those of the silhouette count once, others for the back as well.
@@ -77,34 +76,70 @@ fn lacking(front: &Front, guide: &Guide<'_>, v: usize, point: DVec3, wanted: f64
 }
 
 /// Moves a vertex to where the edges at it lack less.
-fn moved_apart(front: &mut Front, guide: &Guide<'_>, v: usize, limits: &Limits) -> bool {
+fn moved_apart(front: &mut Front, guide: &Guide<'_>, v: usize, limits: &Limits<'_>) -> bool {
     let cost = |front: &Front, point: DVec3| lacking(front, guide, v, point, limits.wanted);
     let present = 0.999 * cost(front, front.position(v));
     moved(front, guide, v, limits, present, cost)
 }
 
 /// Moves the neighbours of a vertex to where its triangles are larger in projection.
-fn has_made_room(front: &mut Front, guide: &Guide<'_>, v: usize, limits: &Limits) -> bool {
+fn has_made_room(front: &mut Front, guide: &Guide<'_>, v: usize, limits: &Limits<'_>) -> bool {
     let mut has_moved = false;
     for &u in guide.around.near(v) {
         if u as usize >= front.first {
+            let room = Room::new(front, guide, v, u);
+            let present = -1.001 * room.at(front.flat[u as usize]);
+            // The least of the triangles may not be one of this neighbour's.
+            if -room.without >= present {
+                continue;
+            }
             let lacked = lacking(front, guide, u as usize, front.position(u as usize), limits.wanted);
             let cost = |front: &Front, point: DVec3| {
-                let is_worse = lacking(front, guide, u as usize, point, limits.wanted) > lacked;
-                if is_worse { f64::INFINITY } else { -room(front, guide, v, u, point.truncate()) }
+                let room = room.at(point.truncate());
+                let is_worse = || lacking(front, guide, u as usize, point, limits.wanted) > lacked;
+                if -room < present && is_worse() { f64::INFINITY } else { -room }
             };
-            let present = -1.001 * room(front, guide, v, u, front.flat[u as usize]);
             has_moved |= moved(front, guide, u as usize, limits, present, cost);
         }
     }
     has_moved
 }
 
-/// Twice the least area in projection of the triangles at `v`, were its neighbour `u` at `point`.
-fn room(front: &Front, guide: &Guide<'_>, v: usize, u: u32, point: DVec2) -> f64 {
-    let place = |w: u32| if w == u { point } else { front.flat[w as usize] } - front.flat[v];
-    let areas = guide.around.fan(v).iter().map(|(a, b, _)| place(a).perp_dot(place(b)));
-    areas.fold(f64::INFINITY, f64::min)
+/// The triangles at a vertex, by their areas in projection, one of its neighbours apart.
+struct Room {
+    /// Twice the least area of those that do not have the neighbour.
+    without: f64,
+    /// Where the vertex is.
+    middle: DVec2,
+    /// From there to the third vertex of the others, and whether that follows the neighbour.
+    thirds: Vec<(DVec2, bool)>,
+}
+
+impl Room {
+    fn new(front: &Front, guide: &Guide<'_>, v: usize, u: u32) -> Self {
+        let middle = front.flat[v];
+        let place = |w: u32| front.flat[w as usize] - middle;
+        let mut room = Room { without: f64::INFINITY, middle, thirds: Vec::with_capacity(4) };
+        for (a, b, _) in guide.around.fan(v).iter() {
+            if a == u {
+                room.thirds.push((place(b), true));
+            } else if b == u {
+                room.thirds.push((place(a), false));
+            } else {
+                room.without = room.without.min(place(a).perp_dot(place(b)));
+            }
+        }
+        room
+    }
+
+    /// Twice the least area of all, were the neighbour at `point`.
+    fn at(&self, point: DVec2) -> f64 {
+        let away = point - self.middle;
+        let area = |&(third, follows): &(DVec2, bool)| {
+            if follows { away.perp_dot(third) } else { third.perp_dot(away) }
+        };
+        self.thirds.iter().map(area).fold(self.without, f64::min)
+    }
 }
 
 /// Moves a vertex to the best of a few places around it; false if none costs less than `present`.
@@ -112,7 +147,7 @@ fn moved(
     front: &mut Front,
     guide: &Guide<'_>,
     v: usize,
-    limits: &Limits,
+    limits: &Limits<'_>,
     present: f64,
     cost: impl Fn(&Front, DVec3) -> f64,
 ) -> bool {
@@ -120,24 +155,33 @@ fn moved(
     let (here, start) = (front.position(v), front.flat[v]);
     let normal = front.normal(guide, v);
     let (e, f) = normal.any_orthonormal_pair();
-    let level = fan.facing(front.positions(), here, normal).min(limits.level);
-    let sharpest = fan.sharpest(front.positions(), here, normal);
-    let thin = if sharpest < REFLEX { sharpest.max(limits.thin) } else { limits.thin };
+    // Hardly any place costs less: what else is asked of one is only measured then.
+    let (mut level_here, mut thin) = (None, None);
     let mut best = present;
     let mut is_moved = false;
     for reach in REACHES {
-        for k in 0..8 {
-            let (sin, cos) = libm::sincos(f64::from(k) * FRAC_PI_4 + limits.turn);
-            let target = here + reach * limits.wanted * (cos * e + sin * f);
+        for (sin, cos) in limits.directions {
+            let target = here + reach * limits.wanted * (*cos * e + *sin * f);
             // Off the surface by a second-order term: a cheap first look.
-            if cost(front, target) >= best || fan.sharpest(front.positions(), target, normal) > thin {
+            if cost(front, target) >= best {
+                continue;
+            }
+            let thin = *thin.get_or_insert_with(|| {
+                let sharpest = fan.sharpest(front.positions(), here, normal);
+                if sharpest < REFLEX { sharpest.max(limits.thin) } else { limits.thin }
+            });
+            if fan.is_sharper(front.positions(), target, normal, thin) {
                 continue;
             }
             let Some(there) = front.trial(guide, v, start, target) else { continue };
             let costs = cost(front, there.position);
+            let mut level = || {
+                let level = || fan.facing(front.positions(), here, normal).min(limits.level);
+                *level_here.get_or_insert_with(level)
+            };
             if costs < best
-                && fan.sharpest(front.positions(), there.position, there.normal) <= thin
-                && fan.facing(front.positions(), there.position, there.normal) >= level
+                && !fan.is_sharper(front.positions(), there.position, there.normal, thin)
+                && fan.facing(front.positions(), there.position, there.normal) >= level()
             {
                 best = costs;
                 is_moved = true;

@@ -1,7 +1,5 @@
 //! Two neighbours of a front moved as one, where the triangles between them hold each fast.
 
-use std::f64::consts::FRAC_PI_4;
-
 use glam::DVec3;
 
 use super::fan::LEVEL;
@@ -12,23 +10,20 @@ use super::front::{Front, Guide, Spot, Trial, project};
 /// projection: a vertex alone soon meets the bound that they stay positive, and its neighbour does not make room
 /// as long as its own triangles are good.
 ///
-/// `reach` is the length of the way in mean lengths of the edges around `v`, `turn` turns the eight directions that are tried.
+/// `reach` is the length of the way in mean lengths of the edges around `v`; the `directions` that are tried are sines and cosines.
 /// False if no pair has a better place.
 pub(super) fn has_moved_with_another(
     front: &mut Front,
     guide: &Guide<'_>,
     v: usize,
     reach: f64,
-    turn: f64,
+    directions: &[(f64, f64); 8],
 ) -> bool {
     let here = front.position(v);
     let normal = front.normal(guide, v);
     let (e, f) = normal.any_orthonormal_pair();
     let length = reach * guide.around.fan(v).mean_edge(front.positions(), here);
-    let ways: [DVec3; 8] = std::array::from_fn(|k| {
-        let (sin, cos) = libm::sincos(k as f64 * FRAC_PI_4 + turn);
-        length * (cos * e + sin * f)
-    });
+    let ways = directions.map(|(sin, cos)| length * (cos * e + sin * f));
     let ends = guide.around.fan(v).ends_of_sharpest(front.positions(), here, normal);
     let first = front.first;
     let mut others = ends.into_iter().flatten().map(|u| u as usize).filter(|&u| u >= first);
@@ -39,8 +34,12 @@ pub(super) fn has_moved_with_another(
 fn has_moved(front: &mut Front, guide: &Guide<'_>, pair: [usize; 2], ways: &[DVec3]) -> bool {
     let starts = pair.map(|v| front.flat[v]);
     let normals = pair.map(|v| front.normal(guide, v));
-    let mut best = sharpest(front, guide, pair);
-    let levels = pair.map(|v| facing(front, guide, v).min(LEVEL));
+    let sharpest_of = |k: usize| {
+        let fan = guide.around.fan(pair[k]);
+        fan.sharpest(front.positions(), front.position(pair[k]), normals[k])
+    };
+    let mut best = sharpest_of(0).max(sharpest_of(1));
+    let mut levels = None;
     let mut kept = pair.map(|v| front.spot(v));
     let mut is_moved = false;
     for &way in ways {
@@ -57,6 +56,8 @@ fn has_moved(front: &mut Front, guide: &Guide<'_>, pair: [usize; 2], ways: &[DVe
         }
         let spots = pair.map(|v| spot_near(front, guide, v, front.position(v) + way));
         let [Some(first), Some(second)] = spots else { continue };
+        // Measured before anything is moved.
+        let levels = *levels.get_or_insert_with(|| pair.map(|v| facing(front, guide, v).min(LEVEL)));
         front.put_at(pair[0], &first);
         front.put_at(pair[1], &second);
         let now = sharpest(front, guide, pair);

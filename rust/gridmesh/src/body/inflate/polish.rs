@@ -1,14 +1,12 @@
 //! Improves the triangles of a front, vertex by vertex.
 
-use std::f64::consts::FRAC_PI_4;
-
 use glam::DVec2;
 
-use crate::body::inflate::fan::LEVEL;
+use crate::body::inflate::fan::{LEVEL, Shape};
 use crate::body::inflate::front::{Front, Guide, Trial, project};
 use crate::body::inflate::pairs::has_moved_with_another;
 use crate::error::Result;
-use crate::geometry::active::{ASK_EVERY, Rounds, Visit, turn, visit_active};
+use crate::geometry::active::{ASK_EVERY, Directions, Rounds, Visit, visit_active};
 use crate::geometry::corner::{Corner, Ideal};
 use crate::geometry::quadratic::Quadratic;
 use crate::options::CellShape;
@@ -24,7 +22,7 @@ const SHARP_OF_QUADS: f64 = 0.839_099_631_177_28;
 const POWER: i32 = 8;
 const POWER_OF_QUADS: i32 = 3;
 
-/// A vertex may make its worst triangle worse if it stays better than this, see `Fan::worst`: the quality of an isosceles
+/// A vertex may make its worst triangle worse if it stays better than this, see `Shape::worst`: the quality of an isosceles
 /// triangle with 26 degrees at its apex.
 const GOOD: f64 = 0.692_8;
 
@@ -56,9 +54,12 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
         let here = front.position(v);
         let fan = guide.around.fan(v);
         let mut model = Quadratic::default();
+        let mut before = Shape::BEST;
         for (i, j, ideal) in fan.iter() {
             let (a, b) = (front.position(i as usize) - here, front.position(j as usize) - here);
-            let mut corner = Corner::new(ideal, a, b, normal);
+            let cross = a.cross(b);
+            let mut corner = Corner::crossed(ideal, [a, b, cross], normal);
+            before.with(ideal, cross, corner.sides, normal);
             let mut flat = Quadratic::default();
             if (i as usize) < front.first && (j as usize) < front.first {
                 // The height counts beside the other sides as at an equilateral triangle.
@@ -81,18 +82,15 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
         let Some((target, _)) = project(field, here + u.x * e + u.y * f, front.place[slot].triangle) else {
             continue;
         };
-        let before = fan.worst(front.positions(), here);
-        let fidelity = fan.facing(front.positions(), here, normal).min(LEVEL);
+        let fidelity = before.facing.min(LEVEL);
         let mut share = 1.0;
         for _ in 0..4 {
             let point = front.flat[v].lerp(target, share);
             if front.may_move(guide, v, front.flat[v], point) {
                 let Some(place) = field.locate(point, front.place[slot].triangle) else { break };
                 let there = Trial::new(field, point, place);
-                let after = fan.worst(front.positions(), there.position);
-                if (after >= before || after > GOOD)
-                    && fan.facing(front.positions(), there.position, there.normal) >= fidelity
-                {
+                let after = fan.shape(front.positions(), there.position, there.normal);
+                if (after.worst >= before.worst || after.worst > GOOD) && after.facing >= fidelity {
                     front.put(v, &there);
                     break;
                 }
@@ -115,39 +113,52 @@ pub(crate) fn sharpen(front: &mut Front, guide: &Guide<'_>, progress: Progress<'
         CellShape::Quad => SHARP_OF_QUADS,
     };
     let near = |v: usize| guide.around.fan(v).iter().flat_map(|(a, b, _)| [a, b]);
+    let mut directions = Directions::new();
     visit_active(front.first..front.flat.len(), near, ROUNDS, progress, |v, round| {
         let present = front.sharpest(guide, v);
         if present <= sharp {
             return Visit::Done;
         }
         let reach = REACHES[round % REACHES.len()];
-        let is_moved = try_around(front, guide, v, present, reach, turn(round))
-            || has_moved_with_another(front, guide, v, reach, turn(round));
+        let directions = directions.of(round);
+        let is_moved = try_around(front, guide, v, present, reach, directions)
+            || has_moved_with_another(front, guide, v, reach, directions);
         if is_moved { Visit::Moved } else { Visit::Stuck }
     })
 }
 
 /// Moves `v`, the largest cotangent around which is `present`, to the best of eight places around it;
 /// false if none is better.
-fn try_around(front: &mut Front, guide: &Guide<'_>, v: usize, present: f64, reach: f64, turn: f64) -> bool {
+fn try_around(
+    front: &mut Front,
+    guide: &Guide<'_>,
+    v: usize,
+    present: f64,
+    reach: f64,
+    directions: &[(f64, f64); 8],
+) -> bool {
     let fan = guide.around.fan(v);
     let (here, start) = (front.position(v), front.flat[v]);
     let normal = front.normal(guide, v);
     let (e, f) = normal.any_orthonormal_pair();
     let mean = fan.mean_edge(front.positions(), here);
-    let fidelity = fan.facing(front.positions(), here, normal).min(LEVEL);
+    let mut fidelity = None;
     let mut best = present;
     let mut moved = false;
-    for k in 0..8 {
-        let (sin, cos) = libm::sincos(f64::from(k) * FRAC_PI_4 + turn);
-        let target = here + reach * mean * (cos * e + sin * f);
+    for (sin, cos) in directions {
+        let target = here + reach * mean * (*cos * e + *sin * f);
         // Off the surface by a second-order term: a cheap first look.
         if fan.is_sharp(front.positions(), target, normal, best) {
             continue;
         }
         let Some(there) = front.trial(guide, v, start, target) else { continue };
         let now = fan.sharpest(front.positions(), there.position, there.normal);
-        if now < best && fan.facing(front.positions(), there.position, there.normal) >= fidelity {
+        if now >= best {
+            continue;
+        }
+        let fidelity =
+            *fidelity.get_or_insert_with(|| fan.facing(front.positions(), here, normal).min(LEVEL));
+        if fan.facing(front.positions(), there.position, there.normal) >= fidelity {
             best = now;
             moved = true;
             front.put(v, &there);
