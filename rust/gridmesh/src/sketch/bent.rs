@@ -6,7 +6,6 @@ use std::time::Instant;
 use glam::DVec2;
 
 use super::centroid;
-use crate::bend::conformal::Operators;
 use crate::bend::{Bent, Ground, choose};
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::symmetry::Symmetry;
@@ -56,18 +55,17 @@ impl Job<'_> {
         let ground = unless_unsolved(self.ground(asked, progress))?;
         self.lap("bend", started);
         let mut best: Option<Found> = None;
-        if let Some((ground, operators)) = ground {
-            let ground = (&ground, &operators);
-            let is_good = self.best_bent_by(1.0, ground, asked, &mut best, progress)?;
+        if let Some(ground) = ground {
+            let is_good = self.best_bent_by(1.0, &ground, asked, &mut best, progress)?;
             match self.options.cells {
                 CellShape::Quad if !is_good => {
-                    self.best_bent_by(WEAKER[0], ground, asked, &mut best, progress)?;
+                    self.best_bent_by(WEAKER[0], &ground, asked, &mut best, progress)?;
                 }
                 CellShape::Quad => {}
                 CellShape::Triangle => {
                     for strength in WEAKER {
                         if best.as_ref().is_some_and(Found::is_uneven) {
-                            self.best_bent_by(strength, ground, asked, &mut best, progress)?;
+                            self.best_bent_by(strength, &ground, asked, &mut best, progress)?;
                         }
                     }
                 }
@@ -81,7 +79,7 @@ impl Job<'_> {
     fn best_bent_by(
         &mut self,
         strength: f64,
-        ground: (&Arc<Ground>, &Operators),
+        ground: &Arc<Ground>,
         asked: Asked,
         best: &mut Option<Found>,
         progress: Progress<'_>,
@@ -102,7 +100,7 @@ impl Job<'_> {
                 let cost = expected(&traced);
                 outlines.push(traced);
                 let next = bends.peek().map_or(f64::INFINITY, |next| next.1);
-                if cost <= next {
+                if self.options.cells == CellShape::Triangle && cost <= next {
                     break;
                 }
             }
@@ -143,8 +141,8 @@ impl Job<'_> {
         Ok(false)
     }
 
-    /// What all bends of the drawing share, and what they are found with; none where it cannot bend.
-    fn ground(&self, asked: Asked, progress: Progress<'_>) -> Result<Option<(Arc<Ground>, Operators)>> {
+    /// What all bends of the drawing share; none where it cannot bend.
+    fn ground(&self, asked: Asked, progress: Progress<'_>) -> Result<Option<Arc<Ground>>> {
         let edge_length = match asked {
             Asked::EdgeLength(h) => h,
             Asked::Cells(n) => self.first_guess(n),
@@ -154,7 +152,7 @@ impl Job<'_> {
         let density = self.options.density.as_ref();
         let is_symmetric = self.symmetry.is_some();
         let ground = Ground::new(&self.contours, frame, density, is_symmetric, self.options.cells, progress)?;
-        ground.map(|ground| ground.operators(progress).map(|found| (Arc::new(ground), found))).transpose()
+        Ok(ground.map(Arc::new))
     }
 
     /// The boundary on the straight lattice of a bent plane, where there is one.
