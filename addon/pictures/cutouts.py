@@ -80,10 +80,12 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
             if not outlines.parts:
                 raise PictureError(_nothing(outlines.dropped))
             surfaces = _meshed(gridmesh, outlines, options, part_of(progress, _TRACING, 1.0))
-            parts, dropped, widened = outlines.parts, outlines.dropped, 0.0
-            if _is_thin(parts, surfaces):
-                parts, surfaces, widened = _widened(gridmesh, pixels, (parts, surfaces), options, progress)
-            _tell_numbers(gridmesh, parts, surfaces, options, progress)
+            widened = 0.0
+            if _is_thin(outlines.parts, surfaces):
+                outlines, surfaces, widened = _widened(
+                    gridmesh, pixels, (outlines, surfaces), options, progress
+                )
+            _tell_numbers(gridmesh, outlines.parts, surfaces, options, progress)
     except gridmesh.GridMeshError as error:
         raise PictureError(str(error)) from error
     refused = [str(surface) for surface in surfaces if isinstance(surface, gridmesh.GridMeshError)]
@@ -107,7 +109,7 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
         starts=starts[:-1],
         corner=[row for surface in meshed for row in surface.corner],
         parts=len(meshed),
-        dropped=dropped,
+        dropped=outlines.dropped,
         refused=refused,
         widened=widened,
     )
@@ -127,17 +129,17 @@ def _is_thin(parts: list[Any], surfaces: list[Any]) -> bool:
 def _widened(
     gridmesh: Any,
     pixels: np.ndarray,
-    first: tuple[list[Any], list[Any]],
+    first: tuple[Outlines, list[Any]],
     options: Options,
     progress: Progress | None,
-) -> tuple[list[Any], list[Any], float]:
-    """Parts and surfaces with a wider margin, if lines are no longer too thin with it, and by how much it is wider; else the first ones."""
+) -> tuple[Outlines, list[Any], float]:
+    """Outlines and surfaces with a wider margin, if lines are no longer too thin with it, and by how much it is wider; else the first ones."""
     for more in _WIDER:
         outlines = traced(gridmesh, pixels, options, part_of(progress, 1.0, 1.0), more)
         wider = replace(options, margin=options.margin + more)
         surfaces = _meshed(gridmesh, outlines, wider, part_of(progress, 1.0, 1.0))
         if not _is_thin(outlines.parts, surfaces):
-            return outlines.parts, surfaces, more
+            return outlines, surfaces, more
     return *first, 0.0
 
 

@@ -228,11 +228,10 @@ fn widened<'p>(
             // Wider, it meets itself or is too thin elsewhere: the best so far serves.
             Err(_) => break,
         };
-        let meshed = wider;
-        needs = self::needs(fine, &sketch.patch, &followers_of(&sketch.patch, &meshed), slack);
+        needs = self::needs(fine, &sketch.patch, &followers_of(&sketch.patch, &wider), slack);
         let outside = squares(&needs);
         if outside < best.outside {
-            best = Followed { sketch, meshed, outside };
+            best = Followed { sketch, meshed: wider, outside };
         }
     }
     Ok(best)
@@ -281,7 +280,7 @@ mod tests {
 
     use super::*;
 
-    fn ring(n: usize, radius: f64) -> Vec<DVec2> {
+    pub(super) fn ring(n: usize, radius: f64) -> Vec<DVec2> {
         (0..n).map(|k| radius * DVec2::from_angle(TAU * k as f64 / n as f64)).collect()
     }
 

@@ -53,15 +53,10 @@ pub(super) fn spread(contour: &[DVec2], need: &[f64], reach: f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
-
     use super::*;
     use crate::cover::dense;
+    use crate::cover::tests::ring;
     use crate::drawing::contours::read_contours;
-
-    fn ring(n: usize, radius: f64) -> Vec<DVec2> {
-        (0..n).map(|k| radius * DVec2::from_angle(TAU * k as f64 / n as f64)).collect()
-    }
 
     #[test]
     fn what_is_spread_is_nowhere_below_the_need() {
