@@ -312,16 +312,23 @@ def turned_at(cutout):
 @pytest.mark.parametrize("body", [None, {}])
 def test_quads_do_not_crumple_in_tips(body):
     """Small quads of a star's tips were to be as long as those elsewhere, so the rim went back and forth there, and the mesh became finer in vain."""
-    turns = np.arange(10) * np.pi / 5 - 0.3
     radii = np.where(np.arange(10) % 2, 90, 40)
-    star = np.column_stack([radii * np.cos(turns), -radii * np.sin(turns)]) + [120, 141]
-    alpha = coverage([star], 256, 256)
-    shadow = 0.45 * np.roll(alpha, (14, 12), (0, 1))
-    alpha = alpha + shadow * (1 - alpha)
-    pixels = np.dstack([np.zeros((256, 256, 3)), alpha])
-    cutout = cut_out(
-        pixels, Options(threshold=0.5, quads=500, cover=True, margin=float(body is None), body=body)
-    )
-    assert len(cutout.faces) < 1500
+    faces, turned = [], []
+    for start in np.arange(6) / 10 - 0.3:
+        turns = np.arange(10) * np.pi / 5 + start
+        star = np.column_stack([radii * np.cos(turns), -radii * np.sin(turns)]) + [120, 141]
+        alpha = coverage([star], 256, 256)
+        shadow = 0.45 * np.roll(alpha, (14, 12), (0, 1))
+        alpha = alpha + shadow * (1 - alpha)
+        pixels = np.dstack([np.zeros((256, 256, 3)), alpha])
+        cutout = cut_out(
+            pixels, Options(threshold=0.5, quads=500, cover=True, margin=float(body is None), body=body)
+        )
+        faces.append(len(cutout.faces))
+        turned.append((turned_at(cutout) > 1.2).sum())
+    # Of one size finer, on both sides of a body; by chance of two.
+    asked = 500 if body is None else 1000
+    assert np.median(faces) < 1.1 * asked / 0.7**2
+    assert max(faces) < 1.1 * asked / 0.7**4
     # Of a body at the ten corners, and at few other vertices.
-    assert body is None or (turned_at(cutout) > 1.2).sum() <= 14
+    assert body is None or np.median(turned) <= 12

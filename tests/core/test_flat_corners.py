@@ -62,7 +62,8 @@ def test_shapes_have_one_quad_at_each_sharp_corner_and_their_bodies_do_not(name,
     assert abs(len(patch.quads) - quads) < 0.1 * quads
     single = {tuple(at) for at in patch.vertices[single_quads(patch)]}
     assert {tuple(at) for at in outline[angle < 100]} <= single <= {tuple(at) for at in outline[angle < 120]}
-    assert angles(patch).min() > 0.95 * min(60, angle.min())
+    assert angles(patch).min() > 0.88 * min(60, angle.min())
+    assert patch.report["max_deviation"] < 0.1, "a corner is cut off"
     body = gridmesh.inflate(patch)
     check_quad_body(body, patch, 0)
     check_quad_body(gridmesh.stitch(patch), patch, 0)

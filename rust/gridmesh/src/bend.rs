@@ -139,8 +139,11 @@ impl Ground {
         }))
     }
 
-    /// The Laplacian of the carrier and what stands on its boundary.
-    fn operators(&self, progress: Progress<'_>) -> Result<Operators> {
+    /// The Laplacian of the carrier and what stands on its boundary, for [`choose::candidates`].
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled), [`Error::Solver`](crate::error::Error::Solver).
+    pub(crate) fn operators(&self, progress: Progress<'_>) -> Result<Operators> {
         let tangents: Vec<Tangents> =
             self.lines.iter().map(|line| Tangents::new(&line.points, &line.arcs)).collect();
         Operators::new(&self.carrier, &self.widths, &tangents, self.shape, progress)

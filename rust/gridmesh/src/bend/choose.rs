@@ -64,19 +64,19 @@ const SHARES: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 /// Two rotations that differ by less than this everywhere, in radians, are one.
 const SAME: f64 = 0.06;
 
-/// The most promising bends of a drawing, at most `count`, best first, each with what it is expected to cost in turns.
+/// The most promising bends of a drawing, at most `count`, best first, each with what it is expected to cost in turns. The
+/// operators are those of the ground.
 ///
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled), [`Error::Solver`](crate::error::Error::Solver).
 pub(crate) fn candidates(
-    ground: &Arc<Ground>,
+    (ground, operators): (&Arc<Ground>, &Operators),
     bend: f64,
     count: usize,
     progress: Progress<'_>,
 ) -> Result<Vec<(Bent, f64)>> {
-    let operators = ground.operators(progress)?;
     // What is solved after this is reported as one part.
-    let solver = operators.solver(progress.part(0.1, 0.2))?;
+    let solver = operators.solver(progress.part(0.1, 0.2));
     let (strength, turn) = match ground.shape {
         CellShape::Triangle => (STRENGTH, TURN),
         CellShape::Quad => {
@@ -87,13 +87,13 @@ pub(crate) fn candidates(
     let beta = strength * bend;
     let robin = operators.robin(beta, progress)?;
     progress.report(0.1)?;
-    let chosen = rotations(ground, &operators, (beta, &robin), turn, progress.part(0.1, 0.2))?;
+    let chosen = rotations((ground, operators), (beta, &robin), turn, progress.part(0.1, 0.2))?;
     progress.report(0.2)?;
     let narrowest = narrowest(&ground.carrier, &ground.widths);
     let floor = |&narrow: &bool| if narrow { NARROW_FLOOR } else { FLOOR };
     let maker = Maker {
         ground,
-        operators: &operators,
+        operators,
         solver: &solver,
         pull: (beta, &robin),
         turn,
@@ -103,7 +103,7 @@ pub(crate) fn candidates(
         narrowest,
     };
     if ground.shape == CellShape::Quad {
-        return cheapest(&chosen, count, |rotation| maker.priced_quads(rotation));
+        return maker.cheapest(&chosen, count);
     }
     let priced: Vec<Result<Vec<(f64, Rotation)>>> = chosen.par_iter().map(|r| maker.priced(r)).collect();
     let mut sized = Vec::new();
@@ -133,8 +133,7 @@ pub(crate) fn candidates(
 
 /// Different rotations to be sized, the best first.
 fn rotations(
-    ground: &Ground,
-    operators: &Operators,
+    (ground, operators): (&Ground, &Operators),
     pull: (f64, &Factor),
     turn: f64,
     progress: Progress<'_>,
@@ -220,9 +219,40 @@ impl Maker<'_> {
         Ok((cost(&rotation) + price + coarse, coarse, rotation))
     }
 
-    /// The bend of quads by a rotation, with its cost in turns.
-    fn priced_quads(&self, rotation: &Rotation) -> Result<Option<(f64, Bent)>> {
-        let found = self.straightened(&self.sized(rotation)?.v)?;
+    /// The bends of quads that cost least, at most `count`, best first. Rotations minding their scale are bent in the order of
+    /// what they cost before their sides are straightened, `count` at a time, until so many bends cost no more than the
+    /// next is expected to: straightening hardly changes that, but where a drawing would overlap itself and is bent less.
+    fn cheapest(&self, chosen: &[Rotation], count: usize) -> Result<Vec<(Bent, f64)>> {
+        let found: Vec<Result<(f64, f64, Rotation)>> =
+            chosen.par_iter().map(|rotation| self.with_cost(self.sized(rotation)?)).collect();
+        let step = self.ground.shape.step();
+        let mut sized: Vec<(f64, Rotation)> = Vec::new();
+        for found in found {
+            let (cost, _, rotation) = found?;
+            if sized.iter().all(|(_, other)| !is_same(&rotation.v, &other.v, step)) {
+                sized.push((cost, rotation));
+            }
+        }
+        sized.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut best: Vec<(f64, Bent)> = Vec::new();
+        for some in sized.chunks(count) {
+            if best.len() == count && best.iter().all(|(price, _)| *price <= some[0].0) {
+                break;
+            }
+            let found: Vec<Result<Option<(f64, Bent)>>> =
+                some.par_iter().map(|(_, rotation)| self.priced_quads(rotation)).collect();
+            for found in found {
+                best.extend(found?);
+            }
+            best.sort_by(|a, b| a.0.total_cmp(&b.0));
+            best.truncate(count);
+        }
+        Ok(best.into_iter().map(|(cost, bent)| (bent, cost)).collect())
+    }
+
+    /// The bend of quads by a rotation that minds its scale, with its cost in turns.
+    fn priced_quads(&self, sized: &Rotation) -> Result<Option<(f64, Bent)>> {
+        let found = self.straightened(&sized.v)?;
         let cost_of =
             |bent: &Bent| cost(&self.operators.judged(bent.image.v.clone(), self.turn)) + bent.price;
         Ok(found.map(|bent| (cost_of(&bent), bent)))
@@ -253,29 +283,6 @@ impl Maker<'_> {
         let of = |d: &Directions| d.turns as f64 + MISFIT_MADE * d.misfit;
         found.iter().map(of).sum::<f64>() + bent.price + bent.price_of_limbs
     }
-}
-
-/// The bends that cost least, at most `count`, best first. Rotations are bent in the order of their costs, `count` at a time,
-/// until so many bends cost no more than any of the rest can: where the drawing would overlap itself another
-/// rotation may not have to be scaled down.
-fn cheapest(
-    chosen: &[Rotation],
-    count: usize,
-    bent: impl Fn(&Rotation) -> Result<Option<(f64, Bent)>> + Sync,
-) -> Result<Vec<(Bent, f64)>> {
-    let mut best: Vec<(f64, Bent)> = Vec::new();
-    for some in chosen.chunks(count) {
-        if best.len() == count && best.iter().all(|(price, _)| *price <= cost(&some[0])) {
-            break;
-        }
-        let found: Vec<Result<Option<(f64, Bent)>>> = some.par_iter().map(&bent).collect();
-        for found in found {
-            best.extend(found?);
-        }
-        best.sort_by(|a, b| a.0.total_cmp(&b.0));
-        best.truncate(count);
-    }
-    Ok(best.into_iter().map(|(cost, bent)| (bent, cost)).collect())
 }
 
 /// The one that is bent more, the first of equals.

@@ -24,6 +24,8 @@ pub struct Operators {
     topology: Topology,
     weights: Vec<f64>,
     pattern: Pattern,
+    /// The factorisation without a boundary weight.
+    neumann: Factor,
     /// Length of contour that each boundary vertex stands for.
     lengths: Vec<f64>,
     /// The part of it that wants to run along a lattice direction.
@@ -46,10 +48,9 @@ pub struct Rotation {
     pub misfit: f64,
 }
 
-/// Operators and the factorisation without a boundary weight. Each solve asks whether to go on.
+/// Operators that are solved with. Each solve asks whether to go on.
 pub struct Solver<'a> {
     pub operators: &'a Operators,
-    neumann: Factor,
     progress: Progress<'a>,
 }
 
@@ -65,6 +66,7 @@ impl Operators {
         let topology = Topology::new(carrier.vertices.len(), &carrier.triangles);
         let weights = cotangent_weights(&topology, &carrier.vertices, &carrier.triangles)?;
         let pattern = Pattern::new(&topology, 0, progress)?;
+        let neumann = pattern.factor(&topology, &weights, |_| FLOOR, progress)?;
         let mut at_rim = Vec::new();
         for (rim, tangents) in carrier.rims.iter().zip(tangents) {
             at_rim.extend(rim.arcs.iter().map(|&s| tangents.at(s)));
@@ -74,7 +76,7 @@ impl Operators {
         let contours = carrier.rims.iter().zip(tangents).map(contour).collect();
         let lengths = carrier.lengths();
         let pulls = lengths.iter().zip(room(widths, shape)).map(|(length, room)| length * room).collect();
-        Ok(Self { topology, weights, pattern, lengths, pulls, tangents: at_rim, contours, step })
+        Ok(Self { topology, weights, pattern, neumann, lengths, pulls, tangents: at_rim, contours, step })
     }
 
     /// The Laplacian with `beta` times the length of contour that wants a direction on its diagonal.
@@ -83,12 +85,9 @@ impl Operators {
         self.pattern.factor(&self.topology, &self.weights, diagonal, progress)
     }
 
-    pub fn solver<'a>(&'a self, progress: Progress<'a>) -> Result<Solver<'a>> {
-        Ok(Solver {
-            operators: self,
-            neumann: self.pattern.factor(&self.topology, &self.weights, |_| FLOOR, progress)?,
-            progress,
-        })
+    /// To solve with, asking `progress`.
+    pub fn solver<'a>(&'a self, progress: Progress<'a>) -> Solver<'a> {
+        Solver { operators: self, progress }
     }
 
     /// The directions for a rotation, contour by contour.
@@ -209,14 +208,14 @@ impl Solver<'_> {
     pub fn scale(&self, v: &[f64]) -> Result<Vec<f64>> {
         self.progress.report(0.0)?;
         let mut u = self.operators.along(v);
-        self.neumann.solve(&mut u, 1)?;
+        self.operators.neumann.solve(&mut u, 1)?;
         Ok(u)
     }
 
     /// Solves with the Laplacian alone, in place; the right side should add up to zero.
     pub fn potential(&self, of: &mut [f64]) -> Result<()> {
         self.progress.report(0.0)?;
-        self.neumann.solve(of, 1)
+        self.operators.neumann.solve(of, 1)
     }
 
     /// The map whose gradient is nearest to exp(u) times the rotation by v, its image centred.
@@ -239,7 +238,7 @@ impl Solver<'_> {
             }
         }
         self.progress.report(0.0)?;
-        self.neumann.solve(&mut sums, 2)?;
+        self.operators.neumann.solve(&mut sums, 2)?;
         Ok((0..n).map(|i| DVec2::new(sums[i], sums[n + i])).collect())
     }
 }

@@ -202,7 +202,8 @@ mod tests {
             Ground::new(&contours, frame, None, false, CellShape::Triangle, Progress::NONE)?.map(Arc::new);
         let mut seen = 0;
         if let Some(ground) = ground {
-            for (bent, _) in choose::candidates(&ground, 1.0, 1, Progress::NONE)? {
+            let operators = ground.operators(Progress::NONE)?;
+            for (bent, _) in choose::candidates((&ground, &operators), 1.0, 1, Progress::NONE)? {
                 for (contours, near) in [(&contours, 1e-9), (&moved, 1e-4)] {
                     let again = bent.followed(contours);
                     let again = again.as_ref().map_or(&[][..], |bent| bent.contours());

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::carrier::{Carrier, Line, Rim};
+use super::carrier::{Carrier, Line};
 use super::chords::Chords;
 use super::grid::TriangleGrid;
 use crate::drawing::contours::read_contours;
@@ -19,7 +19,8 @@ pub struct Image {
 impl Image {
     /// The linear part of the map near a vertex.
     pub(super) fn turned(&self, i: usize, d: DVec2) -> DVec2 {
-        libm::exp(self.u[i]) * DVec2::from_angle(self.v[i]).rotate(d)
+        let (scale, rotation) = self.derivative(i);
+        scale * rotation.rotate(d)
     }
 
     /// True if no triangle of the carrier is turned over (exact).
@@ -28,14 +29,25 @@ impl Image {
         carrier.triangles.iter().all(|t| orientation(at(t[0]), at(t[1]), at(t[2])) > 0.0)
     }
 
-    /// A point beside the chord from the `i`-th vertex of a contour, bent: from both ends by their own
-    /// derivative.
-    fn beside(&self, carrier: &Carrier, rim: &Rim, i: usize, t: f64, point: DVec2) -> DVec2 {
-        let ends = [rim.start + i, rim.next(i)];
-        let [a, b] = ends.map(|e| self.positions[e] + self.turned(e, point - carrier.vertices[e]));
+    /// The linear part of the map near a vertex, as scale and rotation.
+    fn derivative(&self, i: usize) -> (f64, DVec2) {
+        (libm::exp(self.u[i]), DVec2::from_angle(self.v[i]))
+    }
+
+    /// A point beside the chord between two vertices of a contour, bent: from both ends by their own
+    /// derivatives, which are given.
+    fn beside(
+        &self,
+        carrier: &Carrier,
+        (ends, derivatives): ([usize; 2], [(f64, DVec2); 2]),
+        t: f64,
+        point: DVec2,
+    ) -> DVec2 {
+        let turned = |k: usize, d: DVec2| derivatives[k].0 * derivatives[k].1.rotate(d);
+        let [a, b] = [0, 1].map(|k| self.positions[ends[k]] + turned(k, point - carrier.vertices[ends[k]]));
         let middle = self.positions[ends[0]].lerp(self.positions[ends[1]], t);
         let off = point - carrier.vertices[ends[0]].lerp(carrier.vertices[ends[1]], t);
-        let [p, q] = ends.map(|e| self.turned(e, off));
+        let [p, q] = [0, 1].map(|k| turned(k, off));
         // Half the chord's image, half the ends' derivatives: exact for quadratic maps.
         0.5 * (middle + p.lerp(q, t) + a.lerp(b, t))
     }
@@ -78,15 +90,25 @@ impl BentContours {
         for (rim, line) in carrier.rims.iter().zip(lines) {
             let (mut ring, mut at) = (Vec::new(), Vec::new());
             let mut next = 0;
+            // Of the vertex before, if any.
+            let mut known: Option<(f64, DVec2)> = None;
             for (i, &from) in rim.arcs.iter().enumerate() {
                 ring.push(image.positions[rim.start + i]);
                 at.push(from);
                 let to = rim.end(i);
+                let ends = [rim.start + i, rim.next(i)];
+                let mut derivatives = None;
+                let before = known.take();
                 while in_detail && next < line.points.len() && line.arcs[next] < to {
                     let s = line.arcs[next];
                     if s > from {
                         let t = (s - from) / (to - from);
-                        ring.push(image.beside(carrier, rim, i, t, line.points[next]));
+                        let derivatives = *derivatives.get_or_insert_with(|| {
+                            let first = before.unwrap_or_else(|| image.derivative(ends[0]));
+                            [first, image.derivative(ends[1])]
+                        });
+                        known = Some(derivatives[1]);
+                        ring.push(image.beside(carrier, (ends, derivatives), t, line.points[next]));
                         at.push(s);
                     }
                     next += 1;

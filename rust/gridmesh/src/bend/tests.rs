@@ -8,9 +8,13 @@ use super::*;
 use crate::drawing::contours::read_contours;
 
 fn ground(outline: &[DVec2], holes: &[Vec<DVec2>]) -> Result<Arc<Ground>> {
+    ground_of(CellShape::Triangle, outline, holes)
+}
+
+fn ground_of(shape: CellShape, outline: &[DVec2], holes: &[Vec<DVec2>]) -> Result<Arc<Ground>> {
     let contours = read_contours(outline, holes)?;
     let frame = Lattice { origin: DVec2::ZERO, angle: 0.0, edge_length: 1.0 };
-    let found = Ground::new(&contours, frame, None, false, CellShape::Triangle, Progress::NONE)?;
+    let found = Ground::new(&contours, frame, None, false, shape, Progress::NONE)?;
     found.map(Arc::new).ok_or(crate::error::Error::Solver { stage: "test", reason: "no carrier".to_owned() })
 }
 
@@ -47,7 +51,7 @@ fn a_map_of_no_rotation_is_the_drawing() -> Result<()> {
         ground.shape,
         Progress::NONE,
     )?;
-    let solver = operators.solver(Progress::NONE)?;
+    let solver = operators.solver(Progress::NONE);
     let v = vec![0.4; carrier.vertices.len()];
     let mut u = solver.scale(&v)?;
     keep_area(carrier, &mut u);
@@ -103,11 +107,33 @@ fn dear_changes_at_first_leave_fewer_in_the_end() -> Result<()> {
 
 #[test]
 fn candidates_come_the_best_first_and_no_more_than_asked_for() -> Result<()> {
-    let ground = ground(&bar(0.3, 60.0, 14.0), &[])?;
-    for count in [1, 3] {
-        let found = choose::candidates(&ground, 1.0, count, Progress::NONE)?;
-        assert!(!found.is_empty() && found.len() <= count);
-        assert!(found.windows(2).all(|two| two[0].1 <= two[1].1));
+    for shape in [CellShape::Triangle, CellShape::Quad] {
+        let ground = ground_of(shape, &bar(0.3, 60.0, 14.0), &[])?;
+        let operators = ground.operators(Progress::NONE)?;
+        for count in [1, 3] {
+            let found = choose::candidates((&ground, &operators), 1.0, count, Progress::NONE)?;
+            assert!(!found.is_empty() && found.len() <= count);
+            assert!(found.windows(2).all(|two| two[0].1 <= two[1].1));
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn the_best_bend_of_quads_is_found_without_bending_all_rotations() -> Result<()> {
+    let wavy = |lobes: f64| -> Vec<DVec2> {
+        let at = |t: f64| (14.0 + 4.0 * libm::sin(lobes * t)) * DVec2::from_angle(t);
+        (0..300).map(|i| at(TAU * f64::from(i) / 300.0)).collect()
+    };
+    for outline in [wavy(3.0), wavy(5.0), bar(0.3, 60.0, 14.0)] {
+        let ground = ground_of(CellShape::Quad, &outline, &[])?;
+        let operators = ground.operators(Progress::NONE)?;
+        let costs = |count: usize| -> Result<Vec<f64>> {
+            let found = choose::candidates((&ground, &operators), 1.0, count, Progress::NONE)?;
+            Ok(found.into_iter().map(|(_, cost)| cost).collect())
+        };
+        let (few, all) = (costs(2)?, costs(usize::MAX)?);
+        assert!((few[0] - all[0]).abs() < 0.5, "{few:?} {all:?}");
     }
     Ok(())
 }
@@ -131,7 +157,8 @@ fn the_way_back_leads_to_the_drawing() -> Result<()> {
         })
         .collect();
     let ground = ground(&wavy, &[])?;
-    let bends = choose::candidates(&ground, 1.0, 2, Progress::NONE)?;
+    let operators = ground.operators(Progress::NONE)?;
+    let bends = choose::candidates((&ground, &operators), 1.0, 2, Progress::NONE)?;
     assert!(!bends.is_empty());
     for (bent, _) in bends {
         let carrier = &ground.carrier;

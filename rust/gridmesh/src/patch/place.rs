@@ -13,14 +13,18 @@ use crate::patch::judge::{Judge, Judgement, corners_of};
 use crate::patch::placed::Placed;
 use crate::patch::pockets::Fans;
 use crate::patch::tips::BLUNT;
-use crate::path::mapping::{Corner, snap};
+use crate::path::mapping::{Corner, Snapping, snap};
 use crate::path::outline::{Obstacle, Outline};
 use crate::path::placement::Lattice;
 use crate::progress::Progress;
 use crate::relax::{Band, Contour, RelaxOptions, Relaxation, Rim, Stars, settle_corners};
 
-/// A boundary vertex moves this far along the drawing to sit on a corner, in edges.
-const REACH: f64 = 1.5;
+/// A boundary vertex moves so far along the drawing to sit on a corner, in edges.
+const NEAR: Snapping = Snapping { reach: 1.5, room: 0.3 };
+
+/// Corners that get none so take one that is farther away or nearer to its neighbours on a rim of quads, whose vertices are
+/// far apart where the path cuts corners off and bunch in inlets. They are spaced evenly before anything else.
+const FAR: Snapping = Snapping { reach: 4.0, room: 0.15 };
 
 /// Triangles may be bent down to this angle for the drawing's sake.
 const LEAST_ANGLE: f64 = 20.0 * std::f64::consts::PI / 180.0;
@@ -46,6 +50,7 @@ pub(crate) fn place(
     options: &SketchOptions,
     progress: Progress<'_>,
 ) -> Result<Result<Placed, Obstacle>> {
+    let snapped = |far: bool| Snapped::new(contours, lattice, outline, options, far);
     match options.cells {
         CellShape::Triangle => {
             let region = assemble_asking(&outline.paths, || progress.report(0.0))?;
@@ -53,12 +58,12 @@ pub(crate) fn place(
             let faces = |triangles: &[[u32; 3]]| (triangles.to_vec(), Vec::new());
             let sheet = Sheet { cells: &region.triangles, positions, faces };
             let blunt = (options.bend > 0.0).then_some(BLUNT);
-            let placed = sheet.place(contours, lattice, outline, (options, blunt), progress)?;
+            let placed = sheet.place(contours, lattice, snapped(false), (options, blunt), progress)?;
             match &placed {
                 Ok(placed) if placed.fault(options).is_none() => {}
                 _ if blunt.is_none() => {}
                 // A tip of a few degrees has room for its own point alone.
-                _ => return sheet.place(contours, lattice, outline, (options, None), progress),
+                _ => return sheet.place(contours, lattice, snapped(false), (options, None), progress),
             }
             Ok(placed)
         }
@@ -73,7 +78,16 @@ pub(crate) fn place(
             positions.extend(laid(&region.points));
             let faces = |quads: &[[u32; 4]]| (Vec::new(), quads.to_vec());
             let sheet = Sheet { cells: &region.quads, positions, faces };
-            sheet.place(contours, lattice, outline, (options, None), progress)
+            let corners = snapped(true);
+            let from_afar = corners.from_afar;
+            let placed = sheet.place(contours, lattice, corners, (options, None), progress)?;
+            match &placed {
+                Ok(placed) if placed.fault(options).is_none() => {}
+                _ if !from_afar => {}
+                // There may be no room for them.
+                _ => return sheet.place(contours, lattice, snapped(false), (options, None), progress),
+            }
+            Ok(placed)
         }
     }
 }
@@ -96,16 +110,13 @@ where
         &self,
         contours: &[ClosedCurve],
         lattice: &Lattice,
-        outline: &Outline,
+        snapped: Snapped,
         (options, blunt): (&SketchOptions, Option<f64>),
         progress: Progress<'_>,
     ) -> Result<Result<Placed, Obstacle>> {
-        let h = lattice.edge_length;
         let drawn = in_units(contours, lattice);
         let lines: Vec<Contour<'_>> = drawn.iter().map(|(points, arc)| Contour { points, arc }).collect();
-        let found: Vec<Vec<Corner>> =
-            contours.iter().map(|contour| corners_of(contour, options.corner_angle, h)).collect();
-        let (mut rims, mut angles) = rims(contours, outline, &found, h);
+        let Snapped { corners: found, mut rims, mut angles, .. } = snapped;
         let corners = Band::<N>::corners(self.cells);
         if options.relax && N == 3 {
             settle_corners(&corners, &lines, &mut rims, &mut angles);
@@ -180,24 +191,61 @@ pub(super) fn in_units(contours: &[ClosedCurve], lattice: &Lattice) -> Vec<(Vec<
     contours.iter().map(of).collect()
 }
 
-/// Boundary vertices with their arc lengths in edges, some of them pinned to corners; the angle of
-/// the corner at each.
-fn rims(
-    contours: &[ClosedCurve],
-    outline: &Outline,
-    corners: &[Vec<Corner>],
-    h: f64,
-) -> (Vec<Rim>, Vec<Vec<f64>>) {
-    let (mut rims, mut angles, mut start) = (Vec::new(), Vec::new(), 0);
-    for ((contour, arcs), corners) in contours.iter().zip(&outline.arcs).zip(corners) {
-        let mut s = arcs.clone();
-        let angle = snap(&mut s, corners, contour.length() / h, REACH);
-        let n = s.len();
-        rims.push(Rim { start, s, pinned: angle.iter().map(|&a| a != 0.0).collect(), held: vec![false; n] });
-        angles.push(angle);
-        start += n;
+/// Boundary vertices, some of them pinned to corners.
+struct Snapped {
+    /// The corners of each contour, the sharpest first.
+    corners: Vec<Vec<Corner>>,
+    /// With arc lengths in edges.
+    rims: Vec<Rim>,
+    /// The angle of the corner at each vertex, zero for those that are free.
+    angles: Vec<Vec<f64>>,
+    /// Whether a corner has one that was not [`NEAR`].
+    from_afar: bool,
+    /// How many corners have none.
+    left: usize,
+}
+
+impl Snapped {
+    /// Corners take vertices from afar as well where `far` and those are spaced evenly then.
+    fn new(
+        contours: &[ClosedCurve],
+        lattice: &Lattice,
+        outline: &Outline,
+        options: &SketchOptions,
+        far: bool,
+    ) -> Self {
+        let h = lattice.edge_length;
+        let corners = contours.iter().map(|contour| corners_of(contour, options.corner_angle, h)).collect();
+        let mut all = Snapped { corners, rims: Vec::new(), angles: Vec::new(), from_afar: false, left: 0 };
+        let mut start = 0;
+        for ((contour, arcs), corners) in contours.iter().zip(&outline.arcs).zip(&all.corners) {
+            let (mut s, length, n) = (arcs.clone(), contour.length() / h, arcs.len());
+            let mut angle = vec![0.0; n];
+            let mut left = snap(&mut s, &mut angle, corners, length, NEAR);
+            if far && options.relax && !left.is_empty() {
+                let before = left.len();
+                left = snap(&mut s, &mut angle, &left, length, FAR);
+                all.from_afar |= left.len() < before;
+            }
+            let pinned = angle.iter().map(|&a| a != 0.0).collect();
+            all.rims.push(Rim { start, s, pinned, held: vec![false; n] });
+            all.angles.push(angle);
+            all.left += left.len();
+            start += n;
+        }
+        all
     }
-    (rims, angles)
+}
+
+/// True if some corner of the drawing finds no vertex of the boundary to sit on it.
+pub(crate) fn loses_corners(
+    contours: &[ClosedCurve],
+    lattice: &Lattice,
+    outline: &Outline,
+    options: &SketchOptions,
+) -> bool {
+    let far = options.cells == CellShape::Quad;
+    Snapped::new(contours, lattice, outline, options, far).left > 0
 }
 
 /// Arc length of the drawn point nearest to arc length `s`, along the curve.

@@ -125,17 +125,31 @@ pub fn corners(arcs: &[f64], turning: &[f64], length: f64, angle: f64, separatio
     kept
 }
 
-/// Moves boundary vertices onto corners (section IV-C, figure 10). Returns the corner angle of each
-/// vertex, zero for those that stay.
+/// How far boundary vertices move to sit on corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Snapping {
+    /// At most so far along the curve, in the unit of the arc lengths.
+    pub reach: f64,
+    /// And so far from their neighbours, in shares of the mean spacing.
+    pub room: f64,
+}
+
+/// Moves boundary vertices onto corners (section IV-C, figure 10). Returns the corners that get none.
 ///
-/// Sharpest corners choose first. A corner takes the nearer of the two vertices beside it that is
-/// still free, at most `reach` away along the curve, if that leaves 0.3 of the mean spacing to the
-/// vertex's neighbours. All lengths in the unit of `arcs`, which are unwrapped.
-pub fn snap(arcs: &mut [f64], corners: &[Corner], length: f64, reach: f64) -> Vec<f64> {
+/// The corners choose in their order, the sharpest first. A corner takes the nearer of the two vertices beside it that is
+/// still free, if it is near enough and that leaves room to the vertex's neighbours. All lengths in the unit of
+/// `arcs`, which are unwrapped. `angle` is the corner angle of each vertex, zero for those that are free, and is kept.
+pub fn snap(
+    arcs: &mut [f64],
+    angle: &mut [f64],
+    corners: &[Corner],
+    length: f64,
+    snapping: Snapping,
+) -> Vec<Corner> {
     let n = arcs.len();
-    let room = 0.3 * length / n as f64;
-    let mut angle = vec![0.0; n];
-    for corner in corners {
+    let room = snapping.room * length / n as f64;
+    let mut left = Vec::new();
+    for &corner in corners {
         let at = arcs[0] + (corner.arc - arcs[0]).rem_euclid(length);
         let after = arcs.partition_point(|&s| s <= at);
         let mut beside = [after - 1, after % n];
@@ -143,18 +157,19 @@ pub fn snap(arcs: &mut [f64], corners: &[Corner], length: f64, reach: f64) -> Ve
             if i == 0 && at > arcs[n - 1] { at - length } else { at }
         };
         beside.sort_by(|&i, &j| (arcs[i] - place(i)).abs().total_cmp(&(arcs[j] - place(j)).abs()));
-        for i in beside {
+        let taken = beside.into_iter().find(|&i| {
             let to = place(i);
             let before = if i > 0 { arcs[i - 1] } else { arcs[n - 1] - length };
             let next = if i + 1 < n { arcs[i + 1] } else { arcs[0] + length };
-            if angle[i] == 0.0 && (arcs[i] - to).abs() <= reach && to - before >= room && next - to >= room {
-                arcs[i] = to;
-                angle[i] = corner.angle;
-                break;
-            }
+            let is_near = (arcs[i] - to).abs() <= snapping.reach;
+            angle[i] == 0.0 && is_near && to - before >= room && next - to >= room
+        });
+        match taken {
+            Some(i) => (arcs[i], angle[i]) = (place(i), corner.angle),
+            None => left.push(corner),
         }
     }
-    angle
+    left
 }
 
 /// Indices of a longest strictly increasing subsequence; O(n log n).
@@ -258,9 +273,25 @@ mod tests {
     fn snapped_vertices_sit_on_corners_and_keep_the_order() {
         let mut arcs: Vec<f64> = (0..20).map(|i| 0.5 + f64::from(i)).collect();
         let corners = [5.1, 5.4, 19.9, 0.35].map(|arc| Corner { arc, angle: 1.0 });
-        let angle = snap(&mut arcs, &corners, 20.0, 1.0);
+        let mut angle = vec![0.0; 20];
+        let near = Snapping { reach: 1.0, room: 0.3 };
+        let left = snap(&mut arcs, &mut angle, &corners, 20.0, near);
         assert!(arcs.windows(2).all(|w| w[0] < w[1]) && arcs[19] < arcs[0] + 20.0);
         assert!(arcs.contains(&5.1));
         assert!(angle.iter().filter(|&&a| a > 0.0).count() >= 3);
+        assert_eq!(left.len() + angle.iter().filter(|&&a| a > 0.0).count(), 4);
+    }
+
+    #[test]
+    fn corners_that_are_left_take_vertices_that_are_farther_away_or_nearer_together() {
+        // Vertices bunch at 5, and none is near 12.
+        let bunched = [0.0, 2.0, 4.8, 5.1, 5.3, 7.0, 9.0, 15.5, 18.0];
+        let corners = [5.0, 12.0].map(|arc| Corner { arc, angle: 1.0 });
+        let (mut arcs, mut angle) = (bunched.to_vec(), vec![0.0; 9]);
+        let left = snap(&mut arcs, &mut angle, &corners, 20.0, Snapping { reach: 1.5, room: 0.3 });
+        assert_eq!((left.as_slice(), arcs.as_slice()), (&corners[..], &bunched[..]));
+        let left = snap(&mut arcs, &mut angle, &left, 20.0, Snapping { reach: 4.0, room: 0.05 });
+        assert!(left.is_empty() && arcs.windows(2).all(|w| w[0] < w[1]));
+        assert_eq!((arcs[3], arcs[6], angle[3], angle[6]), (5.0, 12.0, 1.0, 1.0));
     }
 }

@@ -12,6 +12,16 @@ use crate::progress::Progress;
 /// Triangles of less than this share of the equilateral triangle's area count as tangled.
 const TANGLED: f64 = 1e-3;
 
+/// After so many sweeps two rings of vertices around the tangled ones move.
+const WIDER: usize = 8;
+
+/// Sweeps of two rings over quads in which neither fewer vertices are tangled nor the worst corner is less so, after which it is
+/// given up: they are hardly ever untangled later, and stronger means are at hand.
+const STILL: usize = 3;
+
+/// The share of a worst corner's `det` by which it has to grow to be less tangled.
+const HARDLY: f64 = 0.05;
+
 /// Triangles that are inverted or nearly so.
 #[derive(Default)]
 struct Tangled {
@@ -24,9 +34,16 @@ struct Tangled {
 impl Tangled {
     fn look_at<const N: usize>(&mut self, band: &Band<N>, triangle: [u32; 3]) {
         // Seen from its first vertex, so that it is the same from whichever it is looked at.
-        let first = (0..3).min_by_key(|&k| triangle[k]).unwrap_or(0);
-        let [a, b, c] = [0, 1, 2].map(|k| band.positions[triangle[(first + k) % 3] as usize]);
-        let d = det(b - a, c - a);
+        let [a, b, c] = triangle;
+        let (a, b, c) = if a < b && a < c {
+            (a, b, c)
+        } else if b < c {
+            (b, c, a)
+        } else {
+            (c, a, b)
+        };
+        let at = |v: u32| band.positions[v as usize];
+        let d = det(at(b) - at(a), at(c) - at(a));
         // A NaN is tangled too.
         if !matches!(d.partial_cmp(&TANGLED), Some(std::cmp::Ordering::Greater)) {
             self.vertices.extend(triangle);
@@ -62,18 +79,26 @@ where
         found
     }
 
-    /// Sweeps around the tangled triangles until there is none; false if some stay inverted.
+    /// Sweeps around the tangled triangles until there is none, or of quads until they do not get fewer; false if some stay
+    /// inverted.
     pub fn untangle(&mut self, sweeps: usize, done: &mut usize, progress: Progress<'_>) -> Result<bool> {
         let mut tangled = self.tangled();
+        let (mut fewest, mut mildest, mut still) = (usize::MAX, f64::MIN, 0);
         for sweep in 0..sweeps {
             let Tangled { vertices, least } = tangled;
             if vertices.is_empty() {
                 return Ok(true);
             }
             progress.report(sweep as f64 / sweeps as f64)?;
+            let is_better = vertices.len() < fewest || least > mildest + HARDLY * mildest.abs();
+            still = if is_better || sweep < WIDER { 0 } else { still + 1 };
+            (fewest, mildest) = (fewest.min(vertices.len()), mildest.max(least));
+            if N == 4 && still == STILL {
+                break;
+            }
             *done += 1;
             let eps = (0.04 + least * least).sqrt();
-            let rings = if sweep < 8 { 1 } else { 2 };
+            let rings = if sweep < WIDER { 1 } else { 2 };
             let moved = Active::near(&self.band, vertices, rings);
             self.sweep(&Regularised { eps }, &mut moved.clone(), f64::INFINITY, progress)?;
             // Nothing else has changed, and the tangled triangles are among these.
@@ -245,4 +270,51 @@ fn sharpness(p: [DVec2; 3]) -> f64 {
     let [a, b, c] = [p[2] - p[1], p[0] - p[2], p[1] - p[0]];
     let dot = (-a.dot(b)).max(-b.dot(c)).max(-c.dot(a));
     dot / a.perp_dot(b).abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Contour, RelaxOptions, RelaxReport, Relaxation, Rim};
+    use super::*;
+
+    /// A square of 4 x 4 quads, its rim mapped to the corners of `outline` and what lies evenly between them.
+    fn relaxed(outline: [DVec2; 4]) -> Result<RelaxReport> {
+        let ring = (0..4).flat_map(|i| (0..4).map(move |k| (i, k)));
+        let place = |(i, k): (usize, usize)| {
+            let [x, y] = [[k, 0], [4, k], [4 - k, 4], [0, 4 - k]][i];
+            [x, y]
+        };
+        let inner = (1..4).flat_map(|y| (1..4).map(move |x| [x, y]));
+        let grid: Vec<[usize; 2]> = ring.map(place).chain(inner).collect();
+        let number =
+            |x: usize, y: usize| grid.iter().position(|&p| p == [x, y]).map_or(u32::MAX, |i| i as u32);
+        let quad = |x: usize, y: usize| [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[i, j]| number(x + i, y + j));
+        let quads: Vec<[u32; 4]> = (0..16).map(|k| quad(k % 4, k / 4)).collect();
+        let positions: Vec<DVec2> = grid.iter().map(|p| DVec2::new(p[0] as f64, p[1] as f64)).collect();
+        let mut arc = vec![0.0];
+        for (i, p) in outline.iter().enumerate() {
+            arc.push(arc[i] + p.distance(outline[(i + 1) % 4]));
+        }
+        let s = (0..16).map(|i| arc[i / 4] + (arc[i / 4 + 1] - arc[i / 4]) * (i % 4) as f64 / 4.0).collect();
+        let pinned = (0..16).map(|i| i % 4 == 0).collect();
+        let rim = Rim { start: 0, s, pinned, held: vec![false; 16] };
+        let lines = [Contour { points: &outline, arc: &arc }];
+        let mut relaxation =
+            Relaxation::<4>::new(&quads, &positions, &lines, &[rim], &RelaxOptions::default())?;
+        relaxation.run(Progress::NONE)?;
+        Ok(relaxation.report())
+    }
+
+    #[test]
+    fn quads_that_cannot_be_untangled_are_soon_given_up() -> Result<()> {
+        let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]].map(DVec2::from_array);
+        let report = relaxed(square)?;
+        assert_eq!((report.inverted, report.untangling), (None, 0));
+        // The other way round every quad is turned over, whatever moves.
+        let [a, b, c, d] = square;
+        let report = relaxed([a, d, c, b])?;
+        assert!(report.inverted.is_some());
+        assert!(report.untangling < 100, "{}", report.untangling);
+        Ok(())
+    }
 }

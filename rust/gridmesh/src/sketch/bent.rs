@@ -1,16 +1,19 @@
 //! Boundaries on bent lattices.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
 
 use super::centroid;
+use crate::bend::conformal::Operators;
 use crate::bend::{Bent, Ground, choose};
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::symmetry::Symmetry;
 use crate::error::{Error, Result};
 use crate::options::{BoundaryMethod, CellShape, Mirror, SketchOptions};
+use crate::patch::place::loses_corners;
 use crate::path::outline::Outline;
 use crate::path::placement::Lattice;
 use crate::progress::{Meter, Progress};
@@ -55,17 +58,18 @@ impl Job<'_> {
         let ground = unless_unsolved(self.ground(asked, progress))?;
         self.lap("bend", started);
         let mut best: Option<Found> = None;
-        if let Some(ground) = ground {
-            let is_good = self.best_bent_by(1.0, &ground, asked, &mut best, progress)?;
+        if let Some((ground, operators)) = ground {
+            let ground = (&ground, &operators);
+            let is_good = self.best_bent_by(1.0, ground, asked, &mut best, progress)?;
             match self.options.cells {
                 CellShape::Quad if !is_good => {
-                    self.best_bent_by(WEAKER[0], &ground, asked, &mut best, progress)?;
+                    self.best_bent_by(WEAKER[0], ground, asked, &mut best, progress)?;
                 }
                 CellShape::Quad => {}
                 CellShape::Triangle => {
                     for strength in WEAKER {
                         if best.as_ref().is_some_and(Found::is_uneven) {
-                            self.best_bent_by(strength, &ground, asked, &mut best, progress)?;
+                            self.best_bent_by(strength, ground, asked, &mut best, progress)?;
                         }
                     }
                 }
@@ -79,7 +83,7 @@ impl Job<'_> {
     fn best_bent_by(
         &mut self,
         strength: f64,
-        ground: &Arc<Ground>,
+        ground: (&Arc<Ground>, &Operators),
         asked: Asked,
         best: &mut Option<Found>,
         progress: Progress<'_>,
@@ -97,10 +101,10 @@ impl Job<'_> {
             while let Some((mut bent, _)) = bends.next() {
                 bent.share *= strength;
                 let Some(traced) = self.bent_outline(asked, bent, progress.part(0.1, 0.3))? else { continue };
-                let cost = expected(&traced);
-                outlines.push(traced);
                 let next = bends.peek().map_or(f64::INFINITY, |next| next.1);
-                if self.options.cells == CellShape::Triangle && cost <= next {
+                let is_enough = expected(&traced) <= next && !self.loses_corners(&traced);
+                outlines.push(traced);
+                if is_enough {
                     break;
                 }
             }
@@ -113,36 +117,65 @@ impl Job<'_> {
         Ok(false)
     }
 
-    /// Places patches until one is good, and keeps the best; true if one was good.
+    /// Places patches until one is good, and keeps the best; true if one was good. One that must lose a corner of the drawing
+    /// will not be good: the next is placed at the same time.
     fn best_placed(
         &mut self,
         outlines: Vec<(Bent, Lattice, Outline)>,
         best: &mut Option<Found>,
         progress: Progress<'_>,
     ) -> Result<bool> {
-        for (bent, lattice, outline) in outlines {
-            self.placements += 1;
-            let started = Instant::now();
-            let placed = self.place(Some(&bent), &lattice, &outline, progress.part(0.3, 0.6))?;
-            self.lap("placement", started);
-            let Ok((placed, mirror_error)) = placed else { continue };
-            if placed.fault(self.options).is_some() {
+        let mut outlines = VecDeque::from(outlines);
+        while let Some(first) = outlines.pop_front() {
+            if self.is_no_better(&first, best.as_ref()) {
                 continue;
             }
-            let found = Found::new(Some((Arc::new(bent), lattice)), outline, placed, mirror_error);
-            let is_good = found.is_good();
-            if best.as_ref().is_none_or(|best| found.score_of_bent() < best.score_of_bent()) {
-                *best = Some(found);
-            }
-            if is_good {
-                return Ok(true);
+            let started = Instant::now();
+            let second = if self.loses_corners(&first) { outlines.pop_front() } else { None };
+            let part = progress.part(0.3, 0.6);
+            let place = |(bent, lattice, outline): &(Bent, Lattice, Outline)| {
+                self.place(Some(bent), lattice, outline, part)
+            };
+            let (placed, beside) = rayon::join(|| place(&first), || second.as_ref().map(place));
+            self.lap("placement", started);
+            for (traced, placed) in [(Some(first), Some(placed)), (second, beside)] {
+                let (Some(traced), Some(placed)) = (traced, placed) else { continue };
+                if self.is_no_better(&traced, best.as_ref()) {
+                    continue;
+                }
+                self.placements += 1;
+                let Ok((placed, mirror_error)) = placed? else { continue };
+                if placed.fault(self.options).is_some() {
+                    continue;
+                }
+                let (bent, lattice, outline) = traced;
+                let found = Found::new(Some((Arc::new(bent), lattice)), outline, placed, mirror_error);
+                let is_good = found.is_good();
+                if best.as_ref().is_none_or(|best| found.score_of_bent() < best.score_of_bent()) {
+                    *best = Some(found);
+                }
+                if is_good {
+                    return Ok(true);
+                }
             }
         }
         Ok(false)
     }
 
-    /// What all bends of the drawing share; none where it cannot bend.
-    fn ground(&self, asked: Asked, progress: Progress<'_>) -> Result<Option<Arc<Ground>>> {
+    /// True if a path of quads costs no less by itself than the best patch with all that speaks against that.
+    fn is_no_better(&self, traced: &(Bent, Lattice, Outline), best: Option<&Found>) -> bool {
+        self.options.cells == CellShape::Quad
+            && best.is_some_and(|best| expected(traced) >= best.score_of_bent())
+    }
+
+    /// True if some corner of the drawing finds no vertex of a path of quads, so that their patch will not be good.
+    fn loses_corners(&self, (bent, lattice, outline): &(Bent, Lattice, Outline)) -> bool {
+        self.options.cells == CellShape::Quad
+            && loses_corners(&self.contours, &bent.lattice(lattice), outline, self.options)
+    }
+
+    /// What all bends of the drawing share, and what they are found with; none where it cannot bend.
+    fn ground(&self, asked: Asked, progress: Progress<'_>) -> Result<Option<(Arc<Ground>, Operators)>> {
         let edge_length = match asked {
             Asked::EdgeLength(h) => h,
             Asked::Cells(n) => self.first_guess(n),
@@ -152,7 +185,7 @@ impl Job<'_> {
         let density = self.options.density.as_ref();
         let is_symmetric = self.symmetry.is_some();
         let ground = Ground::new(&self.contours, frame, density, is_symmetric, self.options.cells, progress)?;
-        Ok(ground.map(Arc::new))
+        ground.map(|ground| ground.operators(progress).map(|found| (Arc::new(ground), found))).transpose()
     }
 
     /// The boundary on the straight lattice of a bent plane, where there is one.

@@ -26,6 +26,9 @@ const TURNS_OF_ANGLE: f64 = 16.0;
 /// A corner of the drawing that the mesh cuts off is worth so many turns: more than the lattices differ by.
 const TURNS_OF_CORNER: f64 = 12.0;
 
+/// The same of quads, of which a straight lattice has a dozen turns more and spoils the flow of all edges for it.
+const TURNS_OF_CORNER_OF_QUADS: f64 = 4.0;
+
 /// So many of them; the others together no more than as many again. A rugged coast has dozens of corners finer than its mesh, and
 /// which of them are lost on a lattice is chance; counted each they would decide on it alone.
 const FEW_CORNERS: usize = 4;
@@ -45,10 +48,14 @@ const TURNS_OF_LENGTH: f64 = 20.0;
 const MANY_LONG: (f64, f64) = (2.4, 150.0);
 
 /// What corners that the mesh cuts off cost, in turns.
-fn price_of_corners(worn: usize) -> f64 {
+fn price_of_corners(worn: usize, cells: CellShape) -> f64 {
+    let turns = match cells {
+        CellShape::Triangle => TURNS_OF_CORNER,
+        CellShape::Quad => TURNS_OF_CORNER_OF_QUADS,
+    };
     let few = worn.min(FEW_CORNERS);
     let (most, more) = (FEW_CORNERS as f64, (worn - few) as f64);
-    TURNS_OF_CORNER * (few as f64 + most * more / (most + more))
+    turns * (few as f64 + most * more / (most + more))
 }
 
 /// A patch on one lattice, and how far it is from being good enough.
@@ -120,7 +127,7 @@ impl Found {
     /// Cost, faults, starved triangles, long edges and lost corners in turns.
     pub(crate) fn score(&self) -> f64 {
         let price = self.bent.as_ref().map_or(0.0, |(bent, _)| bent.price);
-        let corners = price_of_corners(self.placed.worn.len());
+        let corners = price_of_corners(self.placed.worn.len(), self.placed.patch.cells());
         let shape = TURNS_OF_FAULT * self.faults + TURNS_OF_ANGLE * self.starved();
         self.outline.cost + price + shape + self.overlong() + corners
     }

@@ -21,33 +21,44 @@ const HALVINGS: usize = 6;
 /// of the plain body would get long corners.
 const FARTHEST: f64 = 1.0;
 
+/// So often the limit is found anew for the others after some have to stay nearer.
+const ATTEMPTS: usize = 4;
+
 /// Moves the rim of a body of quads in the plane to where its limit is the rim at `positions`, as far as the mesh stays one
 /// in projection. `is_creased`: see [`rim_for_limit`]. Near-linear.
 pub(super) fn fit_rim(patch: &Patch, positions: &mut [DVec2], is_creased: bool) {
-    let n = patch.n_boundary();
     let drawn = positions.to_vec();
-    let mut moves: Vec<DVec2> = rim_for_limit(patch, positions, is_creased)
-        .iter()
-        .zip(&drawn)
-        .map(|(to, from)| *to - *from)
-        .collect();
-    for contour in &patch.loops {
-        let (start, len) = (contour.start as usize, contour.len());
-        for k in 0..len {
-            let [before, here, after] = [k + len - 1, k, k + 1].map(|i| drawn[start + i % len]);
-            let edges = 0.5 * (here.distance(before) + here.distance(after));
-            moves[start + k] = moves[start + k].clamp_length_max(FARTHEST * edges);
-        }
-    }
     let (low, high) = drawn
         .iter()
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
     // Far above what rounding to f32 can turn over.
     let least_area = 4.0 * f64::from(f32::EPSILON) * (high - low).max_element() * patch.lattice.edge_length;
+    // Vertices that cannot go where their limit would be right.
+    let mut held = vec![false; patch.n_boundary()];
+    for _ in 0..ATTEMPTS {
+        rim_for_limit(patch, &drawn, positions, &held, is_creased);
+        if !take_back(patch, &drawn, positions, &mut held, least_area) {
+            break;
+        }
+    }
+    if !projects_well(patch, positions) {
+        positions.copy_from_slice(&drawn);
+    }
+}
+
+/// Takes rim vertices back toward the drawing until no triangle is turned over and no edges of the rim cross, and holds those;
+/// true if there are any.
+fn take_back(
+    patch: &Patch,
+    drawn: &[DVec2],
+    positions: &mut [DVec2],
+    held: &mut [bool],
+    least_area: f64,
+) -> bool {
+    let n = patch.n_boundary();
     let corners = patch.corners();
     let loops = contours(patch);
-    for round in 0..=HALVINGS {
-        positions.iter_mut().zip(drawn.iter().zip(&moves)).for_each(|(p, (from, way))| *p = *from + *way);
+    for round in 1..=HALVINGS {
         let is_turned = |t: &&[u32; 3]| {
             let [a, b, c] = t.map(|v| positions[v as usize]);
             (b - a).perp_dot(c - a) < least_area
@@ -56,16 +67,16 @@ pub(super) fn fit_rim(patch: &Patch, positions: &mut [DVec2], is_creased: bool) 
         bad.extend(crossing_edges(positions, &loops).iter().flat_map(|&v| [v, next_of(patch, v)]));
         bad.retain(|&v| (v as usize) < n);
         if bad.is_empty() {
-            break;
+            return round > 1;
         }
         bad.sort_unstable();
         bad.dedup();
-        let share = if round + 1 < HALVINGS { 0.5 } else { 0.0 };
-        bad.iter().for_each(|&v| moves[v as usize] *= share);
+        for v in bad.into_iter().map(|v| v as usize) {
+            held[v] = true;
+            positions[v] = if round < HALVINGS { 0.5 * (positions[v] + drawn[v]) } else { drawn[v] };
+        }
     }
-    if !projects_well(patch, positions) {
-        positions.copy_from_slice(&drawn);
-    }
+    true
 }
 
 /// The vertex of the rim after one.
@@ -78,10 +89,10 @@ fn next_of(patch: &Patch, v: u32) -> u32 {
         .map_or(v, |contour| contour.start + (v + 1 - contour.start) % contour.len() as u32)
 }
 
-/// Where the rim of a body of quads should lie in the plane so that in the limit its vertices are where they are in
-/// `positions`. Corners of the drawing stay: they are to be creased. So is the whole rim if `is_creased`: then the
-/// limit of the rim depends on the rim alone. Linear.
-fn rim_for_limit(patch: &Patch, positions: &[DVec2], is_creased: bool) -> Vec<DVec2> {
+/// Moves the rim of a body of quads in the plane to where in the limit its vertices are where they are `drawn`, but no vertex
+/// that is `held`. Corners of the drawing stay: they are to be creased. So is the whole rim if `is_creased`: then
+/// the limit of the rim depends on the rim alone. Linear.
+fn rim_for_limit(patch: &Patch, drawn: &[DVec2], positions: &mut [DVec2], held: &[bool], is_creased: bool) {
     let n = patch.n_boundary();
     // Quads at each vertex, and the weighted sum of the inner vertices beside and across from it.
     let mut counts = vec![0.0; n];
@@ -101,36 +112,37 @@ fn rim_for_limit(patch: &Patch, positions: &[DVec2], is_creased: bool) -> Vec<DV
             }
         }
     }
-    let mut is_fixed = vec![false; n];
+    let mut is_fixed = held.to_vec();
+    let mut farthest = vec![0.0; n];
     if is_creased {
         on_rim.clear();
     }
     for contour in &patch.loops {
         let (start, len) = (contour.start as usize, contour.len());
         for k in 0..len {
-            is_fixed[start + k] = contour.corner[k] != 0.0;
+            let [before, here, after] = [k + len - 1, k, k + 1].map(|i| drawn[start + i % len]);
+            farthest[start + k] = FARTHEST * 0.5 * (here.distance(before) + here.distance(after));
+            is_fixed[start + k] |= contour.corner[k] != 0.0;
             if is_creased {
                 on_rim.push((start + k, start + (k + 1) % len, 1.0));
                 on_rim.push((start + k, start + (k + len - 1) % len, 1.0));
             }
         }
     }
-    let drawn = &positions[..n];
-    let mut rim = drawn.to_vec();
     for _ in 0..ROUNDS {
         let mut sums = if is_creased { vec![DVec2::ZERO; n] } else { inner.clone() };
         for &(v, w, weight) in &on_rim {
-            sums[v] += weight * rim[w];
+            sums[v] += weight * positions[w];
         }
         for v in (0..n).filter(|&v| !is_fixed[v]) {
             // A body has as many quads again at the back.
             let valence = 2.0 * counts[v];
             let (own, all) =
                 if is_creased { (4.0, 6.0) } else { (valence * valence, valence * (valence + 5.0)) };
-            rim[v] = (all * drawn[v] - sums[v]) / own;
+            let to = (all * drawn[v] - sums[v]) / own;
+            positions[v] = drawn[v] + (to - drawn[v]).clamp_length_max(farthest[v]);
         }
     }
-    rim
 }
 
 #[cfg(test)]
