@@ -347,7 +347,7 @@ class TestSubdivision:
         assert np.median(off) < 0.005
         # The rim's vertices themselves, but for the few that the mesh has no room for: most in tips of few quads.
         index = np.flatnonzero(np.abs(plain[:, 2]) < 1e-6)
-        assert (off_line(smooth[index], drawn) < 0.02 * edge).mean() > (0.85 if name == "octopus" else 0.93)
+        assert (off_line(smooth[index], drawn) < 0.02 * edge).mean() > 0.93
 
     def test_multires_keeps_a_body_closed_and_its_rim(self):
         grease_pencil([drawing("whale")])

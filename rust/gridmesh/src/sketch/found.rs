@@ -37,11 +37,12 @@ const FEW_CORNERS: usize = 4;
 /// 3.5 medians: parts of some had lost their shape.
 const LONG: f64 = 2.4;
 
-/// The same for quads, whose sizes vary more.
-const LONG_OF_QUADS: f64 = 4.0;
-
 /// So many turns each median beyond it costs.
 const TURNS_OF_LENGTH: f64 = 20.0;
+
+/// The same for quads, whose sizes vary more, and each turn of which is two poles on either side: tips of a few large quads are worth
+/// one or two turns.
+const LONG_OF_QUADS: (f64, f64) = (3.0, 8.0);
 
 /// Where one edge in a hundred is longer than so many medians, each median beyond costs so many turns more: with
 /// triangles no drawing shall have 2.5.
@@ -112,7 +113,10 @@ impl Found {
                         let few = TURNS_OF_LENGTH * (longest - LONG).max(0.0);
                         few + turns * (long - most).max(0.0)
                     }
-                    CellShape::Quad => TURNS_OF_LENGTH * (longest - LONG_OF_QUADS).max(0.0),
+                    CellShape::Quad => {
+                        let (most, turns) = LONG_OF_QUADS;
+                        turns * (longest - most).max(0.0)
+                    }
                 }
             }
             _ => 0.0,
