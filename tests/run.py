@@ -44,7 +44,7 @@ PYTHON_PARTS = {
     "core": ("3.11", "core", ["tests/core"]),
     "blender45": ("3.11", "blender45", ["tests/blender"]),
     "core313": ("3.13", "blender52", ["tests/core", "-m", "not native"]),
-    "blender52": ("3.13", "blender52", ["tests/blender"]),
+    "blender52": ("3.13", "blender52", ["tests/blender", "-m", "not process"]),
     "blender50": ("3.11", "blender50", ["tests/blender", "-m", "smoke"]),
 }
 # Part: Python version, dependency group. Each in an environment that has never seen the module.

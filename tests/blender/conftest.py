@@ -54,3 +54,5 @@ else:
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "smoke: the few tests that every supported Blender runs")
+    words = "process: of processes, signals and limits around Blender, the same for all; run with one of them"
+    config.addinivalue_line("markers", words)

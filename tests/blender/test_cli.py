@@ -90,6 +90,7 @@ def test_all_bad_lines_are_named(tmp_path):
     assert re.findall(r"line (\d):", ran.stderr) == ["1", "3", "4"]
 
 
+@pytest.mark.process
 def test_shards_and_ranges_are_the_whole(tmp_path, undisturbed):
     path = write_jobs(tmp_path, good())
     assert batch(path, "--range", "0-1").returncode == 0

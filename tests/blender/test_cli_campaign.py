@@ -20,6 +20,7 @@ def test_hostile_items_stop_no_good_one(tmp_path):
     assert len(lines) == 40
 
 
+@pytest.mark.process
 def test_killed_doubled_and_without_room_the_outputs_are_the_same(tmp_path):
     counts = batch.disturbed(tmp_path / "disturbed", items=10, kills=3, seed=7)
     assert counts["kills"] == 3

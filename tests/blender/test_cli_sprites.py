@@ -275,6 +275,7 @@ def all_files(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.process
 def test_a_killed_run_is_resumed_to_the_same_bytes(tmp_path):
     path = write_jobs(tmp_path / "a", many(tmp_path / "a"))
     assert batch(path).returncode == 0

@@ -424,6 +424,7 @@ def test_balls_anywhere(at, radius, blend):
     assert made.report["components"] in (1, 2)
 
 
+@pytest.mark.native
 def test_a_campaign_of_random_bodies():
     """A short run of the campaign; `python tests/campaign/joins.py` makes longer ones."""
     wrong, refused, found = joins.campaign(12, seed=1)

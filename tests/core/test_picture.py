@@ -46,6 +46,7 @@ def round_trips():
     return trips
 
 
+@pytest.mark.native
 def test_drawings_come_back_through_a_picture(round_trips):
     alike = {}
     for (size, name), (drawn, traced) in round_trips.items():
