@@ -330,3 +330,25 @@ def test_mirrored_quads_keep_to_the_angle_of_the_axis():
         gridmesh.mesh_sketch(points, quads=300, mirror=axis, angle=0.5)
     assert refusal.value.kind == "invalid_option"
     assert "90 degrees" in str(refusal.value)
+
+
+def cracked(width, depth, bow=0.0):
+    """A disc with a crack from its rim inward, as where a drawn arm touches the body."""
+    turn = np.linspace(0, 2 * np.pi, 200, endpoint=False)[1:]
+    inward = np.linspace(1, 1 - depth, 12)
+    middle = bow * np.sin(5 * (1 - inward))
+    half = 0.5 * width * (inward - (1 - depth)) / depth
+    upper, lower = np.column_stack([inward, middle + half]), np.column_stack([inward, middle - half])
+    return np.vstack([upper[:1], np.column_stack([np.cos(turn), np.sin(turn)]), lower, upper[:0:-1][1:]])
+
+
+@pytest.mark.parametrize("quads", [500, 3000])
+@pytest.mark.parametrize("bow", [0.0, 0.1])
+@pytest.mark.parametrize("width", [1e-2, 1e-3, 2e-4])
+def test_cracks_are_followed(width, bow, quads):
+    # Thinner than a fiftieth of an edge none had a mesh, however fine: two quads cannot share 360 degrees.
+    outline = cracked(width, 0.7, bow)
+    patch = gridmesh.mesh_sketch(outline, quads=quads)
+    assert patch.report["bridged_inlets"] == 0
+    check_quad_patch(patch, [outline])
+    check_quad_body(gridmesh.inflate(patch), patch, 0)

@@ -172,6 +172,24 @@ pub fn snap(
     left
 }
 
+/// Moves the boundary vertices before and after a place on the curve to either side of it, `back` away, if that keeps `room`
+/// to their neighbours, in shares of the mean spacing. Returns them. Lengths as in [`snap`].
+pub fn straddle(arcs: &mut [f64], arc: f64, length: f64, back: f64, room: f64) -> Option<[usize; 2]> {
+    let n = arcs.len();
+    let room = room * length / n as f64;
+    let at = arcs[0] + (arc - arcs[0]).rem_euclid(length);
+    let after = arcs.partition_point(|&s| s <= at);
+    let lap = if after == n { length } else { 0.0 };
+    let [i, j] = [after - 1, after % n];
+    let before = if i > 0 { arcs[i - 1] } else { arcs[n - 1] - length };
+    let next = lap + if j + 1 < n { arcs[j + 1] } else { arcs[0] + length };
+    if n < 4 || at - back - before < room || next - at - back < room {
+        return None;
+    }
+    (arcs[i], arcs[j]) = (at - back, at + back - lap);
+    Some([i, j])
+}
+
 /// Indices of a longest strictly increasing subsequence; O(n log n).
 fn longest_increasing(values: &[f64]) -> Vec<usize> {
     let mut ends: Vec<usize> = Vec::new();
@@ -280,6 +298,20 @@ mod tests {
         assert!(arcs.contains(&5.1));
         assert!(angle.iter().filter(|&&a| a > 0.0).count() >= 3);
         assert_eq!(left.len() + angle.iter().filter(|&&a| a > 0.0).count(), 4);
+    }
+
+    #[test]
+    fn vertices_straddle_a_place_where_their_neighbours_leave_room() {
+        let even: Vec<f64> = (0..10).map(|i| 0.25 + f64::from(i)).collect();
+        for (arc, pair) in [(4.5, [4, 5]), (0.1, [9, 0]), (9.9, [9, 0]), (0.3, [0, 1])] {
+            let mut arcs = even.clone();
+            assert_eq!(straddle(&mut arcs, arc, 10.0, 0.5, 0.15), Some(pair));
+            assert!(arcs.windows(2).all(|w| w[0] < w[1]) && arcs[9] < arcs[0] + 10.0);
+            let [d, e] = pair.map(|v| (arcs[v] - arc + 5.0).rem_euclid(10.0) - 5.0);
+            assert!((d + 0.5).abs() < 1e-12 && (e - 0.5).abs() < 1e-12, "{arc} {d} {e}");
+        }
+        let mut bunched = [0.0, 2.0, 4.4, 4.6, 5.3, 5.5, 8.0];
+        assert_eq!(straddle(&mut bunched, 5.0, 10.0, 0.5, 0.15), None);
     }
 
     #[test]
