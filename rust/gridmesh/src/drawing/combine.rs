@@ -3,10 +3,10 @@
 use glam::DVec2;
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
-use i_overlay::float::single::SingleFloatOverlay;
+use i_overlay::float::overlay::FloatOverlay;
 
 use crate::drawing::curve::bounds;
-use crate::drawing::union::outer_outline;
+use crate::drawing::union::{SOLVER, outer_outline};
 use crate::error::{Error, Result};
 
 /// What becomes of two drawings.
@@ -64,7 +64,8 @@ pub fn combine(
         Combination::Union => OverlayRule::Union,
         Combination::Difference => OverlayRule::Difference,
     };
-    let shapes = first.overlay_as::<i64>(&second, rule, FillRule::EvenOdd);
+    let both = FloatOverlay::<[f64; 2], i64>::from_subj_and_clip_custom;
+    let shapes = both(&first, &second, Default::default(), SOLVER).overlay(rule, FillRule::EvenOdd);
     let drawn = |contour: Vec<[f64; 2]>| -> Vec<DVec2> {
         contour.into_iter().map(|p| low + size * DVec2::from_array(p)).collect()
     };

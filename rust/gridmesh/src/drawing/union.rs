@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::solver::{Precision, Solver};
 use i_overlay::float::simplify::SimplifyShape;
 
 use crate::drawing::curve::bounds;
@@ -10,6 +11,12 @@ use crate::geometry::segments::SegmentGrid;
 
 /// Parts smaller than this share of the largest one are slivers of a shaky crossing: dropped.
 const SLIVER: f64 = 1e-3;
+
+/// Crossings are rounded, which makes lines cross anew. In each round ends attract what is within four times the distance of the
+/// round before; with the library's factor of 1.4, 23 points of sizes from 1e-9 to 1e10 fell into 790 parts, in
+/// 120 times the time.
+pub(super) const SOLVER: Solver =
+    Solver { precision: Precision { start: 0, progression: 4 }, ..Solver::AUTO };
 
 /// The outline of everything that a closed stroke goes round, whichever way round (non-zero
 /// winding), without inner holes.
@@ -31,7 +38,8 @@ pub(crate) fn outer_outline(input: &[DVec2], what: &str) -> Result<(Vec<DVec2>, 
         return Err(Error::ZeroArea { what: what.to_owned() });
     }
     let points: Vec<[f64; 2]> = input.iter().map(|&p| ((p - low) / size).to_array()).collect();
-    let shapes = points.as_slice().simplify_shape_as::<i64>(FillRule::NonZero);
+    let shapes =
+        points.as_slice().simplify_shape_custom_as::<i64>(FillRule::NonZero, Default::default(), SOLVER);
     let mut parts: Vec<Vec<DVec2>> = shapes
         .into_iter()
         .filter_map(|shape| shape.into_iter().next())
@@ -96,6 +104,37 @@ mod tests {
             let (a, b) = (drawn[segment as usize], drawn[(segment as usize + 1) % drawn.len()]);
             assert!(a.lerp(b, t).distance(p) < 1e-12);
         }
+    }
+
+    #[test]
+    fn nearly_parallel_lines_of_very_different_lengths_do_not_fall_into_hundreds_of_slivers() {
+        let drawn = points(&[
+            [-1.0, -5e9],
+            [7e-9, 7.0],
+            [7.0, 7.0],
+            [-6.0, -8e9],
+            [-5.0, -3.0],
+            [-1.0, -5e9],
+            [7e-9, -7.8046875],
+            [-6.0, -5.0],
+            [-8e9, 0.0],
+            [4.0, 4.0],
+            [-4.0, 3.0],
+            [4.23828125, -1.9453125],
+            [2e-9, -3.0],
+            [-1.0, -5e9],
+            [7e-9, -6e-9],
+            [-5.0, -8e9],
+            [0.0, 4.0],
+            [4.0, -4.0],
+            [3.0, 4.23828125],
+            [-1.9453125, 2e-9],
+            [5e-9, -8e-9],
+            [-8.0, 5e-9],
+            [-8e-9, -8.0],
+        ]);
+        let found = outer_outline(&drawn, "outline");
+        assert!(found.as_ref().is_ok_and(|(_, slivers)| *slivers < 400), "{found:?}");
     }
 
     #[test]
