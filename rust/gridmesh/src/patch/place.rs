@@ -96,7 +96,11 @@ pub(crate) fn place(
                     break;
                 }
                 let corners = snapped(beside_crack.is_some(), beside_crack);
-                placed = sheet.place(contours, lattice, corners, (options, None), progress)?;
+                let other = sheet.place(contours, lattice, corners, (options, None), progress)?;
+                // A valid patch with faults is better than none.
+                if other.is_ok() || placed.is_err() {
+                    placed = other;
+                }
             }
             Ok(placed)
         }
