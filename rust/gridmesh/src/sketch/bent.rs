@@ -1,10 +1,11 @@
 //! Boundaries on bent lattices.
 
-use std::collections::VecDeque;
+use std::iter::Peekable;
 use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::centroid;
 use crate::bend::conformal::Operators;
@@ -14,7 +15,8 @@ use crate::drawing::symmetry::Symmetry;
 use crate::error::{Error, Result};
 use crate::options::{BoundaryMethod, CellShape, Mirror, SketchOptions};
 use crate::patch::place::loses_corners;
-use crate::path::outline::Outline;
+use crate::patch::placed::Placed;
+use crate::path::outline::{Obstacle, Outline};
 use crate::path::placement::Lattice;
 use crate::progress::{Meter, Progress};
 use crate::sketch::found::Found;
@@ -28,9 +30,20 @@ const TRACED_OF_QUADS: usize = 2;
 /// best patch has edges that are too long.
 const WEAKER: [f64; 2] = [0.75, 0.5];
 
+/// A bent lattice with the path of a drawing on it.
+type Traced = (Bent, Lattice, Outline);
+
+/// A patch with its lattice, or why there is none.
+type Tried = (Traced, Result<Result<(Placed, Option<f64>), Obstacle>>);
+
 /// What a path on a bent lattice costs beside others, in turns.
-fn expected((bent, _, outline): &(Bent, Lattice, Outline)) -> f64 {
+fn expected((bent, _, outline): &Traced) -> f64 {
     bent.price + bent.price_of_limbs + outline.cost
+}
+
+fn cheapest_first(mut traced: Vec<Traced>) -> Vec<Traced> {
+    traced.sort_by(|a, b| expected(a).total_cmp(&expected(b)));
+    traced
 }
 
 impl Job<'_> {
@@ -57,20 +70,40 @@ impl Job<'_> {
         let started = Instant::now();
         let ground = unless_unsolved(self.ground(asked, progress))?;
         self.lap("bend", started);
+        let Some((ground, operators)) = ground else { return Ok(None) };
+        let ground = (&ground, &operators);
+        match self.options.cells {
+            CellShape::Triangle => self.best_bent_of_triangles(ground, asked, progress),
+            CellShape::Quad => self.best_bent_of_quads(ground, asked, progress),
+        }
+    }
+
+    /// Places patches on lattices until one is good; on those bent less where edges are too long.
+    fn best_bent_of_triangles(
+        &mut self,
+        ground: (&Arc<Ground>, &Operators),
+        asked: Asked,
+        progress: Progress<'_>,
+    ) -> Result<Option<Found>> {
         let mut best: Option<Found> = None;
-        if let Some((ground, operators)) = ground {
-            let ground = (&ground, &operators);
-            let is_good = self.best_bent_by(1.0, ground, asked, &mut best, progress)?;
-            match self.options.cells {
-                CellShape::Quad if !is_good => {
-                    self.best_bent_by(WEAKER[0], ground, asked, &mut best, progress)?;
-                }
-                CellShape::Quad => {}
-                CellShape::Triangle => {
-                    for strength in WEAKER {
-                        if best.as_ref().is_some_and(Found::is_uneven) {
-                            self.best_bent_by(strength, ground, asked, &mut best, progress)?;
-                        }
+        for strength in [1.0].into_iter().chain(WEAKER) {
+            if strength < 1.0 && !best.as_ref().is_some_and(Found::is_uneven) {
+                break;
+            }
+            let started = Instant::now();
+            let mut bends = self.bends_by(strength, ground, TRACED, progress)?.into_iter().peekable();
+            self.lap("bend", started);
+            // The next bend is traced if the one before was not expected to be better, or is not good when it is placed.
+            'placing: while bends.peek().is_some() {
+                let started = Instant::now();
+                let traced = self.next_traced(&mut bends, asked, progress)?;
+                self.lap("bend", started);
+                for next in cheapest_first(traced) {
+                    let started = Instant::now();
+                    let tried = self.placed(vec![next], progress);
+                    self.lap("placement", started);
+                    if self.keeps_good(tried, &mut best)? {
+                        break 'placing;
                     }
                 }
             }
@@ -78,98 +111,136 @@ impl Job<'_> {
         Ok(best)
     }
 
-    /// Places patches on lattices bent by a share of what is asked for until one is good, and keeps the best; true if one
-    /// was good.
-    fn best_bent_by(
+    /// Places a patch on the most promising lattice, and where it is not good on the others, side by side: where the first is
+    /// not they hardly ever are either, and the best of them all is sought.
+    fn best_bent_of_quads(
         &mut self,
-        strength: f64,
         ground: (&Arc<Ground>, &Operators),
         asked: Asked,
-        best: &mut Option<Found>,
         progress: Progress<'_>,
-    ) -> Result<bool> {
+    ) -> Result<Option<Found>> {
+        let mut best: Option<Found> = None;
         let started = Instant::now();
-        let bend = strength * self.options.bend;
-        let count = if self.options.cells == CellShape::Quad { TRACED_OF_QUADS } else { TRACED };
-        let bends = unless_unsolved(choose::candidates(ground, bend, count, progress.part(0.0, 0.1)))?;
+        let mut bends = self.bends_by(1.0, ground, TRACED_OF_QUADS, progress)?.into_iter().peekable();
+        let mut first = cheapest_first(self.next_traced(&mut bends, asked, progress)?);
         self.lap("bend", started);
-        let mut bends = bends.into_iter().peekable();
-        // The next bend is traced if the one before was not expected to be better, or is not good when it is placed.
-        while bends.peek().is_some() {
-            let started = Instant::now();
-            let mut outlines: Vec<(Bent, Lattice, Outline)> = Vec::new();
-            while let Some((mut bent, _)) = bends.next() {
-                bent.share *= strength;
-                let Some(traced) = self.bent_outline(asked, bent, progress.part(0.1, 0.3))? else { continue };
-                let next = bends.peek().map_or(f64::INFINITY, |next| next.1);
-                let is_enough = expected(&traced) <= next && !self.loses_corners(&traced);
-                outlines.push(traced);
-                if is_enough {
-                    break;
-                }
+        let started = Instant::now();
+        // One that must lose a corner of the drawing will not be good.
+        let count = if first.first().is_some_and(|first| self.loses_corners(first)) { 2 } else { 1 };
+        let others = first.split_off(count.min(first.len()));
+        let tried = self.placed(first, progress);
+        self.lap("placement", started);
+        if self.keeps_good(tried, &mut best)? {
+            return Ok(best);
+        }
+        let started = Instant::now();
+        let most = best.as_ref().map_or(f64::INFINITY, Found::score_of_bent);
+        let rest = |mut others: Vec<Traced>, bends: Vec<(Bent, f64)>| -> Result<Vec<Tried>> {
+            others.extend(self.all_traced(bends, asked, progress)?);
+            others.retain(|traced| expected(traced) < most);
+            Ok(self.placed(cheapest_first(others), progress))
+        };
+        let (tried, weaker) = rayon::join(
+            || rest(others, bends.collect()),
+            || rest(Vec::new(), self.bends_by(WEAKER[0], ground, TRACED_OF_QUADS, progress)?),
+        );
+        self.lap("placement", started);
+        if !self.keeps_good(tried?, &mut best)? {
+            self.keeps_good(weaker?, &mut best)?;
+        }
+        Ok(best)
+    }
+
+    /// The most promising bends by a share of what is asked for, each with what it is expected to cost.
+    fn bends_by(
+        &self,
+        strength: f64,
+        ground: (&Arc<Ground>, &Operators),
+        count: usize,
+        progress: Progress<'_>,
+    ) -> Result<Vec<(Bent, f64)>> {
+        let bend = strength * self.options.bend;
+        let mut bends = unless_unsolved(choose::candidates(ground, bend, count, progress.part(0.0, 0.1)))?;
+        bends.iter_mut().for_each(|(bent, _)| bent.share *= strength);
+        Ok(bends)
+    }
+
+    /// The next paths: until one is expected to be better than the next bend, and no corner of the drawing is lost.
+    fn next_traced(
+        &self,
+        bends: &mut Peekable<impl Iterator<Item = (Bent, f64)>>,
+        asked: Asked,
+        progress: Progress<'_>,
+    ) -> Result<Vec<Traced>> {
+        let mut all = Vec::new();
+        while let Some((bent, _)) = bends.next() {
+            let Some(traced) = self.bent_outline(asked, bent, progress.part(0.1, 0.3))? else { continue };
+            let next = bends.peek().map_or(f64::INFINITY, |next| next.1);
+            let is_enough = expected(&traced) <= next && !self.loses_corners(&traced);
+            all.push(traced);
+            if is_enough {
+                break;
             }
-            outlines.sort_by(|a, b| expected(a).total_cmp(&expected(b)));
-            self.lap("bend", started);
-            if self.best_placed(outlines, best, progress)? {
+        }
+        Ok(all)
+    }
+
+    /// The paths on all bends that have one.
+    fn all_traced(
+        &self,
+        bends: Vec<(Bent, f64)>,
+        asked: Asked,
+        progress: Progress<'_>,
+    ) -> Result<Vec<Traced>> {
+        let part = progress.part(0.1, 0.3);
+        let traced: Vec<Result<Option<Traced>>> =
+            bends.into_par_iter().map(|(bent, _)| self.bent_outline(asked, bent, part)).collect();
+        traced.into_iter().filter_map(Result::transpose).collect()
+    }
+
+    /// Patches on lattices, placed side by side.
+    fn placed(&self, traced: Vec<Traced>, progress: Progress<'_>) -> Vec<Tried> {
+        let part = progress.part(0.3, 0.6);
+        let place = |traced: Traced| {
+            let (bent, lattice, outline) = &traced;
+            let placed = self.place(Some(bent), lattice, outline, part);
+            (traced, placed)
+        };
+        traced.into_par_iter().map(place).collect()
+    }
+
+    /// Keeps the best of patches up to the first that is good; true if there is one.
+    fn keeps_good(&mut self, tried: Vec<Tried>, best: &mut Option<Found>) -> Result<bool> {
+        for (traced, placed) in tried {
+            if self.is_no_better(&traced, best.as_ref()) {
+                continue;
+            }
+            self.placements += 1;
+            let Ok((placed, mirror_error)) = placed? else { continue };
+            if placed.fault(self.options).is_some() {
+                continue;
+            }
+            let (bent, lattice, outline) = traced;
+            let found = Found::new(Some((Arc::new(bent), lattice)), outline, placed, mirror_error);
+            let is_good = found.is_good();
+            if best.as_ref().is_none_or(|best| found.score_of_bent() < best.score_of_bent()) {
+                *best = Some(found);
+            }
+            if is_good {
                 return Ok(true);
             }
         }
         Ok(false)
     }
 
-    /// Places patches until one is good, and keeps the best; true if one was good. One that must lose a corner of the drawing
-    /// will not be good: the next is placed at the same time.
-    fn best_placed(
-        &mut self,
-        outlines: Vec<(Bent, Lattice, Outline)>,
-        best: &mut Option<Found>,
-        progress: Progress<'_>,
-    ) -> Result<bool> {
-        let mut outlines = VecDeque::from(outlines);
-        while let Some(first) = outlines.pop_front() {
-            if self.is_no_better(&first, best.as_ref()) {
-                continue;
-            }
-            let started = Instant::now();
-            let second = if self.loses_corners(&first) { outlines.pop_front() } else { None };
-            let part = progress.part(0.3, 0.6);
-            let place = |(bent, lattice, outline): &(Bent, Lattice, Outline)| {
-                self.place(Some(bent), lattice, outline, part)
-            };
-            let (placed, beside) = rayon::join(|| place(&first), || second.as_ref().map(place));
-            self.lap("placement", started);
-            for (traced, placed) in [(Some(first), Some(placed)), (second, beside)] {
-                let (Some(traced), Some(placed)) = (traced, placed) else { continue };
-                if self.is_no_better(&traced, best.as_ref()) {
-                    continue;
-                }
-                self.placements += 1;
-                let Ok((placed, mirror_error)) = placed? else { continue };
-                if placed.fault(self.options).is_some() {
-                    continue;
-                }
-                let (bent, lattice, outline) = traced;
-                let found = Found::new(Some((Arc::new(bent), lattice)), outline, placed, mirror_error);
-                let is_good = found.is_good();
-                if best.as_ref().is_none_or(|best| found.score_of_bent() < best.score_of_bent()) {
-                    *best = Some(found);
-                }
-                if is_good {
-                    return Ok(true);
-                }
-            }
-        }
-        Ok(false)
-    }
-
     /// True if a path of quads costs no less by itself than the best patch with all that speaks against that.
-    fn is_no_better(&self, traced: &(Bent, Lattice, Outline), best: Option<&Found>) -> bool {
+    fn is_no_better(&self, traced: &Traced, best: Option<&Found>) -> bool {
         self.options.cells == CellShape::Quad
             && best.is_some_and(|best| expected(traced) >= best.score_of_bent())
     }
 
     /// True if some corner of the drawing finds no vertex of a path of quads, so that their patch will not be good.
-    fn loses_corners(&self, (bent, lattice, outline): &(Bent, Lattice, Outline)) -> bool {
+    fn loses_corners(&self, (bent, lattice, outline): &Traced) -> bool {
         self.options.cells == CellShape::Quad
             && loses_corners(&self.contours, &bent.lattice(lattice), outline, self.options)
     }
@@ -189,12 +260,7 @@ impl Job<'_> {
     }
 
     /// The boundary on the straight lattice of a bent plane, where there is one.
-    fn bent_outline(
-        &self,
-        asked: Asked,
-        bent: Bent,
-        progress: Progress<'_>,
-    ) -> Result<Option<(Bent, Lattice, Outline)>> {
+    fn bent_outline(&self, asked: Asked, bent: Bent, progress: Progress<'_>) -> Result<Option<Traced>> {
         let asked = match asked {
             Asked::EdgeLength(_) => Asked::EdgeLength(1.0),
             Asked::Cells(n) => Asked::Cells(n),

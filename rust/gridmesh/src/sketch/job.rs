@@ -117,19 +117,21 @@ impl Job<'_> {
         let started = Instant::now();
         let begun = self.states.taken();
         let lattices = self.placements_to_try(asked, effort);
+        let mut first = None;
         if let (None, Some(found)) = (&self.symmetry, &bent) {
             // The first is the most promising: where it turns much more the others do not matter.
             let (angle, shift) = lattices[0];
-            let first = self.outline(asked, effort, angle, shift, progress.part(0.0, 0.3))?;
-            if first.is_ok_and(|(_, outline)| outline.cost > MUCH * found.score())
+            let traced = self.outline(asked, effort, angle, shift, progress.part(0.0, 0.3))?;
+            if traced.as_ref().is_ok_and(|(_, outline)| outline.cost > MUCH * found.score())
                 && let Some(found) = bent.take()
             {
                 self.lap("boundary", started);
                 return Ok(Ok(self.report(found, progress)?));
             }
+            first = Some(traced);
         }
         let Boundaries { mut outlines, is_passable, mut obstacle } =
-            self.boundaries(&lattices, asked, effort, progress.part(0.0, 0.3))?;
+            self.boundaries(first, &lattices, asked, effort, progress.part(0.0, 0.3))?;
         if let Some(bent) = &bent {
             outlines.retain(|(_, outline)| outline.cost < bent.score());
         }
@@ -142,42 +144,54 @@ impl Job<'_> {
         let part_of = |k: usize| 0.4 + 0.5 * k as f64 / shifts.len() as f64;
         let mut shifts = shifts.iter().copied().enumerate();
         let mut outlines = outlines.into_iter();
-        loop {
-            let (lattice, outline) = match outlines.next() {
-                Some(next) => next,
-                None if best.as_ref().is_some_and(|best| best.placed.fault(self.options).is_none()) => break,
-                None if self.states.taken() - begun > STATES_BEFORE_SHIFTS => break,
-                None => {
-                    let Some((k, (angle, shift))) = shifts.next() else { break };
-                    let started = Instant::now();
-                    let part = progress.part(part_of(k), part_of(k + 1));
-                    let found = self.shifted(asked, effort, angle, shift, part)?;
-                    self.lap("boundary", started);
-                    match found {
-                        Ok(found) => found,
-                        Err(miss) => {
-                            obstacle = obstacle.or(Some(miss.obstacle));
-                            continue;
+        // The first alone, those after it side by side; where a bend is not good the first is seldom faultless either.
+        let many = rayon::current_num_threads();
+        let mut count = if bent.is_some() { many } else { 1 };
+        'placing: loop {
+            let mut next: Vec<(Lattice, Outline)> = outlines.by_ref().take(count).collect();
+            count = many;
+            if next.is_empty() {
+                if best.as_ref().is_some_and(|best| best.placed.fault(self.options).is_none())
+                    || self.states.taken() - begun > STATES_BEFORE_SHIFTS
+                {
+                    break;
+                }
+                let Some((k, (angle, shift))) = shifts.next() else { break };
+                let started = Instant::now();
+                let part = progress.part(part_of(k), part_of(k + 1));
+                let found = self.shifted(asked, effort, angle, shift, part)?;
+                self.lap("boundary", started);
+                match found {
+                    Ok(found) => next.push(found),
+                    Err(miss) => {
+                        obstacle = obstacle.or(Some(miss.obstacle));
+                        continue;
+                    }
+                }
+            }
+            let started = Instant::now();
+            let part = progress.part(0.3, 0.9);
+            let place = |(lattice, outline): (Lattice, Outline)| {
+                let placed = self.place(None, &lattice, &outline, part);
+                (outline, placed)
+            };
+            let placed: Vec<_> = next.into_par_iter().map(place).collect();
+            self.lap("placement", started);
+            for (outline, placed) in placed {
+                self.placements += 1;
+                match placed? {
+                    Ok((placed, mirror_error)) => {
+                        let found = Found::new(None, outline, placed, mirror_error);
+                        let is_faultless = found.faults == 0.0;
+                        if best.as_ref().is_none_or(|best| found.faults < best.faults) {
+                            best = Some(found);
+                        }
+                        if is_faultless {
+                            break 'placing;
                         }
                     }
+                    Err(found) => obstacle = Some(found),
                 }
-            };
-            self.placements += 1;
-            let started = Instant::now();
-            let placed = self.place(None, &lattice, &outline, progress.part(0.3, 0.9))?;
-            self.lap("placement", started);
-            match placed {
-                Ok((placed, mirror_error)) => {
-                    let found = Found::new(None, outline, placed, mirror_error);
-                    let is_faultless = found.faults == 0.0;
-                    if best.as_ref().is_none_or(|best| found.faults < best.faults) {
-                        best = Some(found);
-                    }
-                    if is_faultless {
-                        break;
-                    }
-                }
-                Err(found) => obstacle = Some(found),
             }
         }
         if let Some(bent) = bent
@@ -198,21 +212,23 @@ impl Job<'_> {
         }
     }
 
-    /// The cheapest boundaries on lattices, in parallel.
+    /// The cheapest boundaries on lattices, in parallel; that on the first may be known.
     fn boundaries(
         &self,
+        first: Option<Result<(Lattice, Outline), Miss>>,
         lattices: &[(f64, DVec2)],
         asked: Asked,
         effort: Effort,
         progress: Progress<'_>,
     ) -> Result<Boundaries> {
-        let found: Vec<Result<Result<(Lattice, Outline), Miss>>> = lattices
+        let rest = &lattices[usize::from(first.is_some())..];
+        let found: Vec<Result<Result<(Lattice, Outline), Miss>>> = rest
             .par_iter()
             .map(|&(angle, shift)| self.outline(asked, effort, angle, shift, progress))
             .collect();
         let (mut outlines, mut obstacle) = (vec![], None);
         let mut is_passable = self.symmetry.is_some();
-        for found in found {
+        for found in first.map(Ok).into_iter().chain(found) {
             match found? {
                 Ok(found) => {
                     is_passable = true;
