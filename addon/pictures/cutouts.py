@@ -153,7 +153,7 @@ def _meshed(gridmesh: Any, outlines: Outlines, options: Options, progress: Progr
     """Surface or GridMeshError for each part, all with edges of about the same length."""
     parts = outlines.parts
     number, cells, length = _asked(parts, options)
-    lacks = lacks_of(parts, length, options.body is not None, options.margin <= 0, outlines.faint)
+    lacks = lacks_of(parts, length, options.body is not None, options.margin, outlines.faint)
     results: list[Any] = [None] * len(parts)
 
     def mesh(which: list[int], finer: float, of_these: Progress | None) -> dict[int, Any]:
@@ -347,7 +347,7 @@ def _patch(
     found = []
     for patch in _in_sizes(gridmesh, FINER[:_MOST], options, make, progress):
         found.append(patch)
-        if lacks.is_enough(min(found, key=lacks.of), len(found)):
+        if lacks.are_enough(found):
             break
     return min(found, key=lacks.of)
 

@@ -26,7 +26,13 @@ CUT_OFF_ACROSS = 0.14
 """The same in edge lengths for rims across the outline, if that is more: they are to follow large pictures no closer than small ones."""
 
 EMPTY = 0.03
-"""Pictures whose meshes are larger than their outlines by more than this share are meshed finer."""
+"""This share of a mesh may be empty, what lies in the margin included; where it would be more, pictures are meshed finer."""
+
+EMPTY_AT_LEAST = 0.01
+"""So much larger than their outlines meshes may be whatever lies in the margin."""
+
+SOFT = 0.5
+"""Width, in pixels, of the part of a margin in which soft rims of pictures are seen."""
 
 EMPTY_OF_BODY = 0.01
 """The same for bodies, whose rims are opaque: seen from the front they overlap their pictures by 99 % where that can be held."""
@@ -72,14 +78,14 @@ class Lacks:
             return 0, max(lost + max(0.0, outside - self.cut_off) ** 2, self.much)
         return max(0, int(np.ceil(np.log2(max(outside / self.cut_off, 1.0))))), max(more, self.much)
 
-    def is_enough(self, patch: Any, tries: int) -> bool:
-        """Whether no finer mesh need be tried after so many."""
-        lost = self.of(patch)[1]
-        return patch.report["outside"] <= self.cut_off and (lost <= self.much or tries >= self.tries)
+    def are_enough(self, found: list[Any]) -> bool:
+        """Whether no finer mesh need be tried after these."""
+        whole = [patch for patch in found if patch.report["outside"] <= self.cut_off]
+        return bool(whole) and (self.of(min(whole, key=self.of))[1] <= self.much or len(whole) >= self.tries)
 
 
 def lacks_of(
-    parts: list[Any], edge_length: float, is_body: bool, across: bool, faint: float = 1.0
+    parts: list[Any], edge_length: float, is_body: bool, margin: float, faint: float = 1.0
 ) -> list[Lacks]:
     """What each part may lack: the share of the picture that may be lost, parted along the outlines.
 
@@ -88,8 +94,10 @@ def lacks_of(
     """
     drawn = [area(outline) + sum(map(area, holes)) for outline, holes in parts]
     rims = [sum(_length(contour) for contour in [outline, *holes]) for outline, holes in parts]
+    across = margin <= 0
     if not is_body:
-        share, tries = EMPTY, 2
+        in_margin = max(0.0, margin - SOFT) * sum(rims) / sum(drawn)
+        share, tries = max(EMPTY - in_margin, EMPTY_AT_LEAST), 2
     elif across:
         least, most = BETWEEN
         share, tries = max(least, most - PIXELS * sum(rims) / sum(drawn)), 3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from fractions import Fraction
 
 import gridmesh
@@ -144,8 +145,21 @@ def check_patch(patch, contours: list[np.ndarray]) -> None:
     assert patch.report["min_angle"] > 0
     assert gridmesh.stitch(patch).report["embedded"], "the boundary crosses itself"
 
+    check_loops(patch)
     for k, contour in enumerate(contours):
         check_contour(patch, k, contour)
+
+
+def check_loops(patch) -> None:
+    """The outline encloses the patch, holes none of it: their vertices run around them the other way."""
+    for k, loop in enumerate(patch.loops):
+        vertices = patch.vertices[loop].tolist()
+        (ox, oy), *rest = [(Fraction(x), Fraction(y)) for x, y in vertices]
+        area = sum(
+            (ax - ox) * (by - oy) - (bx - ox) * (ay - oy) for (ax, ay), (bx, by) in itertools.pairwise(rest)
+        )
+        assert (area > 0) == (k == 0), "a loop is turned over"
+        assert area != 0, "a loop encloses nothing"
 
 
 def check_contour(patch, k: int, contour: np.ndarray) -> None:

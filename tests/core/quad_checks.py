@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gridmesh
 import numpy as np
-from checks import check_array, check_contour, orientations
+from checks import check_array, check_contour, check_loops, orientations
 
 
 def half_edges(quads: np.ndarray) -> np.ndarray:
@@ -106,6 +106,7 @@ def check_flat(patch, contours: list[np.ndarray]) -> None:
     assert (orientations(rounded, corners) == 1).all(), "a concave or folded quad in float32"
     assert patch.report["min_angle"] > 0
     assert patch.report["max_deviation"] <= 2
+    check_loops(patch)
     for k, contour in enumerate(contours):
         check_contour(patch, k, contour)
 

@@ -1,5 +1,6 @@
 """What random attacks on drawings have found, kept from coming back."""
 
+import itertools
 import os
 import subprocess
 import sys
@@ -86,6 +87,19 @@ def test_a_hole_is_not_flattened_onto_one_of_its_sides():
     case = drawings.case(12_004_167)
     patch = gridmesh.mesh_sketch(case.outline, case.holes, **case.options)
     check_patch(patch, [case.outline, *case.holes])
+
+
+@pytest.mark.parametrize("width", [2, 3, 4])
+def test_a_small_hole_is_not_turned_over(width):
+    """Three vertices on the bulging side of a hole, as under the handle of a bag: triangles lay twice where it was."""
+    half = np.linspace(0, np.pi, 40)
+    disk = 10 * drawings.circle(200)
+    for rise, bulge, triangles in itertools.product((0.6, 1, 1.4), (0.1, 0.2, 0.3), (200, 300, 500)):
+        upper = np.stack([0.5 * width * np.cos(half), 3 + rise * np.sin(half)], axis=1)
+        lower = np.stack([-0.5 * width * np.cos(half), 3 + bulge * np.sin(half)], axis=1)
+        hole = np.concatenate([upper, lower[1:-1]])
+        patch = gridmesh.mesh_sketch(disk, [hole], triangles=triangles)
+        check_patch(patch, [disk, hole])
 
 
 @pytest.mark.parametrize("seed", [1008472, 1009127])

@@ -15,6 +15,7 @@ mod tips;
 
 use glam::DVec2;
 
+use crate::cover::boundary::keeps_side;
 use crate::cover::outside::{Followers, LoopEdges, loop_of};
 use crate::cover::outward::{moved_outward, normals, spread};
 use crate::drawing::contours::read_contours;
@@ -25,7 +26,8 @@ use crate::options::{CellShape, SelfCrossing, SketchOptions};
 use crate::patch::Patch;
 use crate::patch::angles::min_angle;
 use crate::progress::Progress;
-use crate::sketch::{Sketch, mesh_sketch, mesh_sketch_on};
+use crate::sketch::again::placed_again;
+use crate::sketch::{Sketch, mesh_sketch};
 
 /// Patches made at most after the first, each of a wider outline.
 const ROUNDS: usize = 3;
@@ -36,6 +38,9 @@ const ENOUGH: f64 = 0.01;
 
 /// How far an outline is moved at most, in edge lengths: tips that the mesh cannot follow are left to single vertices.
 const MOST: f64 = 0.25;
+
+/// Where a wider outline would cross itself it is moved less so far to each side, in edge lengths.
+const FOLDS: f64 = 0.5;
 
 /// How far beyond the drawing the edges of quads that lie across it may come to lie when they are made longer, in edge lengths.
 const EMPTY: f64 = 0.1;
@@ -141,6 +146,9 @@ fn finished(
         let k = patch.loops.iter().rposition(|contour| contour.start as usize <= vertex).unwrap_or(0);
         let edges = loop_of(patch, k);
         let near = || followers[k].points_near(vertex - patch.loops[k].start as usize);
+        if !keeps_side(patch, vertex) {
+            return false;
+        }
         let most = near().map(|at| left[k][at]).fold(enough, f64::max);
         near().all(|at| {
             let beyond = followers[k].beyond(edges, at, fine[k][at]);
@@ -212,21 +220,12 @@ fn widened<'p>(
                 *far = (*far + more).min(*room);
             }
         }
-        let wider = moved_outward(fine, &outward, &mut moved);
-        let made = |self_crossing: SelfCrossing| {
-            let options = SketchOptions { self_crossing, ..options.clone() };
-            mesh_sketch_on(&kept, &wider[0], &wider[1..], &options, part(round))
-        };
-        // Only few cross themselves, and to find what these enclose takes longer than to see it.
-        let made = match made(SelfCrossing::Error) {
-            Err(Error::SelfIntersecting { .. }) => made(SelfCrossing::Union),
-            made => made,
-        };
-        let sketch = match made {
-            Ok(sketch) => sketch,
+        let wider = moved_outward(fine, &outward, &mut moved, FOLDS * reach);
+        let sketch = match placed_again(&kept, fine, &wider, &options, part(round)) {
+            Ok(Some(sketch)) => sketch,
             Err(Error::Cancelled) => return Err(Error::Cancelled),
             // Wider, it meets itself or is too thin elsewhere: the best so far serves.
-            Err(_) => break,
+            Ok(None) | Err(_) => break,
         };
         needs = self::needs(fine, &sketch.patch, &followers_of(&sketch.patch, &wider), slack);
         let outside = squares(&needs);

@@ -1,5 +1,6 @@
 //! From a drawn outline to a flat patch: the whole of the paper's section IV.
 
+pub(crate) mod again;
 mod bent;
 mod found;
 mod job;

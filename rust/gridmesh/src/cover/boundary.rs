@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use crate::geometry::segments::{SegmentGrid, segments_meet};
+use crate::cover::outside::loop_of;
+use crate::geometry::segments::{SegmentGrid, orientation, segments_meet};
 use crate::patch::Patch;
 
 /// The edges of all loops of a patch.
@@ -32,10 +33,10 @@ impl Boundary {
         Self { edges, beside, grid: SegmentGrid::new(&places), far, farthest: 0.0 }
     }
 
-    /// Whether the two edges at a vertex meet no others. Near-constant time.
+    /// Whether the two edges at a vertex meet no others, and a loop of three is not turned over. Near-constant time.
     pub(super) fn stays_simple(&self, patch: &Patch, vertex: usize) -> bool {
         let place = |v: usize| patch.vertices[v];
-        let mut is_simple = true;
+        let mut is_simple = keeps_side(patch, vertex);
         for other in self.beside[vertex] {
             let [low, high] = [place(vertex).min(place(other)), place(vertex).max(place(other))];
             self.grid.near(low - self.farthest, high + self.farthest, |i| {
@@ -52,6 +53,14 @@ impl Boundary {
         self.far[vertex] += before.distance(patch.vertices[vertex]);
         self.farthest = self.farthest.max(self.far[vertex]);
     }
+}
+
+/// Whether the loop of a vertex, if it has three, encloses what it is to: no two of its edges could be seen to cross.
+pub(super) fn keeps_side(patch: &Patch, vertex: usize) -> bool {
+    let k = patch.loops.iter().rposition(|contour| contour.start as usize <= vertex).unwrap_or(0);
+    let [a, b, c] = loop_of(patch, k) else { return true };
+    let doubled = orientation(*a, *b, *c);
+    if k == 0 { doubled > 0.0 } else { doubled < 0.0 }
 }
 
 #[cfg(test)]
@@ -84,5 +93,22 @@ mod tests {
         boundary.moved(&patch, low, before);
         patch.vertices[high] = DVec2::new(x, 1.0);
         assert!(!boundary.stays_simple(&patch, high));
+    }
+
+    #[test]
+    fn a_hole_of_three_vertices_is_not_turned_over() {
+        let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]].map(DVec2::from);
+        let hole = [[1.8, 1.8], [2.0, 2.2], [2.2, 1.8]].map(DVec2::from).to_vec();
+        let options = SketchOptions { triangles: Some(160), ..SketchOptions::default() };
+        let mut patch = mesh_sketch(&square, &[hole], &options, Progress::NONE).unwrap().patch;
+        assert_eq!(patch.loops[1].len(), 3);
+        let boundary = Boundary::new(&patch);
+        let range = patch.loops[1].vertices();
+        let (first, second, third) =
+            (range.start as usize, range.start as usize + 1, range.start as usize + 2);
+        assert!(boundary.stays_simple(&patch, first));
+        let beyond = patch.vertices[second] + patch.vertices[third] - patch.vertices[first];
+        patch.vertices[first] = beyond;
+        assert!(!boundary.stays_simple(&patch, first));
     }
 }

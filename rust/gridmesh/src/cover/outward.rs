@@ -2,33 +2,77 @@
 
 use glam::DVec2;
 
-use crate::drawing::curve::{ClosedCurve, Winding};
+use crate::geometry::segments::{SegmentGrid, segments_meet};
 
-/// Times that the moves of a hole that would cross itself are halved.
-const HALVES: usize = 2;
+/// Times that moves are halved where a contour would cross itself; it stays where it was after them.
+const HALVES: usize = 5;
 
 /// Contours moved along the unit vectors `outward` of their points, each point as far as `moved` says.
 ///
-/// Holes that would cross themselves are moved half as far, or a quarter, or not at all, and `moved` says so then: unlike those of an
-/// outline, no pieces of them can be left out.
+/// Where one would cross itself its points are moved less, within `reach` along it, and `moved` says so then: at corners that turn
+/// inward the two sides meet.
 pub(super) fn moved_outward(
     fine: &[Vec<DVec2>],
     outward: &[Vec<DVec2>],
     moved: &mut [Vec<f64>],
+    reach: f64,
 ) -> Vec<Vec<DVec2>> {
     let of = |(k, far): (usize, &mut Vec<f64>)| {
-        for _ in 0..=HALVES {
-            let points = fine[k].iter().zip(&*far).zip(&outward[k]);
-            let points: Vec<DVec2> = points.map(|((&p, &far), &n)| p + far * n).collect();
-            if k == 0 || ClosedCurve::new(&points, Winding::Clockwise, "hole").is_ok() {
+        let wider = |far: &[f64]| -> Vec<DVec2> {
+            fine[k].iter().zip(far).zip(&outward[k]).map(|((&p, &far), &n)| p + far * n).collect()
+        };
+        for half in 0..=HALVES {
+            let points = wider(far);
+            let crossing = crossing(&points);
+            if crossing.is_empty() {
                 return points;
             }
-            far.iter_mut().for_each(|far| *far *= 0.5);
+            let share = if half < HALVES { 0.5 } else { 0.0 };
+            for i in near(&fine[k], &crossing, reach) {
+                far[i] *= share;
+            }
+        }
+        let points = wider(far);
+        if crossing(&points).is_empty() {
+            return points;
         }
         far.fill(0.0);
         fine[k].clone()
     };
     moved.iter_mut().enumerate().map(of).collect()
+}
+
+/// The segments of a closed contour that meet others than their neighbours.
+fn crossing(points: &[DVec2]) -> Vec<usize> {
+    let n = points.len();
+    let segments: Vec<[DVec2; 2]> = (0..n).map(|i| [points[i], points[(i + 1) % n]]).collect();
+    let mut found = Vec::new();
+    SegmentGrid::new(&segments).pairs(|i, j| {
+        let is_adjacent = j == i + 1 || (i == 0 && j == n - 1);
+        if !is_adjacent && segments_meet(segments[i], segments[j]) {
+            found.extend([i, j]);
+        }
+        true
+    });
+    found
+}
+
+/// The points of a contour within `reach` of some of its segments, along it, ascending.
+fn near(contour: &[DVec2], segments: &[usize], reach: f64) -> Vec<usize> {
+    let n = contour.len();
+    let mut is_near = vec![false; n];
+    for &segment in segments {
+        for (start, step) in [(segment, n - 1), (segment + 1, 1)] {
+            let (mut at, mut way) = (start % n, 0.0);
+            while way <= reach {
+                is_near[at] = true;
+                let next = (at + step) % n;
+                way += contour[at].distance(contour[next]);
+                at = next;
+            }
+        }
+    }
+    (0..n).filter(|&i| is_near[i]).collect()
 }
 
 /// Unit vectors out of the drawing at the points of a contour that has the drawing on its left.
@@ -57,6 +101,7 @@ mod tests {
     use crate::cover::dense;
     use crate::cover::tests::ring;
     use crate::drawing::contours::read_contours;
+    use crate::drawing::curve::{ClosedCurve, Winding};
 
     #[test]
     fn what_is_spread_is_nowhere_below_the_need() {
@@ -77,25 +122,31 @@ mod tests {
     }
 
     #[test]
-    fn holes_that_would_cross_themselves_are_moved_less() {
-        let drawn = ring(120, 6.0);
+    fn contours_that_would_cross_themselves_are_moved_less_there() {
+        let l = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 4.0], [0.0, 4.0]].map(DVec2::from);
+        let shape = dense(&ClosedCurve::new(&l, Winding::CounterClockwise, "outline").unwrap(), 0.1);
         // Clockwise: one with corners whose sides meet, if they are moved by more than there is between points, and one without.
-        let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]].map(DVec2::from);
-        let square = dense(&ClosedCurve::new(&corners, Winding::Clockwise, "hole").unwrap(), 0.1);
-        let round: Vec<DVec2> = ring(40, 0.8).into_iter().rev().map(|p| p + DVec2::new(3.0, 0.0)).collect();
-        let fine = [drawn, square, round];
+        let corners =
+            [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]].map(|c| DVec2::from(c) * 0.2 + 0.5);
+        let square = dense(&ClosedCurve::new(&corners, Winding::Clockwise, "hole").unwrap(), 0.01);
+        let round: Vec<DVec2> = ring(40, 0.2).into_iter().rev().map(|p| p + DVec2::new(3.0, 0.5)).collect();
+        let fine = [shape, square, round];
         let outward: Vec<Vec<DVec2>> = fine.iter().map(|contour| normals(contour)).collect();
-        for (far, share) in [(0.08, 1.0), (0.15, 0.5), (0.3, 0.25), (0.9, 0.0)] {
+        for far in [0.008, 0.05, 0.09] {
             let mut moved: Vec<Vec<f64>> = fine.iter().map(|contour| vec![far; contour.len()]).collect();
-            moved[2].fill(0.2);
-            let wider = moved_outward(&fine, &outward, &mut moved);
+            let wider = moved_outward(&fine, &outward, &mut moved, 0.15);
             assert!(read_contours(&wider[0], &wider[1..]).is_ok());
-            let by = [far, share * far, 0.2];
-            for (k, by) in by.into_iter().enumerate() {
-                assert!(moved[k].iter().all(|&moved| moved == by), "{far} {k}");
-                let points = wider[k].iter().zip(&fine[k]);
-                assert!(points.into_iter().all(|(a, b)| (a.distance(*b) - by).abs() < 1e-12), "{far} {k}");
+            for (k, points) in wider.iter().enumerate() {
+                let by = points.iter().zip(&fine[k]).map(|(a, b)| a.distance(*b));
+                assert!(by.zip(&moved[k]).all(|(by, moved)| (by - moved).abs() < 1e-12 && *moved <= far));
             }
+            // Away from the corner that turns inward all is moved as it was to be.
+            let inward = DVec2::new(1.0, 1.0);
+            let is_free = |p: &DVec2| p.distance(inward) > 0.15 + 2.0 * far + 0.1;
+            assert!(
+                fine[0].iter().zip(&moved[0]).filter(|(p, _)| is_free(p)).all(|(_, &moved)| moved == far)
+            );
+            assert!(moved[2].iter().all(|&moved| moved == far));
         }
     }
 }

@@ -122,7 +122,7 @@ fn segments_meet(p: DVec2, q: DVec2, a: DVec2, b: DVec2) -> bool {
 }
 
 /// Proves that triangles in the plane overlap nowhere: each is positive (exact predicate) and the
-/// boundary `loops` are simple and apart.
+/// boundary `loops` are simple and apart, the first counter-clockwise, the others clockwise.
 ///
 /// The number of triangles over a point is then its winding number, which is 0 or 1. A surface that
 /// is a graph over such triangles cannot meet itself.
@@ -130,6 +130,25 @@ pub(crate) fn is_planar_embedding(positions: &[DVec2], triangles: &[[u32; 3]], l
     let at = |v: u32| positions[v as usize];
     triangles.iter().all(|t| side2(at(t[0]), at(t[1]), at(t[2])) > 0.0)
         && crossing_edges(positions, loops).is_empty()
+        && turned_over(positions, loops).next().is_none()
+}
+
+/// Which of closed `loops` that are simple run the wrong way round: the first is to run counter-clockwise, holes clockwise (exact).
+///
+/// A hole may do so without its edges meeting: three vertices on a bulge into it enclose nothing of it.
+pub(crate) fn turned_over(positions: &[DVec2], loops: &[Range<u32>]) -> impl Iterator<Item = usize> {
+    (0..loops.len()).filter(move |&k| {
+        let points = &positions[loops[k].start as usize..loops[k].end as usize];
+        let n = points.len();
+        let lowest = (0..n).min_by(|&i, &j| {
+            let (a, b) = (points[i], points[j]);
+            a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+        });
+        lowest.is_none_or(|i| {
+            let turn = side2(points[(i + n - 1) % n], points[i], points[(i + 1) % n]);
+            if k == 0 { turn <= 0.0 } else { turn >= 0.0 }
+        })
+    })
 }
 
 /// The edges of closed `loops` that meet another one elsewhere than in a shared end (exact), in order,
@@ -229,6 +248,22 @@ mod tests {
         let mut turned = square;
         turned.swap(1, 2);
         assert!(!is_planar_embedding(&turned, &triangles, std::slice::from_ref(&(0..4))));
+    }
+
+    #[test]
+    fn a_hole_that_is_turned_over_is_no_embedding() {
+        let at = |k: u32, radius: f64| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / 3.0) * radius;
+        let ring: Vec<DVec2> = (0..3).map(|k| at(k, 4.0)).chain((0..3).map(|k| at(3 - k, 1.0))).collect();
+        let loops = [0..3, 3..6];
+        assert_eq!(turned_over(&ring, &loops).count(), 0);
+        let mut turned = ring.clone();
+        turned.swap(4, 5);
+        assert_eq!(turned_over(&turned, &loops).collect::<Vec<_>>(), [1]);
+        assert!(crossing_edges(&turned, &loops).is_empty());
+        assert!(!is_planar_embedding(&turned, &[], &loops));
+        let mut clockwise = ring;
+        clockwise.swap(0, 1);
+        assert_eq!(turned_over(&clockwise, &loops).collect::<Vec<_>>(), [0]);
     }
 
     /// A fan that winds twice around its centre: every triangle positive, yet overlapping.

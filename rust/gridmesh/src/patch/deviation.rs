@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use crate::drawing::curve::ClosedCurve;
-use crate::geometry::embed::crossing_edges;
+use crate::geometry::embed::{crossing_edges, turned_over};
 use crate::geometry::segments::{SegmentGrid, nearest_on_segment};
 
 /// A boundary edge that the drawing strays from, and the farthest point of the stretch beside it.
@@ -118,8 +118,8 @@ pub(crate) fn deviation(
     (worst, strays)
 }
 
-/// How many boundary edges meet others elsewhere than in a shared end (exact), also after rounding to `f32` at
-/// `origin`, and the farthest drawn point beside each that has one.
+/// How many boundary edges meet others elsewhere than in a shared end (exact) and loops are turned over, also after rounding to
+/// `f32` at `origin`, and the farthest drawn point beside each that has one.
 pub(crate) fn crossings(
     beside: &[Vec<Beside>],
     vertices: &[DVec2],
@@ -143,6 +143,10 @@ pub(crate) fn crossings(
     let rounded: Vec<DVec2> = vertices[..rim].iter().map(|&p| (p - origin).as_vec2().as_dvec2()).collect();
     let mut crossing = crossing_edges(&vertices[..rim], &loops);
     crossing.extend(crossing_edges(&rounded, &loops));
+    for k in turned_over(&vertices[..rim], &loops).chain(turned_over(&rounded, &loops)) {
+        let farthest = beside[k].iter().max_by(|a, b| a.squared.total_cmp(&b.squared));
+        crossing.push(loops[k].start + farthest.map_or(0, |point| point.edge as u32));
+    }
     crossing.sort_unstable();
     crossing.dedup();
     (crossing.len(), crossing.into_iter().filter_map(stray).collect())

@@ -25,7 +25,7 @@ use crate::path::outline::{Obstacle, Outline};
 use crate::path::placement::{Laid, Lattice};
 use crate::progress::{Meter, Progress};
 use crate::sketch::found::Found;
-use crate::sketch::kept::Kept;
+use crate::sketch::kept::{Kept, Paths};
 
 #[derive(Clone, Copy)]
 pub(crate) enum Asked {
@@ -326,6 +326,7 @@ impl Job<'_> {
             let lattice = belt.lattice.of_least_angle(self.options.cells);
             Arc::new(Patch { lattice, ..belt })
         });
+        let laid_on = bent.as_ref().map_or(patch.lattice, |(_, lattice)| *lattice);
         let cells = self.options.cells;
         // Each contour turns four times at least.
         let (is_quads, least_poles) = (cells == CellShape::Quad, 8 * self.contours.len());
@@ -360,7 +361,7 @@ impl Job<'_> {
         };
         self.lap("report", started);
         report.seconds = self.seconds.clone();
-        let kept = Kept::new(patch.lattice, bent);
+        let kept = Kept::new(patch.lattice, bent, Paths { lattice: laid_on, outline });
         Ok(Sketch { patch, report, kept })
     }
 }

@@ -6,6 +6,7 @@ use crate::bend::Bent;
 use crate::bend::shown::Shown;
 use crate::error::{Error, Result};
 use crate::options::SketchOptions;
+use crate::path::outline::Outline;
 use crate::path::placement::Lattice;
 use crate::progress::Progress;
 
@@ -18,17 +19,25 @@ pub struct Kept {
     pub lattice: Lattice,
     /// The map, and the straight lattice of the bent plane.
     pub(super) bent: Option<(Arc<Bent>, Lattice)>,
+    /// The paths of the patch; none for a lattice alone.
+    pub(super) paths: Option<Arc<Paths>>,
+}
+
+/// The boundary of a patch as paths on a lattice, which is straight or that of the bent plane.
+pub(super) struct Paths {
+    pub(super) lattice: Lattice,
+    pub(super) outline: Outline,
 }
 
 impl Kept {
     /// A lattice, straight unless it comes with a map.
-    pub(super) fn new(lattice: Lattice, bent: Option<(Arc<Bent>, Lattice)>) -> Self {
-        Self { lattice, bent }
+    pub(super) fn new(lattice: Lattice, bent: Option<(Arc<Bent>, Lattice)>, paths: Paths) -> Self {
+        Self { lattice, bent, paths: Some(Arc::new(paths)) }
     }
 
     /// A straight lattice.
     pub fn straight(lattice: Lattice) -> Self {
-        Self { lattice, bent: None }
+        Self { lattice, bent: None, paths: None }
     }
 
     /// The bend, for pictures of it; none where the lattice is straight. `options` are those of the patch.
