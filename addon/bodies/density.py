@@ -74,12 +74,17 @@ def automatic(outline: np.ndarray, holes: list[np.ndarray], most: int = _MANY) -
 
 
 def measure(sketch: Sketch, faces: int, kind: str = "triangle") -> Density | None:
-    """Measure a sketch that was meshed with so many faces of one side; None if nothing of it is a limb.
+    """Measure a sketch that was meshed with so many faces of one side; None if nothing of it is a limb, or it crosses itself.
 
-    kind : "triangle" or "quad". In O(n log n). Raises GridMeshError for drawings that have no mesh, and NativeError without the module.
+    kind : "triangle" or "quad". In O(n log n). Raises NativeError without the module.
     """
+    gridmesh = native("thickness")
     holes = [project(hole, sketch.plane)[:, :2] for hole in sketch.holes]
-    limbs = native("thickness").thickness(sketch.outline, holes)
+    try:
+        limbs = gridmesh.thickness(sketch.outline, holes)
+    except gridmesh.GridMeshError:
+        # It was meshed with its crossings resolved; where limbs run into each other none is thinnest.
+        return None
     if not len(limbs) or faces <= 0:
         return None
     width = float(limbs[0, 2])

@@ -66,7 +66,7 @@ class _Action(options.StrokeOptions):
         if self.shape != "SHEET":
             numbers.append(f"{faces // 2} a side")
         text = ", ".join([*numbers, f"{1000 * (perf_counter() - started):.0f} ms"])
-        return self._say("INFO", f"{text}\n{hint}" if hint else text, {"FINISHED"})
+        return self._say("INFO", f"{text}; {hint}" if hint else text, {"FINISHED"})
 
     def _carry_out(self, context: bpy.types.Context) -> tuple[list[bpy.types.Object], str]:
         if not self.stroke:
@@ -85,7 +85,7 @@ class _Action(options.StrokeOptions):
         remembered.action = remembered.action or first.action
         self.action, self.body = first.action, first.body if first.action != "PART" else made[0].name
         self.done = f"{first.action} {first.body}"
-        return made, "\n".join(filter(None, [first.hint, *problems]))
+        return made, "; ".join(filter(None, [first.hint, *problems]))
 
     def _options_of(
         self, first: Decision, bodies: dict[str, shapes.Drawn], remembered: memory.Memory

@@ -7,7 +7,6 @@ the whole is joined anew where that is another one, when changes have ended: fro
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Sequence
 from time import perf_counter
 from typing import Any
@@ -20,7 +19,7 @@ from mathutils import Matrix
 from .. import api
 from ..data import frames, listening, written
 from ..live import engine
-from . import blending, deleted, drafts, joining, parts
+from . import blending, deleted, drafts, joining, marks, parts
 from .uniting import JoinError
 
 BY_HAND = "its mesh was changed by hand; undo that, or apply the join"
@@ -227,21 +226,34 @@ def placed(ob: bpy.types.Object) -> list[parts.Placed]:
 
 
 def fingerprint(ob: bpy.types.Object) -> str:
-    """Fingerprint of all that a whole depends on."""
+    """Mark of all that a whole depends on, to be compared by `marks.is_same`."""
     joined = ob.gridmesh_joined
+    found = placed(ob)
     texts = [f"{joined.blend:.6g} {joined.edge_length:.6g} {joined.strict}"]
-    own = np.array(ob.matrix_world, float)
-    for part, matrix in placed(ob):
-        lies = np.linalg.solve(own, np.array(matrix, float)) if abs(np.linalg.det(own)) > 0 else own
-        texts.append(f"{written.digest(part.data)} {(lies + 0.0).round(5).tolist()}")
-    return f"{zlib.crc32(' '.join(texts).encode()):08x}"
+    texts += [written.digest(part.data) for part, _ in found]
+    return marks.mark(
+        texts, np.array(ob.matrix_world, float), [np.array(matrix, float) for _, matrix in found]
+    )
+
+
+def _tell_by_hand(ob: bpy.types.Object) -> None:
+    """Say at once that a whole will not follow since its mesh was changed by hand, and no longer once that was undone."""
+    if ob.mode != "OBJECT" or not ob.is_editable:
+        return
+    joined = ob.gridmesh_joined
+    is_told = joined.problem == BY_HAND
+    if written.by_hand(ob.data) != is_told:
+        joined.problem = "" if is_told else BY_HAND
 
 
 def update(ob: bpy.types.Object) -> bool:
     """Join a whole anew if its parts or options have changed; say whether that was done."""
     joined = ob.gridmesh_joined
     found, now = placed(ob), fingerprint(ob)
-    if not found or (now == joined.digest and joined.made in ("", ob.data.gridmesh_made)):
+    if not found:
+        return False
+    if marks.is_same(now, joined.digest) and joined.made in ("", ob.data.gridmesh_made):
+        _tell_by_hand(ob)
         return False
     if ob.mode != "OBJECT" or not ob.is_editable:
         return False
@@ -335,10 +347,12 @@ def draft(ob: bpy.types.Object) -> bool:
     """Show a whole whose parts have changed as these together, which is quick; say whether there was anything new."""
     if ob.mode != "OBJECT" or not ob.is_editable or not ob.visible_get():
         return False
-    now = fingerprint(ob)
-    if now == ob.gridmesh_joined.digest or drafts.shown(ob) == now or written.by_hand(ob.data):
+    found, now = placed(ob), fingerprint(ob)
+    if not found or written.by_hand(ob.data):
         return False
-    return drafts.show(ob, placed(ob), now)
+    if marks.is_same(now, ob.gridmesh_joined.digest) or marks.is_same(now, drafts.shown(ob)):
+        return False
+    return drafts.show(ob, found, now)
 
 
 def _handlers() -> list[tuple[list[Any], Any]]:

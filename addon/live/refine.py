@@ -9,7 +9,7 @@ import bpy
 
 from ..bodies import density
 from ..data import frames
-from ..native import NativeError, native
+from ..native import NativeError
 from ..overlay import viewport
 from ..text.telling import told
 from . import engine
@@ -35,8 +35,6 @@ def of_body(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> density.Den
         sides = 1 if live.shape == "SHEET" else 2
         found = density.measure(sketch, len(ob.data.polygons) // sides, kind)
     except (LostError, NativeError):
-        found = None
-    except native().GridMeshError:
         found = None  # the body's own panel says what is wrong with the drawing
     if len(_known) > 200:
         _known.clear()

@@ -80,17 +80,26 @@ def _translated(text: str, locale: str) -> str:
 def _by_template(text: str, locale: str) -> str | None:
     """Translate by the entry that fits the whole text; None if there is none."""
     entries, templates = _entries(locale)
-    for form in dict.fromkeys((text, text[:1].lower() + text[1:], text[:1].upper() + text[1:])):
-        said = entries.get(form)
-        if said is None:
-            for pattern, template in templates:
-                found = pattern.fullmatch(form)
-                if found is not None:
-                    values = [_value(value, locale) for value in found.groups()]
-                    said = template.format(*values)
-                    break
-        if said is not None:
-            return said[:1].upper() + said[1:] if text[:1].isupper() else said
+    forms = dict.fromkeys((text, text[:1].lower() + text[1:], text[:1].upper() + text[1:]))
+    said = next((entries[form] for form in forms if form in entries), None)
+    if said is None:
+        # The template with the most of its own, however the message begins: short ones fit nearly anything.
+        found = [match for match in (_match(form, templates) for form in forms) if match is not None]
+        if not found:
+            return None
+        _, values, template = max(found, key=lambda match: match[0])
+        said = template.format(*(_value(value, locale) for value in values))
+    return said[:1].upper() + said[1:] if text[:1].isupper() else said
+
+
+def _match(
+    text: str, templates: list[tuple[re.Pattern[str], str, int]]
+) -> tuple[int, tuple[str, ...], str] | None:
+    """Return the length of the first template that fits the whole text, the values in it, and its translation."""
+    for pattern, template, length in templates:
+        found = pattern.fullmatch(text)
+        if found is not None:
+            return length, found.groups(), template
     return None
 
 
@@ -102,12 +111,12 @@ def _value(text: str, locale: str) -> str:
 
 
 @cache
-def _entries(locale: str) -> tuple[dict[str, str], list[tuple[re.Pattern[str], str]]]:
+def _entries(locale: str) -> tuple[dict[str, str], list[tuple[re.Pattern[str], str, int]]]:
     """Texts without values, and patterns of those with values: those with the most of their own first."""
     made = LANGUAGES[locale]
     templates = sorted((text for text in made if _PIECES.search(text)), key=lambda text: (-len(text), text))
     plain = {text: said for text, said in made.items() if text not in templates}
-    return plain, [(_pattern(text), made[text]) for text in templates]
+    return plain, [(_pattern(text), made[text], len(text)) for text in templates]
 
 
 def _pattern(template: str) -> re.Pattern[str]:

@@ -1,10 +1,13 @@
 """Joined bodies that follow their parts: strokes redrawn, moved, copied, deleted, undone; shown, applied."""
 
+import math
+
 import bpy
 import numpy as np
 import pytest
 from cuts import check_sound, volume
 from drawings import activate, circle, grease_pencil, mesh_objects, run, vertices
+from mathutils import Matrix
 from test_join import ball, faces_in_world, join
 
 from addon.data import frames
@@ -82,6 +85,29 @@ def test_moved_it_takes_its_parts_along(snowman):
     assert top(whole) == pytest.approx(2.0, abs=0.02)
 
 
+def test_turned_scaled_and_moved_far_it_keeps_its_mesh_and_weights(snowman):
+    """Matrices of single precision differ in the last digits then."""
+    _, whole, parts = snowman
+    whole.vertex_groups.new(name="Arm").add(range(100), 0.5, "REPLACE")
+    mesh = vertices(whole.data)
+    ways = [
+        Matrix.Rotation(math.radians(37), 4, (0.2, -0.5, 0.8)),
+        Matrix.Scale(0.01, 4),
+        Matrix.Translation((300, -20, 7)),
+        Matrix.Rotation(math.radians(-75), 4, "Z"),
+        Matrix.Scale(250, 4),
+    ]
+    for way in ways:
+        whole.matrix_world = way @ whole.matrix_world
+        bpy.context.view_layer.update()
+        assert settle() == 0
+        assert np.array_equal(vertices(whole.data), mesh)
+        assert sum(len(vertex.groups) for vertex in whole.data.vertices) == 100
+    parts[1].location.y += 0.2
+    bpy.context.view_layer.update()
+    assert settle() == 1
+
+
 def test_a_moved_part_is_joined_where_it_is(snowman):
     _, whole, parts = snowman
     parts[1].location.y += 0.2
@@ -141,6 +167,28 @@ def test_changed_by_hand_it_is_left(snowman):
     assert settle() == 0
     assert whole.gridmesh_joined.problem == following.BY_HAND
     assert np.array_equal(vertices(whole.data), before)
+
+
+def test_changed_by_hand_it_says_so_at_once(snowman):
+    _, whole, _ = snowman
+    before = whole.data.vertices[0].co.copy()
+    whole.data.vertices[0].co.z += 1.0
+    assert settle() == 0
+    assert whole.gridmesh_joined.problem == following.BY_HAND
+    whole.data.vertices[0].co = before
+    assert settle() == 0
+    assert whole.gridmesh_joined.problem == ""
+
+
+def test_a_whole_without_parts_is_left(snowman):
+    """As a copy is whose parts were deleted with the original."""
+    _, whole, parts = snowman
+    mesh = vertices(whole.data)
+    for part in parts:
+        bpy.data.objects.remove(part)
+    assert not following.draft(whole)
+    assert settle() == 0
+    assert np.array_equal(vertices(whole.data), mesh)
 
 
 def test_undo_and_redo(snowman):

@@ -185,6 +185,9 @@ def test_each_template_is_found_again_from_what_it_makes(locale):
             for k, i in enumerate(at)
         ]
         assert translate(english.format(*values), locale) == other.format(*values)
+        # Reports begin with a capital.
+        capital, said = (text.format(*values) for text in (english, other))
+        assert translate(capital[:1].upper() + capital[1:], locale) in (said, said[:1].upper() + said[1:])
         assert sorted(set(re.findall(r"\{(\d*)\}", other))) == sorted({str(k) for k in range(len(at))})
 
 

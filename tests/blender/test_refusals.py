@@ -6,10 +6,22 @@ import types
 import bpy
 import numpy as np
 import pytest
-from drawings import activate, at, bean, circle, curve, fingerprint, grease_pencil, linked
+from drawings import (
+    activate,
+    at,
+    bean,
+    check_body,
+    circle,
+    curve,
+    fingerprint,
+    grease_pencil,
+    linked,
+    run_one,
+)
 
 import addon
 from addon import api
+from addon.data import frames
 
 NAN, INF = float("nan"), float("inf")
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
@@ -261,3 +273,17 @@ def test_register_that_fails_leaves_nothing(monkeypatch):
     assert not hasattr(bpy.types, "VIEW3D_PT_gridmesh")
     monkeypatch.undo()
     addon.register()
+
+
+@pytest.mark.parametrize("follow", [False, True])
+def test_a_stroke_that_crosses_itself_becomes_a_body_where_crossings_are_resolved(follow):
+    """A loop at the end of a stroke, as hands draw them: nothing measures the thickness of what crosses itself."""
+    turn = np.linspace(0, 2 * np.pi, 90)
+    points = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    points[-6:, :2] *= 0.9 - 0.04 * np.arange(6)[:, None]
+    small = np.linspace(0, 2 * np.pi, 24)
+    loop = points[30] + 0.15 * np.stack([np.cos(small) - 1, np.sin(small), 0 * small], axis=1)
+    grease_pencil([np.concatenate([points[:30], loop, points[31:]])])
+    ob = run_one(use_union=True, follow=follow)
+    check_body(ob)
+    assert frames.is_linked(ob) == follow
