@@ -32,6 +32,8 @@ class _Memory:
     """Where bodies were that are the children of their drawing."""
     present: set[int] = field(default_factory=set)
     """Drawings that have been in a scene."""
+    lost: dict[int, int] = field(default_factory=dict)
+    """The drawing that each body has lost."""
 
 
 _memory = _Memory()
@@ -44,6 +46,7 @@ def forget(*, everything: bool) -> None:
         _memory.shown.clear()
         _memory.places.clear()
         _memory.present.clear()
+        _memory.lost.clear()
 
 
 def bodies(source: bpy.types.Object | None = None) -> list[bpy.types.Object]:
@@ -141,14 +144,28 @@ def _ours(ob: bpy.types.Object) -> bool:
     return ob.library is None and ob.override_library is None
 
 
+def _returned(ob: bpy.types.Object) -> bpy.types.Object | None:
+    """The drawing that a body has lost, if undo has brought it back: Blender takes the body, alike in both steps, as it is."""
+    lost = _memory.lost.get(ob.session_uid)
+    if lost is None:
+        return None
+    drawings = (other for other in bpy.data.objects if other.session_uid == lost and other.users_scene)
+    return next(drawings, None)
+
+
 def _kept(ob: bpy.types.Object) -> bool:
     """Whether a body still has its drawing. One that was appended alone brings it into the scene."""
     live = ob.gridmesh_live
     source = live.source
     if not _ours(ob) or not ob.users_scene:
         return False
+    if source is None:
+        source = _returned(ob)
+        if source is not None:
+            live.source, live.problem = source, ""
     if source is not None and not source.users_scene:
         if source.session_uid in _memory.present or not _ours(source):
+            _memory.lost[ob.session_uid] = source.session_uid
             live.source = None  # a deleted drawing is not kept alive by its bodies
         else:
             _join_collections(source, ob)

@@ -491,6 +491,28 @@ def test_a_deleted_outline_leaves_the_body_where_it_is(pair, moved, script):
     assert np.allclose(bpy.data.objects[name].matrix_world, place, atol=1e-5)
 
 
+def test_undo_of_a_deleted_outline_brings_the_link_back(pair):
+    """As often as one likes, also where the step was noted before the body forgot its drawing."""
+    body, source = pair
+    names = body.name, source.name
+    before = shape(body, source)
+    bpy.ops.ed.undo_push(message="made")
+    activate(source)
+    bpy.ops.object.delete()
+    bpy.ops.ed.undo_push(message="deleted")
+    settle()
+    for _ in range(2):
+        bpy.ops.ed.undo()
+        settle()
+        body, source = (bpy.data.objects[name] for name in names)
+        assert body.gridmesh_live.source == source
+        assert body.gridmesh_live.problem == ""
+        check_moved(body, source, before, Matrix.Identity(4))
+        bpy.ops.ed.redo()
+        settle()
+        assert "gone" in bpy.data.objects[names[0]].gridmesh_live.problem
+
+
 def test_both_deleted_leave_nothing(pair):
     activate(*pair)
     bpy.ops.object.delete()
