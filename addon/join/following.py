@@ -322,6 +322,17 @@ def _on_save(*_: Any) -> None:
     refresh()
 
 
+@bpy.app.handlers.persistent
+def _on_import(*_: Any) -> None:
+    """After appending: what was hidden in a view layer, which stays behind, is hidden in this one."""
+    _on_other_time()
+    there = bpy.context.view_layer.objects
+    for whole in wholes():
+        for part in parts_of(whole):
+            if part.hide_render and part.name in there and not part.hide_get():
+                reveal(part, seen=False)
+
+
 def _soon() -> None:
     """Look at the wholes from now on, until nothing has changed for a moment."""
     if not bpy.app.timers.is_registered(_look):
@@ -362,7 +373,7 @@ def _handlers() -> list[tuple[list[Any], Any]]:
         (on.undo_post, _on_other_time),
         (on.redo_post, _on_other_time),
         (on.load_post, _on_load),
-        (on.blend_import_post, _on_other_time),
+        (on.blend_import_post, _on_import),
         (on.save_pre, _on_save),
     ]
 

@@ -219,6 +219,24 @@ def test_saved_and_opened_it_goes_on(snowman, tmp_path):
     assert top(whole) == pytest.approx(2.0, abs=0.02)
 
 
+def test_appended_its_parts_stay_hidden(snowman, tmp_path):
+    _, whole, parts = snowman
+    names = whole.name, [part.name for part in parts]
+    mesh = vertices(whole.data)
+    path = tmp_path / "character.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.wm.append(filename=names[0], directory=f"{path}/Object/")
+    settle()
+    whole = bpy.data.objects[names[0]]
+    parts = following.parts_of(whole)
+    assert sorted(part.name for part in parts) == sorted(names[1])
+    assert whole.visible_get()
+    assert not any(part.visible_get() for part in parts)
+    assert not any(frames.owned(part).visible_get() for part in parts if frames.owned(part) is not None)
+    assert np.array_equal(vertices(whole.data), mesh)
+
+
 def test_parts_are_shown_and_hidden_again(snowman):
     _, whole, parts = snowman
     assert bpy.ops.object.gridmesh_show_parts() == {"FINISHED"}
