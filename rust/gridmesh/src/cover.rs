@@ -1,6 +1,6 @@
 //! Patches that cover what was drawn: outlines moved outward where the edges of a mesh cut them off.
 //!
-//! [`cover_sketch`] meshes an outline a few times, each time moved outward where the mesh of before left it outside (`outside`, `outward`), as far as there is room (`room`), then
+//! [`cover_sketch`] meshes an outline and places the mesh a few times more, each time on an outline moved outward where it was left outside (`outside`, `outward`), as far as there is room (`room`), then
 //! moves ends of short edges apart (`short`), single vertices to tips (`tips`), and others back into inlets (`tight`). Patches that are to
 //! lie [`Rim::Across`] their outline are meshed once, and their boundary vertices are moved until they do (`across`).
 
@@ -77,7 +77,7 @@ pub enum Rim {
 /// least, as far as faces and edges stay as they should be. For bodies, whose silhouettes are those of pictures.
 ///
 /// Topology, valences and orientation are as of [`mesh_sketch`]; boundary vertices lie near the contours, not on them.
-/// Takes the time of up to four meshes, three of them on a known lattice.
+/// Takes the time of a mesh, and of placing it up to three times more.
 ///
 /// # Errors
 /// Those of [`mesh_sketch`]; [`Error::InvalidOption`] if the slack is negative or not finite.
@@ -193,17 +193,6 @@ fn widened<'p>(
 ) -> Result<Followed> {
     let reach = first.patch.lattice.edge_length;
     let kept = first.kept.clone();
-    let options = SketchOptions {
-        edge_length: None,
-        triangles: None,
-        automatic: false,
-        angle: None,
-        origin: None,
-        mirror: None,
-        density: None,
-        least: false,
-        ..options.clone()
-    };
     let mut moved: Vec<Vec<f64>> = fine.iter().map(|contour| vec![0.0; contour.len()]).collect();
     let followers = followers_of(&first.patch, fine);
     let mut needs = needs(fine, &first.patch, &followers, slack);
@@ -221,7 +210,7 @@ fn widened<'p>(
             }
         }
         let wider = moved_outward(fine, &outward, &mut moved, FOLDS * reach);
-        let sketch = match placed_again(&kept, fine, &wider, &options, part(round)) {
+        let sketch = match placed_again(&kept, fine, &wider, options, part(round)) {
             Ok(Some(sketch)) => sketch,
             Err(Error::Cancelled) => return Err(Error::Cancelled),
             // Wider, it meets itself or is too thin elsewhere: the best so far serves.
