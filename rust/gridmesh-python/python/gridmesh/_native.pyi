@@ -62,6 +62,7 @@ class _Options(TypedDict, total=False):
     max_distance: float
     closeness: float
     angle: float | None
+    origin: _Points | None
     corner_angle: float
     mirror: _Axis | Literal["auto"] | None
     self_crossing: Literal["error", "union"]
@@ -77,6 +78,7 @@ class _Options(TypedDict, total=False):
     front: _Side
     back: _Side
     uv: Literal["apart", "shared"]
+    subdivided: bool
 
 class GridMeshError(ValueError):
     kind: str
