@@ -26,7 +26,7 @@ use crate::options::{
 };
 use crate::patch::{Patch, mirror};
 use crate::path::outline::Obstacle;
-use crate::progress::{Meter, Progress, Rising};
+use crate::progress::{Progress, Rising};
 pub use crate::sketch::job::Sketch;
 use crate::sketch::job::{Asked, Effort, Job};
 pub use crate::sketch::kept::Kept;
@@ -124,22 +124,8 @@ fn mesh(
     let find = |mirror| Symmetry::find(&contours, mirror, edge_length);
     let symmetry = options.mirror.map(find).transpose()?;
     mirror::check_angle(symmetry.as_ref(), options.angle, options.cells)?;
-    let centre = centroid(contours[0].points());
-    let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
-    let mut job = Job {
-        contours,
-        symmetry,
-        options,
-        proves: options.proof_nodes > 0,
-        keep,
-        area,
-        centre,
-        thinnest,
-        seconds: Vec::new(),
-        placements: 0,
-        states: Meter::new(u64::MAX),
-        bent_states: Meter::new(u64::MAX),
-    };
+    let mut job =
+        Job { proves: options.proof_nodes > 0, keep, thinnest, ..Job::new(contours, symmetry, options) };
     job.lap("curve", started);
     let asked = match options.edge_length {
         Some(h) => Asked::EdgeLength(h),
@@ -227,17 +213,4 @@ fn check_density(options: &SketchOptions, outline: &[DVec2], holes: &[Vec<DVec2>
     let value = format!("{} numbers", numbers.join(" + "));
     let allowed = "one number for each point of the outline, and of each hole that has any";
     Err(Error::InvalidOption { name: "density", value, allowed })
-}
-
-/// The centroid of the enclosed area.
-fn centroid(points: &[DVec2]) -> DVec2 {
-    let origin = points[0];
-    let (mut sum, mut area) = (DVec2::ZERO, 0.0);
-    for pair in points.windows(2) {
-        let (a, b) = (pair[0] - origin, pair[1] - origin);
-        let cross = a.perp_dot(b);
-        area += cross;
-        sum += cross * (a + b);
-    }
-    origin + sum / (3.0 * area)
 }

@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use crate::cover::outside::loop_of;
-use crate::geometry::segments::{SegmentGrid, orientation, segments_meet};
+use crate::geometry::embed::is_turned_over;
+use crate::geometry::segments::{SegmentGrid, segments_meet};
 use crate::patch::Patch;
 
 /// The edges of all loops of a patch.
@@ -58,9 +59,8 @@ impl Boundary {
 /// Whether the loop of a vertex, if it has three, encloses what it is to: no two of its edges could be seen to cross.
 pub(super) fn keeps_side(patch: &Patch, vertex: usize) -> bool {
     let k = patch.loops.iter().rposition(|contour| contour.start as usize <= vertex).unwrap_or(0);
-    let [a, b, c] = loop_of(patch, k) else { return true };
-    let doubled = orientation(*a, *b, *c);
-    if k == 0 { doubled > 0.0 } else { doubled < 0.0 }
+    let points = loop_of(patch, k);
+    points.len() > 3 || !is_turned_over(points, k > 0)
 }
 
 #[cfg(test)]

@@ -80,6 +80,19 @@ pub fn encloses(polygon: &[DVec2], point: DVec2) -> bool {
     inside
 }
 
+/// The centroid of the area that a polygon encloses, which is closed implicitly.
+pub(crate) fn centroid(points: &[DVec2]) -> DVec2 {
+    let origin = points[0];
+    let (mut sum, mut area) = (DVec2::ZERO, 0.0);
+    for pair in points.windows(2) {
+        let (a, b) = (pair[0] - origin, pair[1] - origin);
+        let cross = a.perp_dot(b);
+        area += cross;
+        sum += cross * (a + b);
+    }
+    origin + sum / (3.0 * area)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

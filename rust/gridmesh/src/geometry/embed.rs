@@ -133,21 +133,24 @@ pub(crate) fn is_planar_embedding(positions: &[DVec2], triangles: &[[u32; 3]], l
         && turned_over(positions, loops).next().is_none()
 }
 
-/// Which of closed `loops` that are simple run the wrong way round: the first is to run counter-clockwise, holes clockwise (exact).
+/// Which of closed `loops` that are simple are turned over: the first is the outline, the others are holes.
+pub(crate) fn turned_over(positions: &[DVec2], loops: &[Range<u32>]) -> impl Iterator<Item = usize> {
+    (0..loops.len())
+        .filter(move |&k| is_turned_over(&positions[loops[k].start as usize..loops[k].end as usize], k > 0))
+}
+
+/// True if a simple polygon does not run counter-clockwise; as a hole, clockwise (exact).
 ///
 /// A hole may do so without its edges meeting: three vertices on a bulge into it enclose nothing of it.
-pub(crate) fn turned_over(positions: &[DVec2], loops: &[Range<u32>]) -> impl Iterator<Item = usize> {
-    (0..loops.len()).filter(move |&k| {
-        let points = &positions[loops[k].start as usize..loops[k].end as usize];
-        let n = points.len();
-        let lowest = (0..n).min_by(|&i, &j| {
-            let (a, b) = (points[i], points[j]);
-            a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
-        });
-        lowest.is_none_or(|i| {
-            let turn = side2(points[(i + n - 1) % n], points[i], points[(i + 1) % n]);
-            if k == 0 { turn <= 0.0 } else { turn >= 0.0 }
-        })
+pub(crate) fn is_turned_over(points: &[DVec2], is_hole: bool) -> bool {
+    let n = points.len();
+    let lowest = (0..n).min_by(|&i, &j| {
+        let (a, b) = (points[i], points[j]);
+        a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+    });
+    lowest.is_none_or(|i| {
+        let turn = side2(points[(i + n - 1) % n], points[i], points[(i + 1) % n]);
+        if is_hole { turn >= 0.0 } else { turn <= 0.0 }
     })
 }
 

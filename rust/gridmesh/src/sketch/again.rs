@@ -2,13 +2,12 @@
 
 use glam::DVec2;
 
-use super::centroid;
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::ClosedCurve;
 use crate::error::Result;
 use crate::options::SketchOptions;
 use crate::path::outline::Outline;
-use crate::progress::{Meter, Progress};
+use crate::progress::Progress;
 use crate::sketch::found::Found;
 use crate::sketch::job::{Job, Sketch};
 use crate::sketch::kept::Kept;
@@ -35,22 +34,7 @@ pub(crate) fn placed_again(
         .collect();
     let Some(arcs) = arcs else { return Ok(None) };
     let outline = Outline { arcs, ..paths.outline.clone() };
-    let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
-    let centre = centroid(contours[0].points());
-    let mut job = Job {
-        contours,
-        symmetry: None,
-        options,
-        proves: false,
-        keep: None,
-        area,
-        centre,
-        thinnest: None,
-        seconds: Vec::new(),
-        placements: 1,
-        states: Meter::new(u64::MAX),
-        bent_states: Meter::new(u64::MAX),
-    };
+    let mut job = Job { placements: 1, ..Job::new(contours, None, options) };
     let bent = kept.bent.as_ref().map(|(bent, _)| bent.as_ref());
     let placed = job.place(bent, &paths.lattice, &outline, progress)?;
     let Ok((placed, mirror_error)) = placed else { return Ok(None) };

@@ -7,10 +7,8 @@ use std::time::Instant;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::centroid;
 use crate::bend::conformal::Operators;
 use crate::bend::{Bent, Ground, choose};
-use crate::drawing::curve::ClosedCurve;
 use crate::drawing::symmetry::Symmetry;
 use crate::error::{Error, Result};
 use crate::options::{BoundaryMethod, CellShape, Mirror, SketchOptions};
@@ -18,7 +16,7 @@ use crate::patch::place::loses_corners;
 use crate::patch::placed::Placed;
 use crate::path::outline::{Obstacle, Outline};
 use crate::path::placement::Lattice;
-use crate::progress::{Meter, Progress};
+use crate::progress::Progress;
 use crate::sketch::found::Found;
 use crate::sketch::job::{Asked, Effort, Job};
 
@@ -301,24 +299,7 @@ impl Job<'_> {
         options: &'b SketchOptions,
         symmetry: Option<Symmetry>,
     ) -> Job<'b> {
-        let contours = bent.contours().to_vec();
-        let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
-        let centre = centroid(contours[0].points());
-        let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
-        Job {
-            contours,
-            symmetry,
-            options,
-            proves: self.proves,
-            keep: None,
-            area,
-            centre,
-            thinnest: None,
-            seconds: Vec::new(),
-            placements: 0,
-            states: Meter::new(u64::MAX),
-            bent_states: Meter::new(u64::MAX),
-        }
+        Job { proves: self.proves, ..Job::new(bent.contours().to_vec(), symmetry, options) }
     }
 
     /// The patch on the bent lattice that is to be kept; none where there is none, or none that the drawing

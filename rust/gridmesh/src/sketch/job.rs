@@ -7,6 +7,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::bend::Bent;
+use crate::drawing::contours::centroid;
 use crate::drawing::curve::ClosedCurve;
 use crate::drawing::symmetry::Symmetry;
 use crate::drawing::thickness;
@@ -69,6 +70,33 @@ struct Boundaries {
     is_passable: bool,
     /// Why the first of the others gives none.
     obstacle: Option<Obstacle>,
+}
+
+impl<'a> Job<'a> {
+    /// A job that proves and keeps nothing.
+    pub(crate) fn new(
+        contours: Vec<ClosedCurve>,
+        symmetry: Option<Symmetry>,
+        options: &'a SketchOptions,
+    ) -> Self {
+        let area = contours[0].area() - contours[1..].iter().map(ClosedCurve::area).sum::<f64>();
+        let centre = centroid(contours[0].points());
+        let centre = symmetry.as_ref().map_or(centre, |symmetry| symmetry.axis.foot(centre));
+        Job {
+            contours,
+            symmetry,
+            options,
+            proves: false,
+            keep: None,
+            area,
+            centre,
+            thinnest: None,
+            seconds: Vec::new(),
+            placements: 0,
+            states: Meter::new(u64::MAX),
+            bent_states: Meter::new(u64::MAX),
+        }
+    }
 }
 
 impl Job<'_> {
