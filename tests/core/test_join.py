@@ -376,6 +376,16 @@ def test_blends_of_coarse_parts_hardly_change_the_volume(edge):
     assert wide.report["collar_triangles"] > plain.report["collar_triangles"]
 
 
+@pytest.mark.parametrize("moved", [0.0, 0.001, 0.03, 0.1, 0.3])
+def test_blends_of_parts_that_nearly_coincide_hardly_change_the_volume(moved):
+    """Surfaces that meet everywhere leave no room for a blend: it would take a corner of the bodies, or half of them, away."""
+    box, round_ = bar((2.2, 1.4, 1.8), cells=(4, 4, 4)), ball(edge=0.25)
+    for vertices, faces in (box, round_):
+        made = joined((vertices, faces), (vertices + (moved, 0, 0), faces))
+        assert abs(made.report["volume"] / made.report["exact_volume"] - 1) <= 0.03
+        assert made.report["components"] == 1
+
+
 def test_edge_lengths_of_one_to_four_are_graded():
     made = joined(ball(edge=0.16), ball((1.2, 0, 0), 0.7, edge=0.04))
     assert made.report["components"] == 1

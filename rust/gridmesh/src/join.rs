@@ -143,15 +143,24 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
     let enclosed = volume(&union.vertices, &union.triangles);
     let mut rounds = if options.blend > 0.0 { NARROWED } else { 0 };
     let mut from = 0.4;
+    let allowed = stage.allowed(enclosed);
+    let mut each = f64::INFINITY;
     let (site, strips, mut closed) = loop {
         let to = 0.5 * (from + 0.9);
-        let (site, strips, closed) = stage.closed(&most, progress.part(from, to))?;
-        let scales = stage.narrowed(&most, enclosed, &strips, &closed);
-        if scales == most || rounds == 0 {
+        let (site, strips, closed) = stage.closed(&most, each, progress.part(from, to))?;
+        let scales = stage.narrowed(&most, allowed, &strips, &closed);
+        let done = each.is_finite() || options.blend == 0.0 || gained(&closed).abs() <= allowed;
+        if rounds > 0 && scales != most {
+            most = scales;
+            rounds -= 1;
+        } else if done {
             break (site, strips, closed);
+        } else {
+            // No narrower blend changes the volume less: patches that do not change it that much at all.
+            each = share(allowed, &closed);
+            rounds = 0;
         }
-        most = scales;
-        (rounds, from) = (rounds - 1, to);
+        from = to;
     };
     clock.stage("patches");
     let sides = match options.border {
@@ -209,8 +218,14 @@ impl Stage<'_> {
         Ok((outside, found))
     }
 
-    /// The strips and what takes their place, if the blend of each curve is at most so many times what is asked for.
-    fn closed(&self, most: &[f64], progress: Progress<'_>) -> Result<(Site<'_>, Vec<Strip>, Vec<Patch>)> {
+    /// The strips and what takes their place, if the blend of each curve is at most so many times what is asked for, and each
+    /// patch but the exact one may change the volume by `allowed`.
+    fn closed(
+        &self,
+        most: &[f64],
+        allowed: f64,
+        progress: Progress<'_>,
+    ) -> Result<(Site<'_>, Vec<Strip>, Vec<Patch>)> {
         let &Stage { parts, union, seams, options, .. } = self;
         let (outside, strips) = self.collars(most, progress.part(0.0, 0.2))?;
         let (mut kept, mut polygons) = (vec![], vec![]);
@@ -220,7 +235,7 @@ impl Stage<'_> {
                 polygons.push(f);
             }
         }
-        let site = Site { parts, union, seams, outside, options, kept, polygons };
+        let site = Site { parts, union, seams, outside, options, kept, polygons, allowed };
         let each = |strip: &Strip, progress: Progress<'_>| site.close(strip, progress);
         let closing = progress.part(0.2, 1.0);
         let closed = match strips.as_slice() {
@@ -230,12 +245,17 @@ impl Stage<'_> {
         Ok((site, strips, closed))
     }
 
-    /// How much of the blend of each curve to take instead: less where a patch is no blend, or much of the volume that is gained
-    /// too much. `enclosed`: the volume of the union.
-    fn narrowed(&self, most: &[f64], enclosed: f64, strips: &[Strip], patches: &[Patch]) -> Vec<f64> {
-        let gained = patches.iter().map(|patch| patch.gained).sum::<f64>();
+    /// By how much all patches together may change the volume of the union, which is `enclosed`.
+    fn allowed(&self, enclosed: f64) -> f64 {
         let wide = (self.options.blend / JoinOptions::default().blend).max(1.0);
-        let much = gained.abs() > GAINED * wide * wide * enclosed;
+        GAINED * wide * wide * enclosed
+    }
+
+    /// How much of the blend of each curve to take instead: less where a patch is no blend, or much of the volume that is gained
+    /// more than `allowed`.
+    fn narrowed(&self, most: &[f64], allowed: f64, strips: &[Strip], patches: &[Patch]) -> Vec<f64> {
+        let gained = gained(patches);
+        let much = gained.abs() > allowed;
         let mut scales = most.to_vec();
         for (strip, patch) in strips.iter().zip(patches) {
             let scale = if [Kind::Crease, Kind::Exact].contains(&patch.kind) {
@@ -279,6 +299,27 @@ impl Stage<'_> {
         let wide = self.attempt(&wide_scales)?;
         Ok(if wide.1.iter().all(|s| s.sound) { wide } else { narrow })
     }
+}
+
+/// What the volume gains by all patches.
+fn gained(patches: &[Patch]) -> f64 {
+    patches.iter().map(|patch| patch.gained).sum()
+}
+
+/// The most that each patch may gain or lose, if all that do so with the sum may gain or lose `allowed`: what some do not need is
+/// left for the others.
+fn share(allowed: f64, patches: &[Patch]) -> f64 {
+    let sign = gained(patches).signum();
+    let mut wanted = patches.iter().map(|patch| (patch.gained * sign).max(0.0)).collect::<Vec<_>>();
+    wanted.sort_by(f64::total_cmp);
+    let (mut left, mut count) = (allowed, wanted.len());
+    for own in wanted {
+        if own > left / count as f64 {
+            break;
+        }
+        (left, count) = (left - own, count - 1);
+    }
+    left / count.max(1) as f64
 }
 
 /// How many parts meet no other one, and of how many nothing is left.

@@ -43,6 +43,9 @@ const AROUND: [f64; 2] = [2.0, 6.0];
 const HELD: usize = 4;
 const BESIDE: f64 = 2.0;
 
+/// Steps in which it is found how much of a faired patch the volume allows.
+const HALVINGS: usize = 6;
+
 /// A strip with what lies around it.
 struct Place<'a> {
     site: &'a Site<'a>,
@@ -274,7 +277,13 @@ impl Place<'_> {
         let smaller = volumes.iter().sum::<f64>() - volumes.iter().copied().fold(0.0, f64::max);
         let own = if volumes.len() > 1 { smaller } else { volumes.iter().sum() };
         let gained = (new - old) / 6.0;
-        Patch { kind, vertices, triangles, gained, far: gained.abs() > CHANGED * own }
+        Patch {
+            kind,
+            vertices,
+            triangles,
+            gained,
+            far: gained.abs() > (CHANGED * own).min(self.site.allowed),
+        }
     }
 
     /// Fairs, as far as nothing meets by it; and the triangles that do.
@@ -292,6 +301,7 @@ impl Place<'_> {
         }
         local.positions = fair(&local, beyond, progress.part(0.5, 0.6))?;
         mend_thin(&mut local);
+        self.lessened(&mut local, &flat);
         let bad = untangle(&mut local, &flat, self.near(), polish, progress.part(0.6, 0.95))?;
         if bad.is_empty() {
             mend_slivers(&mut local, self.near(), progress.part(0.95, 1.0))?;
@@ -299,15 +309,39 @@ impl Place<'_> {
         Ok((local, bad))
     }
 
-    fn tried(&self, local: &Local, bad: &[u32], kind: Kind) -> Try {
+    /// Goes back to where all was before it was faired, as far as the volume asks for.
+    fn lessened(&self, local: &mut Local, flat: &[DVec3]) {
+        let faired = local.positions.clone();
+        let much = |local: &Local| self.changed(local, Kind::Strip).gained.abs() > self.site.allowed;
+        if !much(local) {
+            return;
+        }
+        let mut share = [0.0, 1.0];
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (share[0] + share[1]);
+            for (p, (a, b)) in local.positions.iter_mut().zip(flat.iter().zip(&faired)) {
+                *p = a.lerp(*b, middle);
+            }
+            share[usize::from(much(local))] = middle;
+        }
+        for (p, (a, b)) in local.positions.iter_mut().zip(flat.iter().zip(&faired)) {
+            *p = a.lerp(*b, share[0]);
+        }
+    }
+
+    /// The strip's triangles as the patch.
+    fn changed(&self, local: &Local, kind: Kind) -> Patch {
         let n = self.site.parts.vertices.len() as u32;
         let m = local.border as u32;
         let name = |v: u32| if v < m { self.border[v as usize] } else { n + v - m };
-        let off = |v: &u32| local.fan(*v).len() as i64 != local.wanted_at(*v);
         let vertices = local.positions[m as usize..].to_vec();
-        let triangles = local.triangles.iter().map(|t| t.map(name)).collect();
+        self.patch(kind, vertices, local.triangles.iter().map(|t| t.map(name)).collect())
+    }
+
+    fn tried(&self, local: &Local, bad: &[u32], kind: Kind) -> Try {
+        let off = |v: &u32| local.fan(*v).len() as i64 != local.wanted_at(*v);
         Try {
-            patch: self.patch(kind, vertices, triangles),
+            patch: self.changed(local, kind),
             meetings: bad.len(),
             angle: min_angle(&local.positions, &local.triangles),
             odd: (0..local.positions.len() as u32).filter(off).count(),

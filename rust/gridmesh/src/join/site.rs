@@ -20,6 +20,8 @@ pub(super) struct Site<'a> {
     /// The faces that stay, as triangles, and the face of each.
     pub kept: Vec<[u32; 3]>,
     pub polygons: Vec<u32>,
+    /// By how much a patch may change the volume, beside what makes it no blend at all.
+    pub allowed: f64,
 }
 
 impl Site<'_> {
