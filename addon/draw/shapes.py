@@ -10,7 +10,7 @@ import numpy as np
 
 from ..bodies.outlines import Plane, Sketch, project
 from ..data import frames
-from ..join import characters, following
+from ..join import characters, following, parts
 from ..live import engine
 from ..live.reading import LostError, sketch_of
 from .decision import Shape
@@ -96,6 +96,6 @@ def _drawn(ob: bpy.types.Object, sketch: Sketch) -> Drawn | None:
 
 def _across(ob: bpy.types.Object) -> Mirror:
     """Where twins of parts are mirrored: across the X axis of the whole, which the body is or will be."""
-    place = np.array((following.whole_of(ob) or ob).matrix_world, float)
+    place = np.array(parts.frame(following.whole_of(ob) or ob), float)
     normal = np.cross(place[:3, 1], place[:3, 2])
     return Mirror(place[:3, 3], normal / max(float(np.linalg.norm(normal)), 1e-30))

@@ -185,7 +185,7 @@ def _let_go(whole: bpy.types.Object, part: bpy.types.Object) -> None:
 
 def _own_twin(whole: bpy.types.Object, part: bpy.types.Object) -> bpy.types.Object:
     """Make an object of the twin of a part, with an outline of its own."""
-    place = parts.twin_of(whole.matrix_world, part.matrix_world)
+    place = parts.twin_of(parts.frame(whole), part.matrix_world)
     with engine.resting():
         twin = part.copy()
         twin.data = part.data.copy()
