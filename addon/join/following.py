@@ -17,25 +17,22 @@ from bpy.props import BoolProperty, CollectionProperty, FloatVectorProperty, Poi
 from .. import api
 from ..data import frames, listening, written
 from ..live import engine
-from . import blending, deleted, drafts, joining, marks, parts, transforms
-from .lying import fingerprint, parts_of, placed
+from . import blending, deleted, drafts, joining, lying, marks, parts, transforms
+from .lying import GridMeshPart, fingerprint, parts_of, placed
 from .parts import is_whole
 from .uniting import JoinError
 
 BY_HAND = "its mesh was changed by hand; undo that, or apply the join"
 """Why a whole does not follow whose mesh is not what was made of its parts."""
 
+GONE = "its parts are gone; undo that, or apply the join"
+"""Why a whole does not follow that has no part left."""
+
 _since = 0.0
 """When something was seen to change last; 0 while nobody looks."""
 
 _known: bool | None = None
 """Whether there are any in the file; None: to be looked for."""
-
-
-class GridMeshPart(bpy.types.PropertyGroup):
-    """A part of a joined body"""  # noqa: D400
-
-    ob: PointerProperty(type=bpy.types.Object, options={"HIDDEN"})
 
 
 def _changed(joined: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
@@ -125,11 +122,19 @@ def apply(ob: bpy.types.Object, *, keep_parts: bool) -> None:
     whole = whole_of(ob)
     found = [part for part in parts_of(whole) if whole_of(part) in (whole, part)]
     own = [part for part in found if part.parent == whole]
+    for other in wholes():
+        lying.note(other)
     show(whole)
     whole.property_unset("gridmesh_joined")
     whole.data.property_unset("gridmesh_made")
     if not keep_parts:
-        discard(own)
+        shared = [part for part in own if lying.others(whole, part)]
+        discard([part for part in own if part not in shared])
+        with engine.resting():
+            for part in shared:
+                part.parent = None
+            for other in wholes():
+                lying.take_in(other)
         return
     with engine.resting():
         for part in own:
@@ -203,21 +208,23 @@ def _remove(part: bpy.types.Object) -> None:
         bpy.data.meshes.remove(mesh)
 
 
-def _tell_by_hand(joined: bpy.types.PropertyGroup, by_hand: bool) -> None:
-    """Say at once that a whole will not follow since its mesh was changed by hand, and no longer once that was undone."""
-    is_told = joined.problem == BY_HAND
-    if by_hand != is_told:
-        joined.problem = "" if is_told else BY_HAND
+def _tell(joined: bpy.types.PropertyGroup, problem: str) -> None:
+    """Say at once that a whole will not follow since its mesh was changed or its parts are gone, and no longer once that was undone."""
+    if (problem or joined.problem in (BY_HAND, GONE)) and joined.problem != problem:
+        joined.problem = problem
 
 
 def update(ob: bpy.types.Object) -> bool:
     """Join a whole anew if its parts or options have changed; say whether that was done."""
     joined, by_hand = ob.gridmesh_joined, transforms.changed_by_hand(ob)
     found, now = placed(ob), fingerprint(ob)
-    if not found or ob.mode != "OBJECT" or not ob.is_editable:
+    if ob.mode != "OBJECT" or not ob.is_editable:
+        return False
+    if not found:
+        _tell(joined, GONE)
         return False
     if marks.is_same(now, joined.digest) and joined.made in ("", ob.data.gridmesh_made):
-        _tell_by_hand(joined, by_hand)
+        _tell(joined, BY_HAND if by_hand else "")
         return False
     if by_hand:
         joined.problem = BY_HAND
@@ -240,8 +247,11 @@ def refresh() -> int:
     """Join every whole anew whose parts have changed; return how many were."""
     if not engine.awake() or not any_there():
         return 0
+    bpy.context.view_layer.update()
     for ob in wholes():
         deleted.put_aside(ob)
+        lying.note(ob)
+        lying.take_in(ob)
     bpy.context.view_layer.update()
     return sum(update(ob) for ob in wholes())
 
@@ -322,6 +332,7 @@ def draft(ob: bpy.types.Object) -> bool:
     if ob.mode != "OBJECT" or not ob.is_editable or not ob.visible_get():
         return False
     by_hand = transforms.changed_by_hand(ob)
+    lying.note(ob)
     found, now = placed(ob), fingerprint(ob)
     if not found or by_hand:
         return False

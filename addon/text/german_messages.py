@@ -543,6 +543,9 @@ _JOINS = {
     "Make a joined body, or one of its parts, the active object": (
         "Einen zusammengeführten Körper oder einen seiner Teile zum aktiven Objekt machen"
     ),
+    "its parts are gone; undo that, or apply the join": (
+        "seine Teile sind nicht mehr da; das rückgängig machen oder das Zusammenführen anwenden"
+    ),
     "its mesh was changed by hand; undo that, or apply the join": (
         "sein Mesh wurde von Hand geändert; das rückgängig machen oder das Zusammenführen anwenden"
     ),
