@@ -17,7 +17,7 @@ from bpy.props import BoolProperty, CollectionProperty, FloatVectorProperty, Poi
 from .. import api
 from ..data import frames, listening, written
 from ..live import engine
-from . import blending, deleted, drafts, joining, lying, marks, parts, transforms
+from . import blending, deleted, drafts, joining, leftover, lying, marks, parts, transforms
 from .lying import GridMeshPart, fingerprint, parts_of, placed
 from .parts import is_whole
 from .uniting import JoinError
@@ -27,6 +27,9 @@ BY_HAND = "its mesh was changed by hand; undo that, or apply the join"
 
 GONE = "its parts are gone; undo that, or apply the join"
 """Why a whole does not follow that has no part left."""
+
+_LOOKED_AT = (bpy.types.Object, bpy.types.Mesh, bpy.types.Collection, bpy.types.Scene)
+"""What Blender names when parts change, or objects come and go."""
 
 _since = 0.0
 """When something was seen to change last; 0 while nobody looks."""
@@ -141,6 +144,7 @@ def apply(ob: bpy.types.Object, *, keep_parts: bool) -> None:
             place = part.matrix_world.copy()
             part.parent = None
             part.matrix_world = place
+            part.gridmesh_part.held = False
             reveal(part, seen=True)
 
 
@@ -252,15 +256,17 @@ def refresh() -> int:
         deleted.put_aside(ob)
         lying.note(ob)
         lying.take_in(ob)
+        leftover.hold(ob, parts_of(ob))
+    leftover.remove()
     bpy.context.view_layer.update()
     return sum(update(ob) for ob in wholes())
 
 
 def any_there() -> bool:
-    """Whether there is a whole in the file, as far as is known."""
+    """Whether there is a whole in the file, or what is left of one, as far as is known."""
     global _known
     if _known is None:
-        _known = bool(wholes())
+        _known = bool(wholes() or leftover.found())
     return _known
 
 
@@ -268,7 +274,7 @@ def any_there() -> bool:
 def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
     if not any_there() or not engine.awake() or bpy.app.background:
         return
-    if any(isinstance(update.id, (bpy.types.Object, bpy.types.Mesh)) for update in depsgraph.updates):
+    if any(isinstance(update.id, _LOOKED_AT) for update in depsgraph.updates):
         _soon()
 
 

@@ -49,6 +49,8 @@ class GridMeshPartOptions(bpy.types.PropertyGroup):
     """The depth that it lies at now."""
     reach: FloatVectorProperty(size=3, options={"HIDDEN"})
     """From depth 0 to depth 1, in the space of the whole that its `frame` is of. All 0: depth has no meaning."""
+    held: BoolProperty(options={"HIDDEN"})
+    """Whether it hangs on a whole, or did when that was deleted."""
     twin: BoolProperty(
         name="Twin",
         description="Join the mirror image of the part, too, across the X axis of the joined body; it follows the same stroke",
@@ -62,6 +64,13 @@ def is_whole(ob: bpy.types.Object) -> bool:
     system = getattr(ob, "bl_system_properties_get", None)  # from Blender 5.0 on
     stored = ob if system is None else system()
     return stored is not None and "gridmesh_joined" in stored and len(ob.gridmesh_joined.parts) > 0
+
+
+def is_held(ob: bpy.types.Object) -> bool:
+    """Whether an object hangs on a whole as a part, or did when that was deleted. Makes no group of properties."""
+    system = getattr(ob, "bl_system_properties_get", None)  # from Blender 5.0 on
+    stored = ob if system is None else system()
+    return stored is not None and "gridmesh_part" in stored and ob.gridmesh_part.held
 
 
 def frame(ob: bpy.types.Object) -> Matrix:
