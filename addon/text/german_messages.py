@@ -538,6 +538,7 @@ _JOINS = {
         "einschalten, um das abzulehnen"
     ),
     "'{}' has no part '{}'": "'{0}' hat keinen Teil '{1}'",
+    "the part stays apart from '{}': {}": "der Teil bleibt getrennt von '{0}': {1}",
     "'{}' stays apart: {}": "'{0}' bleibt für sich: {1}",
     "Make a part of a joined body the active object": "Einen Teil eines zusammengeführten Körpers zum aktiven Objekt machen",
     "Make a joined body, or one of its parts, the active object": (
