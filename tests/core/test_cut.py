@@ -97,6 +97,16 @@ def test_closed_pieces_with_mirrored_caps(stroke, edge_length):
         assert done.report["defect"] <= 0.05 * edge_length
 
 
+@pytest.mark.parametrize(("x", "y", "radius", "n"), [(2.58, -0.34, 0.05, 3), (2.1, -0.49, 0.12, 4)])
+def test_edges_longer_than_a_hole_still_close_it(x, y, radius, n):
+    """A line of a few long edges did not run around the sheet, and got no cap."""
+    done = gridmesh.cut(*torus(), circle(x, y, radius, n), direction=DOWN, edge_length=2.0)
+    assert done.report["uncapped"] == 0
+    assert done.report["repeated"] > 0
+    for piece in done.pieces:
+        assert len(open_edges(piece)) == 0
+
+
 def test_faces_on_which_rebuilt_triangles_come_to_lie_are_rebuilt_too():
     """Otherwise the triangles that lie there are dropped, and the piece has a hole."""
     rng = np.random.default_rng(532)

@@ -92,6 +92,13 @@ pub(in crate::cut) fn close(
     Ok(capper.caps)
 }
 
+/// How many closed lines will have no cap.
+pub(in crate::cut) fn uncapped(cutting: Cutting<'_>, parted: &Parted, sheet: &Sheet, loops: &Loops) -> usize {
+    let first = (parted.n_old + parted.nodes.len()) as u32;
+    let seams = mirrored::close(cutting.vertices, parted, sheet, loops, &cutting.options.mirrors, first);
+    regions::find(cutting.vertices, parted, sheet, loops, seams.outlines).uncapped
+}
+
 /// Simple polygons that cover a region with holes, or one around a closed sheet.
 fn opened(capper: &mut Capper<'_>, region: Region, report: &mut CutReport) -> Result<Vec<Vec<Spot>>> {
     let alone: Vec<Vec<Spot>> = match &region {
