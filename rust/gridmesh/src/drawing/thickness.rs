@@ -17,6 +17,7 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::{ClosedCurve, bounds};
 use crate::error::{Error, Result};
+use crate::geometry::segments::orientation;
 use crate::options::CellShape;
 use crate::path::placement::ROW_HEIGHT;
 
@@ -25,6 +26,15 @@ pub const ACROSS: f64 = 5.0;
 
 /// Samples along a drawing, beside its own points.
 const SAMPLES: f64 = 600.0;
+
+/// Samples in a mean width of a drawing, and the most in all: with fewer, chords of long bars lie askew.
+const IN_WIDTH: f64 = 4.0;
+const MOST_SAMPLES: f64 = 60_000.0;
+
+/// A convex outline with less than this many squares of its least width is compact: it has no limbs. Its hull may be larger by
+/// this share.
+const COMPACT: f64 = 1.5;
+const CONVEX: f64 = 1e-3;
 
 /// A branch is left out if it is shorter than this times its width at the root.
 const SALIENT: f64 = 0.9;
@@ -83,6 +93,11 @@ pub(crate) fn cells_for(area: f64, width: f64, across: f64, shape: CellShape) ->
 
 /// The limbs of cleaned contours: an outline, and holes that run the other way.
 pub(crate) fn limbs_of(contours: &[ClosedCurve]) -> Result<Vec<Limb>> {
+    if let [outline] = contours
+        && is_compact(outline)
+    {
+        return Ok(Vec::new());
+    }
     let axis = Axis::new(contours)?;
     let (low, high) = bounds(contours[0].points());
     let shortest = SHORTEST * low.distance(high);
@@ -90,6 +105,48 @@ pub(crate) fn limbs_of(contours: &[ClosedCurve]) -> Result<Vec<Limb>> {
     limbs.retain(|limb| limb.length >= shortest.max(LONG * limb.width));
     limbs.sort_by(|a, b| a.width.total_cmp(&b.width));
     Ok(limbs)
+}
+
+/// Whether an outline is all but convex and about as long as it is wide.
+fn is_compact(outline: &ClosedCurve) -> bool {
+    let mut hull = hull(outline.points());
+    let Some(&first) = hull.first() else { return false };
+    let area = outline.area().abs();
+    let around: f64 = hull.windows(2).map(|w| 0.5 * (w[0] - first).perp_dot(w[1] - first)).sum();
+    if around > (1.0 + CONVEX) * area {
+        return false;
+    }
+    hull.push(first);
+    // The least width of a convex polygon is across one of its sides.
+    let across = |side: &[DVec2]| {
+        let along = (side[1] - side[0]).normalize_or_zero();
+        hull.iter().map(|&p| along.perp_dot(p - side[0])).fold(0.0, f64::max)
+    };
+    let least = hull.windows(2).map(across).fold(f64::INFINITY, f64::min);
+    area < COMPACT * least * least
+}
+
+/// The corners of the convex hull, counter-clockwise. Source: Andrew 1979.
+fn hull(points: &[DVec2]) -> Vec<DVec2> {
+    let mut sorted = points.to_vec();
+    sorted.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    sorted.dedup();
+    let half = |points: &mut dyn Iterator<Item = DVec2>| {
+        let mut kept: Vec<DVec2> = Vec::new();
+        for point in points {
+            while let [.., a, b] = kept[..]
+                && orientation(a, b, point) <= 0.0
+            {
+                kept.pop();
+            }
+            kept.push(point);
+        }
+        kept.pop();
+        kept
+    };
+    let mut hull = half(&mut sorted.iter().copied());
+    hull.extend(half(&mut sorted.iter().rev().copied()));
+    hull
 }
 
 /// A place on a branch.
@@ -358,7 +415,10 @@ impl Axis {
 
 /// Points along the contours, all different, and the edges between them; the drawing is on their left.
 fn samples(contours: &[ClosedCurve]) -> (Vec<DVec2>, Vec<[usize; 2]>) {
-    let step = contours.iter().map(ClosedCurve::length).sum::<f64>() / SAMPLES;
+    let length = contours.iter().map(ClosedCurve::length).sum::<f64>();
+    let area = contours.iter().map(ClosedCurve::area).sum::<f64>().abs();
+    let width = 2.0 * area / length;
+    let step = (length / SAMPLES).min((width / IN_WIDTH).max(length / MOST_SAMPLES));
     let mut points = Vec::new();
     let mut edges = Vec::new();
     for contour in contours {
