@@ -14,10 +14,10 @@ use glam::DVec2;
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
+use crate::drawing::compact::is_compact;
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::{ClosedCurve, bounds};
 use crate::error::{Error, Result};
-use crate::geometry::segments::orientation;
 use crate::options::CellShape;
 use crate::path::placement::ROW_HEIGHT;
 
@@ -30,11 +30,6 @@ const SAMPLES: f64 = 600.0;
 /// Samples in a mean width of a drawing, and the most in all: with fewer, chords of long bars lie askew.
 const IN_WIDTH: f64 = 4.0;
 const MOST_SAMPLES: f64 = 60_000.0;
-
-/// A convex outline with less than this many squares of its least width is compact: it has no limbs. Its hull may be larger by
-/// this share.
-const COMPACT: f64 = 1.5;
-const CONVEX: f64 = 1e-3;
 
 /// A branch is left out if it is shorter than this times its width at the root.
 const SALIENT: f64 = 0.9;
@@ -105,48 +100,6 @@ pub(crate) fn limbs_of(contours: &[ClosedCurve]) -> Result<Vec<Limb>> {
     limbs.retain(|limb| limb.length >= shortest.max(LONG * limb.width));
     limbs.sort_by(|a, b| a.width.total_cmp(&b.width));
     Ok(limbs)
-}
-
-/// Whether an outline is all but convex and about as long as it is wide.
-fn is_compact(outline: &ClosedCurve) -> bool {
-    let mut hull = hull(outline.points());
-    let Some(&first) = hull.first() else { return false };
-    let area = outline.area().abs();
-    let around: f64 = hull.windows(2).map(|w| 0.5 * (w[0] - first).perp_dot(w[1] - first)).sum();
-    if around > (1.0 + CONVEX) * area {
-        return false;
-    }
-    hull.push(first);
-    // The least width of a convex polygon is across one of its sides.
-    let across = |side: &[DVec2]| {
-        let along = (side[1] - side[0]).normalize_or_zero();
-        hull.iter().map(|&p| along.perp_dot(p - side[0])).fold(0.0, f64::max)
-    };
-    let least = hull.windows(2).map(across).fold(f64::INFINITY, f64::min);
-    area < COMPACT * least * least
-}
-
-/// The corners of the convex hull, counter-clockwise. Source: Andrew 1979.
-fn hull(points: &[DVec2]) -> Vec<DVec2> {
-    let mut sorted = points.to_vec();
-    sorted.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    sorted.dedup();
-    let half = |points: &mut dyn Iterator<Item = DVec2>| {
-        let mut kept: Vec<DVec2> = Vec::new();
-        for point in points {
-            while let [.., a, b] = kept[..]
-                && orientation(a, b, point) <= 0.0
-            {
-                kept.pop();
-            }
-            kept.push(point);
-        }
-        kept.pop();
-        kept
-    };
-    let mut hull = half(&mut sorted.iter().copied());
-    hull.extend(half(&mut sorted.iter().rev().copied()));
-    hull
 }
 
 /// A place on a branch.
