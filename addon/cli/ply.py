@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import struct
 
 import numpy as np
 
@@ -12,6 +13,7 @@ _NUMPY = {
     **{"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4"},
     **{"float": "f4", "double": "f8", "float32": "f4", "float64": "f8"},
 }
+_STRUCT = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "f4": "f", "f8": "d"}
 _ASCII = re.compile(rb"^format ascii\s", re.MULTILINE)
 _END = re.compile(rb"^end_header\r?\n", re.MULTILINE)
 _ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
@@ -90,3 +92,119 @@ def _equal_lists(data, at: int, count: int, length: np.dtype, item: np.dtype) ->
     others = np.flatnonzero(lengths != first)
     equal = int(others[0]) if len(others) else whole
     return at + equal * step, count - equal
+
+
+def fault(data) -> str | None:
+    """What is wrong with places of vertices or indices of faces; None if nothing is, or what the file has is not understood.
+
+    data : the whole file, as bytes or a memory map; not cut off.
+    """
+    end = _END.search(data)
+    if end is None:
+        return None
+    elements: list[tuple[str, int, list[list[str]]]] = []
+    for line in data[: end.start()].decode("ascii", "replace").splitlines():
+        words = line.split()
+        if words[:1] == ["element"]:
+            if len(words) != 3 or not words[2].isascii() or not words[2].isdigit():
+                return None
+            elements.append((words[1], int(words[2]), []))
+        elif words[:1] == ["property"] and elements:
+            elements[-1][2].append(words[1:])
+    counts = [count for name, count, _ in elements if name == "vertex"]
+    if len(counts) != 1:
+        return None
+    is_text = _ASCII.search(data[: end.start()]) is not None
+    order = ">" if re.search(rb"^format binary_big", data[: end.start()], re.MULTILINE) else "<"
+    try:
+        rows = _words(data, end.end()) if is_text else None
+        at = end.end()
+        for name, count, properties in elements:
+            first = 0
+            if rows is None:
+                first, at, bad = _checked(data, at, (name, count, properties), order, counts[0])
+                if bad:
+                    return bad
+            for row in range(first, count):
+                if rows is None:
+                    values, at = _row(data, at, properties, order)
+                else:
+                    values = _text_row(next(rows), properties)
+                if name == "vertex" and not np.isfinite([values.get(axis, 0.0) for axis in "xyz"]).all():
+                    return f"vertex {row} is not at a finite place"
+                if name == "face":
+                    corners = values.get("vertex_indices", values.get("vertex_index", ()))
+                    for corner in corners:
+                        if not 0 <= corner < counts[0]:
+                            return f"face {row} refers to vertex {int(corner)} of {counts[0]}"
+    except (ValueError, IndexError, KeyError, StopIteration, struct.error):
+        return None
+    return None
+
+
+def _checked(data, at: int, element, order: str, vertices: int) -> tuple[int, int, str | None]:
+    """The first rows of a binary element in one step, if they are alike: how many, where they end, and what is wrong."""
+    name, count, properties = element
+    if all(kinds[0] != "list" for kinds in properties):
+        row = np.dtype([(kinds[1], order + _NUMPY[kinds[0]]) for kinds in properties])
+        if at + count * row.itemsize > len(data):
+            return 0, at, None
+        rows = np.frombuffer(data, row, count, at)
+        axes = [rows[axis] for axis in "xyz" if axis in row.names] if name == "vertex" else []
+        bad = [int(np.flatnonzero(~np.isfinite(axis))[0]) for axis in axes if not np.isfinite(axis).all()]
+        return (
+            count,
+            at + count * row.itemsize,
+            f"vertex {min(bad)} is not at a finite place" if bad else None,
+        )
+    if len(properties) != 1 or not count:
+        return 0, at, None
+    length, item = (np.dtype(order + _NUMPY[kind]) for kind in properties[0][1:3])
+    end, left = _equal_lists(data, at, count, length, item)
+    whole = count - left
+    if name == "face" and whole and properties[0][3] in ("vertex_indices", "vertex_index"):
+        size = int(np.frombuffer(data, length, 1, at)[0])
+        rows = np.frombuffer(data, np.uint8, end - at, at).reshape(whole, -1)[:, length.itemsize :]
+        corners = np.ascontiguousarray(rows).view(item).reshape(whole, max(size, 0))
+        bad = np.argwhere((corners < 0) | (corners >= vertices))
+        if len(bad):
+            row, corner = bad[0]
+            return whole, end, f"face {row} refers to vertex {int(corners[row, corner])} of {vertices}"
+    return whole, end, None
+
+
+def _words(data, at: int):
+    """The words of each line that has some."""
+    while at < len(data):
+        end = data.find(b"\n", at)
+        end = len(data) if end < 0 else end
+        if words := data[at:end].split():
+            yield words
+        at = end + 1
+
+
+def _text_row(words: list[bytes], properties: list[list[str]]) -> dict:
+    values, k = {}, 0
+    for kinds in properties:
+        if kinds[0] == "list":
+            length = int(words[k])
+            values[kinds[3]] = [float(word) for word in words[k + 1 : k + 1 + length]]
+            k += 1 + length
+        else:
+            values[kinds[1]] = float(words[k])
+            k += 1
+    return values
+
+
+def _row(data, at: int, properties: list[list[str]], order: str) -> tuple[dict, int]:
+    values = {}
+    for kinds in properties:
+        if kinds[0] == "list":
+            (length,) = struct.unpack_from(order + _STRUCT[_NUMPY[kinds[1]]], data, at)
+            at += np.dtype(_NUMPY[kinds[1]]).itemsize
+            values[kinds[3]] = struct.unpack_from(f"{order}{length}{_STRUCT[_NUMPY[kinds[2]]]}", data, at)
+            at += length * np.dtype(_NUMPY[kinds[2]]).itemsize
+        else:
+            (values[kinds[1]],) = struct.unpack_from(order + _STRUCT[_NUMPY[kinds[0]]], data, at)
+            at += np.dtype(_NUMPY[kinds[0]]).itemsize
+    return values, at

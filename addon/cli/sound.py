@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import mmap
 import re
 import struct
@@ -12,6 +13,7 @@ from . import files, ply
 
 _BLOCK = 1 << 20
 _CUT_OFF = "its last line has no end: it may be cut off"
+_WHOLE = re.compile(rb"[+-]?[0-9]+")
 _FACE = re.compile(rb"[ \t]*f[ \t]")
 
 
@@ -28,9 +30,53 @@ def require_whole(path: Path) -> list[str]:
         return _of_stl(path)
     if suffix == ".ply":
         return _of_ply(path)
-    if suffix == ".obj" and _end(path, 1) not in (b"", b"\n", b"\r"):
-        return [_CUT_OFF]
+    if suffix == ".obj":
+        _check_obj(path)
+        return [] if _end(path, 1) in (b"", b"\n", b"\r") else [_CUT_OFF]
     return []
+
+
+def _check_obj(path: Path) -> None:
+    """Raise FileError for a vertex that is not at a finite place, and for a face that refers to a missing one.
+
+    Numbers of vertices begin at 1; negative ones count back from the last vertex before the face. Lines that are no
+    numbers at all are left to the importer.
+    """
+    vertices, faces = 0, []
+    with files.opened(path) as file:
+        for number, line in enumerate(iter(lambda: file.readline(_BLOCK), b""), 1):
+            words = line.split()
+            if words[:1] == [b"v"]:
+                vertices += 1
+                if not all(map(_is_finite, words[1:4])):
+                    raise files.FileError(
+                        "load", f"it is damaged: line {number} has a coordinate that is not finite"
+                    )
+            elif words[:1] == [b"f"]:
+                for word in words[1:]:
+                    index = word.split(b"/")[0]
+                    if not _WHOLE.fullmatch(index):
+                        continue
+                    at = int(index[:20])
+                    if at == 0 or at < -vertices:
+                        raise files.FileError(
+                            "load",
+                            f"it is damaged: line {number} refers to vertex {at} of {vertices} before it",
+                        )
+                    if at > vertices:
+                        faces.append((number, at))
+    # Vertices may follow the faces that refer to them.
+    for number, at in faces:
+        if at > vertices:
+            raise files.FileError("load", f"it is damaged: line {number} refers to vertex {at} of {vertices}")
+
+
+def _is_finite(word: bytes) -> bool:
+    """Whether a word is a finite number, or none."""
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return True
 
 
 def left_out(path: Path, loaded: int) -> list[str]:
@@ -72,10 +118,14 @@ def _of_ply(path: Path) -> list[str]:
         return []  # the importer says so
     with files.opened(path) as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
         if ply.is_ascii(data) and data[-1:] not in (b"\n", b"\r"):
+            if fault := ply.fault(data):
+                raise files.FileError("load", f"it is damaged: {fault}")
             return [_CUT_OFF]
         wanted = ply.binary_size(data)
-    if wanted is not None and wanted > size:
-        raise files.FileError("load", "it is damaged: it ends before what its header says")
+        if wanted is not None and wanted > size:
+            raise files.FileError("load", "it is damaged: it ends before what its header says")
+        if fault := ply.fault(data):
+            raise files.FileError("load", f"it is damaged: {fault}")
     return []
 
 

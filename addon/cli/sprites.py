@@ -19,6 +19,7 @@ from ..pictures.cutouts import Cutout, cut_out
 from ..pictures.formats import gltf, godot, rig, spine
 from ..pictures.formats.sheet import Sheet
 from ..pictures.tracing import Options
+from ..text.messages import counted
 from . import files, loading, outputs, params
 from .making import MakeError
 
@@ -40,10 +41,10 @@ class MadeSprite:
         self.notes = [f"a part is left out: {reason}" for reason in cutout.refused]
         if cutout.widened:
             self.notes.append(
-                f"lines are too thin for a mesh; all is {cutout.widened:g} pixels wider to each side"
+                f"lines are too thin for a mesh; all is {cutout.widened:g} px wider to each side"
             )
         if cutout.dropped:
-            self.notes.append(f"{cutout.dropped} islands left out, smaller than min_area")
+            self.notes.append(f"{counted(cutout.dropped, 'island')} left out, smaller than min_area")
 
     @cached_property
     def objects(self) -> list[bpy.types.Object]:

@@ -86,16 +86,24 @@ def motion(mesh: bpy.types.Mesh) -> np.ndarray | None:
     if before is None or not len(before) or len(mesh.vertices) != len(before):
         return None
     corners, count, after = corners_of(mesh), len(mesh.polygons), points_of(mesh)
-    if not count or corners.size not in (3 * count, 4 * count):
+    if not count:
         return None
     if mesh.gridmesh_made.split()[1:3] != [str(corners.size), str(count)]:
         return None
-    # Blender 5 turns the faces round where a mirrored scale is applied.
-    turned = np.ascontiguousarray(np.roll(corners.reshape(count, -1)[:, ::-1], 1, axis=1))
     known = mesh.gridmesh_made.split()[4]
-    if known not in (str(zlib.crc32(corners.tobytes())), str(zlib.crc32(turned.tobytes()))):
+    if known not in (str(zlib.crc32(one.tobytes())) for one in (corners, _turned(mesh, corners))):
         return None
     return affine(before.astype(float), after.reshape(-1, 3).astype(float))
+
+
+def _turned(mesh: bpy.types.Mesh, corners: np.ndarray) -> np.ndarray:
+    """Vertices of the corners of faces that are turned round, as Blender 5 does it where a mirrored scale is applied."""
+    starts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    sizes = np.diff(np.append(starts, len(corners)))
+    step = np.arange(len(corners)) - np.repeat(starts, sizes)
+    back = np.repeat(sizes, sizes) - step
+    return np.ascontiguousarray(corners[np.repeat(starts, sizes) + np.where(step == 0, 0, back)])
 
 
 def affine(before: np.ndarray, after: np.ndarray) -> np.ndarray | None:

@@ -51,6 +51,10 @@ class Shape:
     """Where twins of its parts are mirrored."""
     twin: bool = False
     """Whether it is the mirror image of the body: its plane is that of the body mirrored, what is drawn in it is the body's own."""
+    fixed: str = ""
+    """Why its outline cannot be changed; empty if it can."""
+    apart: str = ""
+    """Why no part can be joined to it; empty if one can."""
     low: np.ndarray = field(init=False)
     high: np.ndarray = field(init=False)
 
@@ -109,6 +113,8 @@ class Wanted:
     """Where a part lies: "FRONT", "MIDDLE" or "BEHIND"; "AUTO": in front where it lies inside the outline, else in the middle."""
     twin: bool = False
     """Whether a part has a mirror image."""
+    joins: bool = True
+    """Whether a part is joined to the body that it is drawn over."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,13 +223,20 @@ def _decided(trace: Trace, shapes: list[Shape], wanted: Wanted) -> Decision:
     return Decision("NEW", trace.plane, [own], hint=_hidden(trace, own, shapes))
 
 
+def _require_free(shape: Shape) -> None:
+    if shape.fixed:
+        raise DecisionError(f"'{shape.name}': {shape.fixed}")
+
+
 def _taken(met: _Met) -> Decision:
+    _require_free(met.shape)
     hint = "nothing would be left of it" if met.how == "around" else ""
     action = "HOLE" if met.how == "inside" else "TRIM"
     return Decision(action, met.shape.plane, [met.stroke], met.shape.name, hint=hint)
 
 
 def _extended(met: _Met, shapes: list[Shape]) -> Decision:
+    _require_free(met.shape)
     plane = met.shape.plane
     joined = []
     for other in shapes:
@@ -273,6 +286,8 @@ def _laid(trace: Trace, shape: Shape, wanted: Wanted) -> Decision:
     hint = _hidden(trace, stroke, [shape], plane)
     if hint.startswith("inside") and depth == 0:
         hint = f"inside '{shape.name}': not visible; let it lie in front"
+    if wanted.joins and shape.apart:
+        hint = f"the part stays apart from '{shape.name}': {shape.apart}"
     return Decision(
         "PART",
         plane,

@@ -225,7 +225,8 @@ def _belong(context: bpy.types.Context, decision: Decision, body: bpy.types.Obje
     problem = characters.add(
         owner, body, characters.Lies(decision.depth, decision.reach, decision.twin is not None)
     )
-    return f"'{body.name}' stays apart: {problem}" if problem else ""
+    said = not problem or problem in decision.hint
+    return "" if said else f"'{body.name}' stays apart: {problem}"
 
 
 def _world(plane: Plane, points: np.ndarray) -> np.ndarray:

@@ -117,10 +117,11 @@ class Interaction:
 
     def wanted(self, event: bpy.types.Event) -> Wanted:
         """Return what is asked for by the header and the keys."""
+        joins = self.options.use_join
         if self.options.action not in {"AUTO", "PART"}:
-            return Wanted(self.options.action)
+            return Wanted(self.options.action, joins=joins)
         taken = event.shift or event.ctrl
-        return Wanted("AUTO", subtract=taken, part=self._part, lies=self.lies, twin=self.twin)
+        return Wanted("AUTO", subtract=taken, part=self._part, lies=self.lies, twin=self.twin, joins=joins)
 
     def decided(self, event: bpy.types.Event) -> list[Decision]:
         """Decide what the stroke does now.

@@ -75,7 +75,7 @@ class _Action(options.StrokeOptions):
         bodies = shapes.read(context)
         # What was decided while it was drawn is decided again; what is asked for in the panel is done as asked.
         wanted = remembered.wanted if self.action == remembered.action else Wanted(self.action)
-        wanted = replace(wanted, lies=self.part_lies, twin=self.use_twin)
+        wanted = replace(wanted, lies=self.part_lies, twin=self.use_twin, joins=self.use_join)
         mirror = remembered.mirror if self.use_mirror else None
         decisions = decide(remembered.trace, shapes.seen(bodies), wanted, mirror)
         first = decisions[0]

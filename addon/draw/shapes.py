@@ -9,8 +9,8 @@ import bpy
 import numpy as np
 
 from ..bodies.outlines import Plane, Sketch, project
-from ..data import frames
-from ..join import characters, following
+from ..data import frames, written
+from ..join import characters, following, parts, transforms
 from ..live import engine
 from ..live.reading import LostError, sketch_of
 from .decision import Shape
@@ -90,12 +90,22 @@ def _drawn(ob: bpy.types.Object, sketch: Sketch) -> Drawn | None:
     surface = plane.local(frames.moved(some, np.array(ob.matrix_world)))
     thickness = float(np.abs(surface[:, 2]).max(initial=0.0))
     outline = sketch.outline @ to_world.T
-    shape = Shape(ob.name, plane, outline, holes, thickness, surface, _across(ob))
+    fixed, apart = _hindrances(ob)
+    shape = Shape(ob.name, plane, outline, holes, thickness, surface, _across(ob), fixed=fixed, apart=apart)
     return Drawn(ob, sketch, shape, np.linalg.inv(to_world), matrix)
+
+
+def _hindrances(ob: bpy.types.Object) -> tuple[str, str]:
+    """Why the outline of a body cannot be changed, and why no part can be joined to it; empty where it can."""
+    whole = following.whole_of(ob)
+    apart = following.BY_HAND if whole is not None and transforms.changed_by_hand(whole) else ""
+    if written.by_hand(ob.data):
+        return engine.BY_HAND, apart
+    return ("" if ob.visible_get() else apart), apart
 
 
 def _across(ob: bpy.types.Object) -> Mirror:
     """Where twins of parts are mirrored: across the X axis of the whole, which the body is or will be."""
-    place = np.array((following.whole_of(ob) or ob).matrix_world, float)
+    place = np.array(parts.frame(following.whole_of(ob) or ob), float)
     normal = np.cross(place[:3, 1], place[:3, 2])
     return Mirror(place[:3, 3], normal / max(float(np.linalg.norm(normal)), 1e-30))

@@ -143,6 +143,10 @@ def apply(ob: bpy.types.Object, *, keep_parts: bool) -> None:
 def pick(part: bpy.types.Object) -> None:
     """Show a part over its whole, to be moved, edited or deleted, and hide the others that were picked."""
     whole = following.whole_of(part)
+    if whole is None:  # of a copy, and a body of its own again
+        following.reveal(part, seen=True)
+        following.choose(part)
+        return
     for other in following.parts_of(whole):
         if other != part and other.visible_get() and whole.visible_get():
             following.reveal(other, seen=False)
@@ -185,7 +189,7 @@ def _let_go(whole: bpy.types.Object, part: bpy.types.Object) -> None:
 
 def _own_twin(whole: bpy.types.Object, part: bpy.types.Object) -> bpy.types.Object:
     """Make an object of the twin of a part, with an outline of its own."""
-    place = parts.twin_of(whole.matrix_world, part.matrix_world)
+    place = parts.twin_of(parts.frame(whole), part.matrix_world)
     with engine.resting():
         twin = part.copy()
         twin.data = part.data.copy()

@@ -36,6 +36,14 @@ def let_go(whole: bpy.types.Object) -> None:
             _remove(part)
 
 
+def remove_with_outline(part: bpy.types.Object) -> None:
+    """Remove a part and the outline that is its own."""
+    outline = frames.owned(part) if frames.is_linked(part) else None
+    _remove(part)
+    if outline is not None:
+        _remove(outline)
+
+
 def _remove_outline(part: bpy.types.Object) -> None:
     if not frames.is_linked(part):
         return

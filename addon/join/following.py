@@ -12,30 +12,30 @@ from time import perf_counter
 from typing import Any
 
 import bpy
-import numpy as np
-from bpy.props import BoolProperty, CollectionProperty, PointerProperty, StringProperty
-from mathutils import Matrix
+from bpy.props import BoolProperty, CollectionProperty, FloatVectorProperty, PointerProperty, StringProperty
 
 from .. import api
 from ..data import frames, listening, written
 from ..live import engine
-from . import blending, deleted, drafts, joining, marks, parts
+from . import blending, deleted, drafts, joining, leftover, lying, marks, parts, transforms
+from .lying import GridMeshPart, fingerprint, parts_of, placed
+from .parts import is_whole
 from .uniting import JoinError
 
 BY_HAND = "its mesh was changed by hand; undo that, or apply the join"
 """Why a whole does not follow whose mesh is not what was made of its parts."""
+
+GONE = "its parts are gone; undo that, or apply the join"
+"""Why a whole does not follow that has no part left."""
+
+_LOOKED_AT = (bpy.types.Object, bpy.types.Mesh, bpy.types.Collection, bpy.types.Scene)
+"""What Blender names when parts change, or objects come and go."""
 
 _since = 0.0
 """When something was seen to change last; 0 while nobody looks."""
 
 _known: bool | None = None
 """Whether there are any in the file; None: to be looked for."""
-
-
-class GridMeshPart(bpy.types.PropertyGroup):
-    """A part of a joined body"""  # noqa: D400
-
-    ob: PointerProperty(type=bpy.types.Object, options={"HIDDEN"})
 
 
 def _changed(joined: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
@@ -57,24 +57,13 @@ class GridMeshJoined(bpy.types.PropertyGroup):
     """Fingerprint of the mesh that was made. Undo may bring one of the two back without the other."""
     problem: StringProperty(options={"HIDDEN"})
     """Why it does not follow now."""
-
-
-def is_whole(ob: bpy.types.Object) -> bool:
-    """Whether an object is joined of parts that it remembers. To read a group of properties that is not there would make it."""
-    system = getattr(ob, "bl_system_properties_get", None)  # from Blender 5.0 on
-    stored = ob if system is None else system()
-    return stored is not None and "gridmesh_joined" in stored and len(ob.gridmesh_joined.parts) > 0
+    space: FloatVectorProperty(size=16, options={"HIDDEN"})
+    """What was applied to it: from the space that its parts lie in to that of the object; see `parts.frame`. All 0: nothing."""
 
 
 def wholes() -> list[bpy.types.Object]:
     """All of them. Walks all objects of the file."""
     return [ob for ob in bpy.data.objects if ob.type == "MESH" and is_whole(ob)]
-
-
-def parts_of(ob: bpy.types.Object) -> list[bpy.types.Object]:
-    """Parts that are still in a scene."""
-    found = (part.ob for part in ob.gridmesh_joined.parts)
-    return [part for part in found if part is not None and part.type == "MESH" and part.users_scene]
 
 
 def remember(ob: bpy.types.Object, objects: Sequence[bpy.types.Object], options: joining.Options) -> None:
@@ -136,17 +125,26 @@ def apply(ob: bpy.types.Object, *, keep_parts: bool) -> None:
     whole = whole_of(ob)
     found = [part for part in parts_of(whole) if whole_of(part) in (whole, part)]
     own = [part for part in found if part.parent == whole]
+    for other in wholes():
+        lying.note(other)
     show(whole)
     whole.property_unset("gridmesh_joined")
     whole.data.property_unset("gridmesh_made")
     if not keep_parts:
-        discard(own)
+        shared = [part for part in own if lying.others(whole, part)]
+        discard([part for part in own if part not in shared])
+        with engine.resting():
+            for part in shared:
+                part.parent = None
+            for other in wholes():
+                lying.take_in(other)
         return
     with engine.resting():
         for part in own:
             place = part.matrix_world.copy()
             part.parent = None
             part.matrix_world = place
+            part.gridmesh_part.held = False
             reveal(part, seen=True)
 
 
@@ -214,50 +212,25 @@ def _remove(part: bpy.types.Object) -> None:
         bpy.data.meshes.remove(mesh)
 
 
-def placed(ob: bpy.types.Object) -> list[parts.Placed]:
-    """Parts of a whole, with twins, and where they lie in the world; those of a copy as they lie to the body that it is a copy of."""
-    found = []
-    for part in parts_of(ob):
-        above = part.parent
-        own = above is None or above == ob or not is_whole(above)
-        to_own = Matrix.Identity(4) if own else ob.matrix_world @ above.matrix_world.inverted()
-        found.append((part, to_own @ part.matrix_world))
-    return parts.with_twins(ob, found)
-
-
-def fingerprint(ob: bpy.types.Object) -> str:
-    """Mark of all that a whole depends on, to be compared by `marks.is_same`."""
-    joined = ob.gridmesh_joined
-    found = placed(ob)
-    texts = [f"{joined.blend:.6g} {joined.edge_length:.6g} {joined.strict}"]
-    texts += [written.digest(part.data) for part, _ in found]
-    return marks.mark(
-        texts, np.array(ob.matrix_world, float), [np.array(matrix, float) for _, matrix in found]
-    )
-
-
-def _tell_by_hand(ob: bpy.types.Object) -> None:
-    """Say at once that a whole will not follow since its mesh was changed by hand, and no longer once that was undone."""
-    if ob.mode != "OBJECT" or not ob.is_editable:
-        return
-    joined = ob.gridmesh_joined
-    is_told = joined.problem == BY_HAND
-    if written.by_hand(ob.data) != is_told:
-        joined.problem = "" if is_told else BY_HAND
+def _tell(joined: bpy.types.PropertyGroup, problem: str) -> None:
+    """Say at once that a whole will not follow since its mesh was changed or its parts are gone, and no longer once that was undone."""
+    if (problem or joined.problem in (BY_HAND, GONE)) and joined.problem != problem:
+        joined.problem = problem
 
 
 def update(ob: bpy.types.Object) -> bool:
     """Join a whole anew if its parts or options have changed; say whether that was done."""
-    joined = ob.gridmesh_joined
+    joined, by_hand = ob.gridmesh_joined, transforms.changed_by_hand(ob)
     found, now = placed(ob), fingerprint(ob)
-    if not found:
-        return False
-    if marks.is_same(now, joined.digest) and joined.made in ("", ob.data.gridmesh_made):
-        _tell_by_hand(ob)
-        return False
     if ob.mode != "OBJECT" or not ob.is_editable:
         return False
-    if written.by_hand(ob.data):
+    if not found:
+        _tell(joined, GONE)
+        return False
+    if marks.is_same(now, joined.digest) and joined.made in ("", ob.data.gridmesh_made):
+        _tell(joined, BY_HAND if by_hand else "")
+        return False
+    if by_hand:
         joined.problem = BY_HAND
         return False
     options = joining.Options(joined.blend, joined.edge_length or None, joined.strict)
@@ -278,17 +251,22 @@ def refresh() -> int:
     """Join every whole anew whose parts have changed; return how many were."""
     if not engine.awake() or not any_there():
         return 0
+    bpy.context.view_layer.update()
     for ob in wholes():
         deleted.put_aside(ob)
+        lying.note(ob)
+        lying.take_in(ob)
+        leftover.hold(ob, parts_of(ob))
+    leftover.remove()
     bpy.context.view_layer.update()
     return sum(update(ob) for ob in wholes())
 
 
 def any_there() -> bool:
-    """Whether there is a whole in the file, as far as is known."""
+    """Whether there is a whole in the file, or what is left of one, as far as is known."""
     global _known
     if _known is None:
-        _known = bool(wholes())
+        _known = bool(wholes() or leftover.found())
     return _known
 
 
@@ -296,7 +274,7 @@ def any_there() -> bool:
 def _on_change(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
     if not any_there() or not engine.awake() or bpy.app.background:
         return
-    if any(isinstance(update.id, (bpy.types.Object, bpy.types.Mesh)) for update in depsgraph.updates):
+    if any(isinstance(update.id, _LOOKED_AT) for update in depsgraph.updates):
         _soon()
 
 
@@ -312,6 +290,7 @@ def _on_other_time(*_: Any) -> None:
 
 @bpy.app.handlers.persistent
 def _on_load(*_: Any) -> None:
+    transforms.forget()
     _on_other_time()
     for ob in wholes():
         deleted.let_go(ob)
@@ -358,8 +337,10 @@ def draft(ob: bpy.types.Object) -> bool:
     """Show a whole whose parts have changed as these together, which is quick; say whether there was anything new."""
     if ob.mode != "OBJECT" or not ob.is_editable or not ob.visible_get():
         return False
+    by_hand = transforms.changed_by_hand(ob)
+    lying.note(ob)
     found, now = placed(ob), fingerprint(ob)
-    if not found or written.by_hand(ob.data):
+    if not found or by_hand:
         return False
     if marks.is_same(now, ob.gridmesh_joined.digest) or marks.is_same(now, drafts.shown(ob)):
         return False

@@ -403,7 +403,7 @@ def _left_out(made: list[tuple[images.Picture, Options, bool, Cutout]]) -> list[
         told_of += [f"{picture.label}: a part is left out: {reason}" for reason in cutout.refused[:3]]
         if cutout.widened:
             told_of.append(
-                f"{picture.label}: lines are too thin for a mesh; all is {cutout.widened:g} pixels wider to each side"
+                f"{picture.label}: lines are too thin for a mesh; all is {cutout.widened:g} px wider to each side"
             )
         if cutout.dropped:
             told_of.append(

@@ -538,10 +538,14 @@ _JOINS = {
         "einschalten, um das abzulehnen"
     ),
     "'{}' has no part '{}'": "'{0}' hat keinen Teil '{1}'",
+    "the part stays apart from '{}': {}": "der Teil bleibt getrennt von '{0}': {1}",
     "'{}' stays apart: {}": "'{0}' bleibt für sich: {1}",
     "Make a part of a joined body the active object": "Einen Teil eines zusammengeführten Körpers zum aktiven Objekt machen",
     "Make a joined body, or one of its parts, the active object": (
         "Einen zusammengeführten Körper oder einen seiner Teile zum aktiven Objekt machen"
+    ),
+    "its parts are gone; undo that, or apply the join": (
+        "seine Teile sind nicht mehr da; das rückgängig machen oder das Zusammenführen anwenden"
     ),
     "its mesh was changed by hand; undo that, or apply the join": (
         "sein Mesh wurde von Hand geändert; das rückgängig machen oder das Zusammenführen anwenden"
@@ -1127,8 +1131,8 @@ _LIBRARY_PARTS = {
     "Select a sprite or a body made from a picture": "Ein Sprite oder einen Körper auswählen, der aus einem Bild gemacht ist",
     "{} updated": "{0} aktualisiert",
     "{}: a part is left out: {}": "{0}: ein Teil ist weggelassen: {1}",
-    "{}: lines are too thin for a mesh; all is {} pixels wider to each side": (
-        "{0}: Linien sind zu dünn für ein Mesh; alles ist auf jeder Seite {1} Pixel breiter"
+    "{}: lines are too thin for a mesh; all is {} px wider to each side": (
+        "{0}: Linien sind zu dünn für ein Mesh; alles ist auf jeder Seite {1} px breiter"
     ),
     "{}: {} left out, smaller than Least Area": "{0}: {1} weggelassen, kleiner als „Kleinste Fläche“",
     "{} picture": "{0} Bild",
@@ -1141,8 +1145,8 @@ _LIBRARY_PARTS = {
     "{} islands": "{0} Inseln",
     "an angle from 0 to pi, in radians, or nothing": "ein Winkel von 0 bis pi, in Radiant, oder nichts",
     "an edge has no slot": "eine Kante hat keinen Platz",
-    "finite points and normals of length 1, distances of 0 or more": (
-        "endliche Punkte und Normalen der Länge 1, Abstände ab 0"
+    "finite points, normals that are not zero, of length 1, and distances of 0 or more": (
+        "endliche Punkte, Normalen der Länge 1, die nicht null sind, und Abstände ab 0"
     ),
     "no film to fall back on": "kein früherer Stand, auf den man zurückfallen kann",
     "the sides of the drawing differ and do not": (

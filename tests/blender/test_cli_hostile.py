@@ -187,8 +187,9 @@ def test_damaged_meshes_and_such_without_faces_are_not_ok(tmp_path):
         ("warning", write("points.obj", points)),
         ("warning", write("none.stl", bytes(84))),
         ("warning", write("half.obj", points + b"f 1 2 3\nf 1 2")),
-        ("warning", write("missing.obj", points + b"f 1 2 3\nf 1 2 9\n")),
-        ("warning", write("nan.obj", points + b"v nan 0 0\nf 1 2 3\nf 3 4 5\n")),
+        ("error", write("missing.obj", points + b"f 1 2 3\nf 1 2 9\n")),
+        ("error", write("nan.obj", points + b"v nan 0 0\nf 1 2 3\nf 3 4 5\n")),
+        ("ok", write("back.obj", points + b"f -4 -2 -3\nf -4 -3 -1\nf -3 -2 -1\nf -2 -4 -1\n")),
         ("ok", write("whole.obj", points + b"f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")),
     ]
     ran = batch(write_jobs(tmp_path, [job(name, "fill", name) for _, name in cases]))

@@ -630,3 +630,20 @@ def test_random_actions(tmp_path, seed):
     assert play.waiting <= 0.1 * play.looked, f"{play.waiting} of {play.looked} looks found one that waits"
     print(f"steps {play.done}, waiting {play.waiting} of {play.looked}, parts {len(play.parts())}, "
           f"drafts {len(drafts.timing)}")  # fmt: skip
+
+
+def test_a_whole_changed_by_hand_is_not_extended_and_a_part_over_it_stays_apart(disk, capfd):
+    add(ARM)
+    (whole,) = following.wholes()
+    whole.data.vertices[0].co.z += 1.0
+    whole.data.update()
+    settle()
+    before = what_is_there()
+    assert draw(circle(60, 0.5, (0.0, 2.0))) == {"CANCELLED"}
+    assert following.BY_HAND in capfd.readouterr().out
+    assert what_is_there() == before
+    assert draw(circle(60, 0.5, (0.0, 2.0)), use_part=True) == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "the part stays apart from" in said
+    assert said.count(following.BY_HAND) == 1
+    assert len(following.parts_of(whole)) == 2

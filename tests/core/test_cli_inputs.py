@@ -35,8 +35,8 @@ def test_an_stl_that_is_not_as_long_as_it_says_is_an_error(tmp_path, data):
         ("a.stl", b"solid" + stl(2, 2)[5:], True),
         ("a.stl", f"{TEXT}endsolid a\n".encode(), True),
         ("a.stl", TEXT.encode(), False),
-        ("a.obj", b"v 0 0 0\nf 1 2 3\n", True),
-        ("a.obj", b"v 0 0 0\nf 1 2", False),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", True),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2", False),
         ("a.ply", b"ply", True),
         ("a.ply", b"", True),
         ("a.ply", b"ply\ncomment a\nformat ascii 1.0\nelement vertex 1\nend_header\n10 20 30\n", True),
@@ -148,3 +148,68 @@ def test_any_terminal_can_show_any_name(encoding):
 def test_nobody_to_tell_is_no_error(monkeypatch):
     monkeypatch.setattr("sys.stdout", None)
     Teller(1).item(1, {"id": "a", "status": "ok"})
+
+
+TEXT_PLY = (
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n{}\n{}\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("place", "face", "wrong"),
+    [
+        ("0 1 0", "3 0 1 2", None),
+        ("0 nan 0", "3 0 1 2", "vertex 2 is not at a finite place"),
+        ("-inf 1 0", "3 0 1 2", "vertex 2 is not at a finite place"),
+        ("0 1 0", "3 0 1 -1", "face 0 refers to vertex -1 of 3"),
+        ("0 1 0", "3 0 3 2", "face 0 refers to vertex 3 of 3"),
+    ],
+)
+def test_a_ply_with_bad_numbers_is_an_error(tmp_path, place, face, wrong):
+    """They were left out, or taken for others, without a word."""
+    path = tmp_path / "a.ply"
+    path.write_text(TEXT_PLY.format(place, face))
+    if wrong is None:
+        assert sound.require_whole(path) == []
+        return
+    with pytest.raises(files.FileError, match=f"damaged: {wrong}") as error:
+        sound.require_whole(path)
+    assert error.value.kind == "load"
+
+
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("polygons", [[(0, 1, 2)] * 3, [(0, 1, 2), (0, 1, 2, 3), ()]])
+@pytest.mark.parametrize("index", [-1, 4])
+def test_a_binary_ply_with_bad_numbers_is_an_error(tmp_path, order, polygons, index):
+    path = tmp_path / "a.ply"
+    head, rows = binary_ply(order, [*polygons, (0, 1, index)])
+    path.write_bytes(head + rows)
+    with pytest.raises(files.FileError, match=f"face {len(polygons)} refers to vertex {index} of 4"):
+        sound.require_whole(path)
+    head, rows = binary_ply(order, polygons)
+    path.write_bytes(head + rows[:16] + struct.pack(order + "f", float("nan")) + rows[20:])
+    with pytest.raises(files.FileError, match="vertex 1 is not at a finite place"):
+        sound.require_whole(path)
+
+
+@pytest.mark.parametrize(
+    ("faces", "wrong"),
+    [
+        ("f 1 2 3\nf -3//-1 -2//-1 -1//-1\n", None),
+        ("f 1 2 4\nv 1 1 0\n", None),
+        ("f 1 2 4\n", "line 4 refers to vertex 4 of 3"),
+        ("f 1 2 0\n", "line 4 refers to vertex 0 of 3"),
+        ("f -4 2 1\n", "line 4 refers to vertex -4 of 3 before it"),
+        ("v 1 nan 0\nf 1 2 3\n", "line 4 has a coordinate that is not finite"),
+    ],
+)
+def test_an_obj_with_bad_numbers_is_an_error(tmp_path, faces, wrong):
+    """Negative numbers count back from the last vertex: they are right as long as there are so many."""
+    path = tmp_path / "a.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + faces)
+    if wrong is None:
+        assert sound.require_whole(path) == []
+        return
+    with pytest.raises(files.FileError, match=wrong):
+        sound.require_whole(path)

@@ -97,6 +97,16 @@ def test_closed_pieces_with_mirrored_caps(stroke, edge_length):
         assert done.report["defect"] <= 0.05 * edge_length
 
 
+@pytest.mark.parametrize(("x", "y", "radius", "n"), [(2.58, -0.34, 0.05, 3), (2.1, -0.49, 0.12, 4)])
+def test_edges_longer_than_a_hole_still_close_it(x, y, radius, n):
+    """A line of a few long edges did not run around the sheet, and got no cap."""
+    done = gridmesh.cut(*torus(), circle(x, y, radius, n), direction=DOWN, edge_length=2.0)
+    assert done.report["uncapped"] == 0
+    assert done.report["repeated"] > 0
+    for piece in done.pieces:
+        assert len(open_edges(piece)) == 0
+
+
 def test_faces_on_which_rebuilt_triangles_come_to_lie_are_rebuilt_too():
     """Otherwise the triangles that lie there are dropped, and the piece has a hole."""
     rng = np.random.default_rng(532)
@@ -271,6 +281,8 @@ def test_bulging_caps_close_too(smooth):
         ("invalid_option", {"cells": "hexagons"}),
         ("invalid_option", {"edge_length": -1}),
         ("invalid_option", {"gap": np.inf}),
+        ("invalid_option", {"mirrors": [[[0, 0, 0], [0, 0, 0]]]}),
+        ("invalid_option", {"mirrors": [[[0, 0, 0], [np.inf, 0, 0]]]}),
         ("invalid_shape", {"direction": [0, 1]}),
         ("invalid_shape", {"faces": [[0, 1]]}),
         ("invalid_shape", {"stroke": [[0, 1], [1, 2]]}),
@@ -401,3 +413,53 @@ def test_a_half_is_capped_up_to_its_plane_of_symmetry():
         gridmesh.cut(CUBE, half, ACROSS, mirrors="x", **options)
     with pytest.raises(gridmesh.GridMeshError, match="mirrors"):
         gridmesh.cut(CUBE, half, ACROSS, mirrors=[[[0, 0, 0], [0, 0, 0]]], **options)
+
+
+def test_a_mirror_without_a_direction_is_told():
+    with pytest.raises(gridmesh.GridMeshError, match=r"normal \[0, 0, 0\].*normals that are not zero"):
+        gridmesh.cut(CUBE, QUADS, ACROSS, direction=DOWN, mirrors=[[[0, 0, 0], [0, 0, 0]]])
+
+
+def ball(n: int = 30, m: int = 20) -> tuple[np.ndarray, np.ndarray]:
+    """A closed sphere of triangles around z."""
+    u, v = np.meshgrid(np.arange(1, m) * np.pi / m, np.arange(n) * 2 * np.pi / n, indexing="ij")
+    rows = np.stack([np.sin(u) * np.cos(v), np.sin(u) * np.sin(v), np.cos(u)], axis=-1).reshape(-1, 3)
+    k, top, low = np.arange(n), 0, 1 + (m - 1) * n
+    after = (k + 1) % n
+    caps = [np.c_[0 * k + top, 1 + k, 1 + after], np.c_[0 * k + low, low - n + after, low - n + k]]
+    rings = [1 + n * i for i in range(m - 2)]
+    sides = [np.c_[a + k, a + n + k, a + after] for a in rings]
+    sides += [np.c_[a + after, a + n + k, a + n + after] for a in rings]
+    return np.vstack([[[0, 0, 1]], rows, [[0, 0, -1]]]), np.vstack(caps + sides)
+
+
+def crossings(triangles: np.ndarray) -> int:
+    """How often an edge of one of the triangles passes through another one that has no corner in common with it."""
+    count = 0
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    for corners in triangles:
+        apart = ~(triangles[:, :, None] == corners).all(axis=-1).any(axis=(1, 2))
+        others, normal = triangles[apart], normals[apart]
+        for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            height = [((end - others[:, 0]) * normal).sum(axis=1) for end in (a, b)]
+            through = height[0] * height[1] < 0
+            at = height[0][through] / (height[0] - height[1])[through]
+            point, face, up = a + at[:, None] * (b - a), others[through], normal[through]
+            inside = np.ones(len(point), bool)
+            for k in range(3):
+                turn = np.cross(face[:, (k + 1) % 3] - face[:, k], point - face[:, k])
+                inside &= (turn * up).sum(axis=1) > 1e-9 * (up**2).sum(axis=1)
+            count += int(inside.sum())
+    return count
+
+
+@pytest.mark.parametrize("smooth", ["tangent", "curvature"])
+def test_bulging_caps_of_a_thin_wedge_do_not_meet(smooth):
+    """One cap bulged through the place where the other one had to lie flat."""
+    stroke = [[-2, 0.3, 0], [2, 0.1, 0], [-2, -0.3, 0]]
+    done = gridmesh.cut(*ball(), stroke, direction=DOWN, smooth=smooth)
+    assert done.report["caps"] == 2
+    assert done.report["reduced_caps"] > 0
+    for piece in done.pieces:
+        assert len(open_edges(piece)) == 0
+        assert crossings(cap_triangles(piece)) == 0

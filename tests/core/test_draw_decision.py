@@ -89,6 +89,27 @@ def test_what_does_nothing_is_said(stroke, wanted, said):
         one(seen(stroke), [body()], **wanted)
 
 
+@pytest.mark.parametrize(
+    ("stroke", "wanted"),
+    [(FROM_INSIDE, {}), (FROM_INSIDE, {"subtract": True}), (WITHIN, {"subtract": True})],
+)
+def test_a_body_whose_outline_cannot_be_changed_is_not_promised_to_be(stroke, wanted):
+    fixed = replace(body(), fixed="its mesh was changed by hand")
+    with pytest.raises(DecisionError, match="'Body': its mesh was changed by hand"):
+        one(seen(stroke), [fixed], **wanted)
+    assert one(seen(WITHIN), [fixed], part=True).action == "PART"
+    assert one(seen(BESIDE), [fixed]).action == "NEW"
+
+
+def test_a_part_that_will_not_be_joined_is_said_to_stay_apart():
+    alone = replace(body(), apart="its mesh was changed by hand")
+    decision = one(seen(FROM_INSIDE), [alone], part=True)
+    assert decision.action == "PART"
+    assert decision.hint == "the part stays apart from 'Body': its mesh was changed by hand"
+    assert one(seen(FROM_INSIDE), [alone], part=True, joins=False).hint == ""
+    assert one(seen(FROM_INSIDE), [alone]).hint == ""
+
+
 def test_it_is_decided_from_the_first_point_on():
     points = ring(1.5, (2, 0), start=np.pi)
     actions = [one(seen(points[:n]), [body()]).action for n in range(1, len(points) + 1)]

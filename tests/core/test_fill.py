@@ -535,3 +535,9 @@ def test_a_damaged_pickle_of_a_fill_is_refused(damage: str) -> None:
         fields[3] = "rough"
     with pytest.raises(gridmesh.GridMeshError, match="damaged"):
         make(*fields)
+
+
+def test_one_face_is_told_as_one():
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    fill = gridmesh.fill_hole(corners, [[0, 1, 3], [1, 2, 3], [2, 0, 3]], [0, 1, 2])
+    assert "1 triangle in" in repr(fill)

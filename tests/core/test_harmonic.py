@@ -55,3 +55,9 @@ def test_what_cannot_be_is_refused():
         with pytest.raises(gridmesh.GridMeshError) as error:
             gridmesh.harmonic(**arguments)
         assert error.value.kind == kind
+
+
+def test_what_is_out_of_range_is_named():
+    corners, triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]
+    with pytest.raises(gridmesh.GridMeshError, match="free"):
+        gridmesh.harmonic(corners, triangle, [7], [[0], [1], [2]])

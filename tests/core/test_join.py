@@ -214,6 +214,10 @@ def test_colors_of_a_border_that_are_not_one_for_each_part():
     assert "as many numbers as parts" in message
     with pytest.raises(TypeError, match="border"):
         gridmesh.join([ball()], border="red")
+    for colors in ([-1, 2], [0, 2**32]):
+        kind, message = kind_of(ball(), ball((1.1, 0, 0), 0.5), border=colors)
+        assert kind == "invalid_option"
+        assert "a whole number from 0 to 4294967295 for each part" in message
 
 
 def test_the_border_of_one_material_over_three_parts():

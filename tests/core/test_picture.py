@@ -339,6 +339,44 @@ def test_a_margin_leaves_no_slits():
     assert area(outline) > 60 * 60
 
 
+@pytest.mark.parametrize("margin", [0.5, 1.0, 3.0, 40.0])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_margin_of_noise_meets_nothing(seed, margin):
+    """Moved outlines of noise touch in single points, which no polygon may."""
+    picture = (np.random.RandomState(seed).rand(250, 250) * 255).astype(np.uint8)
+    traced = gridmesh.trace_image(picture, margin=margin, min_area=0)
+    inside = sampled(contours_of(traced), 250, 250, 4)[::-1].reshape(250, 4, 250, 4)
+    if margin >= 1:
+        assert inside.all(axis=(1, 3))[picture >= 127.5].all()
+    for outline, holes in traced:
+        gridmesh.thickness(outline, holes)  # reads both, and refuses what meets itself
+    before = np.concatenate([outline for outline, _ in gridmesh.trace_image(picture, min_area=0)])
+    points = np.concatenate([outline for outline, _ in traced])
+    moved = np.concatenate([before.min(axis=0) - points.min(axis=0), points.max(axis=0) - before.max(axis=0)])
+    assert (moved > 0.98 * margin - 0.05).all()
+    assert (moved < 3 * margin + 2).all()  # corners of polygons keep their angles
+
+
+def test_a_margin_of_noise_can_be_cancelled():
+    picture = (np.random.RandomState(120).rand(150, 200) > 0.5).astype(float)
+    seen = []
+    gridmesh.trace_image(picture, min_area=1, margin=100, progress=seen.append)
+    assert seen == sorted(seen)
+    late = [fraction for fraction in seen if fraction > 0.95]
+    for stop in late[:: max(len(late) // 5, 1)]:
+        with pytest.raises(gridmesh.GridMeshError) as refused:
+            gridmesh.trace_image(picture, min_area=1, margin=100, progress=lambda f, stop=stop: f < stop)
+        assert refused.value.kind == "cancelled"
+
+
+def test_the_largest_outline_comes_first():
+    """Smoothed, islands of nearly the same number of pixels may change their order."""
+    picture = np.random.RandomState(3).rand(120, 120) > 0.5
+    areas = [area(outline) for outline, _ in gridmesh.trace_image(picture, min_area=0)]
+    assert len(areas) > 20
+    assert all(first > second - 1e-6 for first, second in itertools.pairwise(areas))
+
+
 def around(shape, turn, at):
     c, s = np.cos(turn), np.sin(turn)
     return shape @ [[c, s], [-s, c]] + at

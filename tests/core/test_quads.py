@@ -352,3 +352,8 @@ def test_cracks_are_followed(width, bow, quads):
     assert patch.report["bridged_inlets"] == 0
     check_quad_patch(patch, [outline])
     check_quad_body(gridmesh.inflate(patch), patch, 0)
+
+
+def test_too_few_quads_are_told_as_quads():
+    with pytest.raises(gridmesh.GridMeshError, match="quads is 3; allowed: at least 6"):
+        gridmesh.mesh_sketch([[0, 0], [1, 0], [1, 1], [0, 1]], quads=3)

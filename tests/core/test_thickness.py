@@ -164,3 +164,30 @@ def test_uv_layouts(name):
     assert boxes_apart.any()
     with pytest.raises(gridmesh.GridMeshError, match="'apart' or 'shared'"):
         gridmesh.inflate(patch, uv="beside")
+
+
+def turned(points, turn):
+    c, s = np.cos(turn), np.sin(turn)
+    return np.asarray(points, float) @ [[c, s], [-s, c]]
+
+
+@pytest.mark.parametrize(("aspect", "turn"), [(3, 0), (30, 0), (150, 0), (1000, 0), (1000, 0.1), (1000, 0.3)])
+def test_a_bar_of_four_points_is_as_thick_as_it_is(aspect, turn):
+    """Samples a hundredth of a long bar apart made chords that lay askew."""
+    limbs = gridmesh.thickness(turned([[0, 0], [aspect, 0], [aspect, 1], [0, 1]], turn))
+    assert len(limbs) >= 1
+    assert limbs[:, 2] == pytest.approx(np.ones(len(limbs)), rel=0.07)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.1, 0.7])
+@pytest.mark.parametrize("n", [3, 4, 5, 6, 7, 8, 40])
+def test_a_regular_polygon_has_no_limb(n, turn):
+    angle = turn + np.arange(n) * 2 * np.pi / n
+    assert len(gridmesh.thickness(np.c_[np.cos(angle), np.sin(angle)])) == 0
+
+
+def test_a_spike_on_a_square_is_a_limb():
+    limbs = gridmesh.thickness(
+        [[0, 0], [10, 0], [10, 4.8], [14, 4.8], [14, 5.2], [10, 5.2], [10, 10], [0, 10]]
+    )
+    assert limbs[0, 2] == pytest.approx(0.4, rel=0.05)

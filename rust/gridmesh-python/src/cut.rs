@@ -149,10 +149,12 @@ pub fn cut(
     if let Some(value) = mirrors {
         let it = Argument { name: "mirrors", value, allowed: "pairs of a point and a normal, (k, 2, 3)" };
         let planes: Vec<[[f64; 3]; 2]> = value.extract().map_err(|_| it.wrong_type())?;
-        let plane = |[point, normal]: [[f64; 3]; 2]| Mirror {
-            point: DVec3::from_array(point),
-            normal: DVec3::from_array(normal).normalize_or_zero(),
-            within,
+        let plane = |[point, normal]: [[f64; 3]; 2]| {
+            let normal = DVec3::from_array(normal);
+            let scaled = normal / normal.abs().max_element();
+            // Of a length whose square is none, too; what has no direction stays as it is, and is refused.
+            let normal = normal.try_normalize().or(scaled.try_normalize()).unwrap_or(normal);
+            Mirror { point: DVec3::from_array(point), normal, within }
         };
         options.mirrors = planes.into_iter().map(plane).collect();
     }

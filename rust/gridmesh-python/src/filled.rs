@@ -12,6 +12,7 @@ use pyo3::types::PyDict;
 use crate::error::error;
 use crate::input::Argument;
 use crate::mesh::{as_positions, positions_argument, read_positions};
+use crate::reports::counted;
 use crate::watch::Watch;
 use crate::{arrays, reports};
 
@@ -90,9 +91,9 @@ impl Fill {
     fn __repr__(&self) -> String {
         let (triangles, edges) = (self.inner.triangles.len(), self.inner.loop_.len());
         let faces = match self.inner.quads.len() {
-            0 => format!("{triangles} triangles"),
-            quads if triangles > 0 => format!("{quads} quads and a triangle"),
-            quads => format!("{quads} quads"),
+            0 => counted(triangles, "triangle"),
+            quads if triangles > 0 => format!("{} and a triangle", counted(quads, "quad")),
+            quads => counted(quads, "quad"),
         };
         format!("<gridmesh.Fill: {faces} in a loop of {edges} edges>")
     }

@@ -5,7 +5,7 @@ use gridmesh::cut::Polygons;
 use gridmesh::join::{Border, JoinOptions, JoinReport, Joined as CoreJoined, Part};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyDict, PyInt, PyList};
 
 use crate::cut::polygons;
 use crate::input::Argument;
@@ -104,11 +104,19 @@ pub fn join(
 
 /// Yes, no, or a number for each part.
 fn border_of(value: &Bound<'_, PyAny>) -> PyResult<Border> {
-    let it = Argument { name: "border", value, allowed: "True, False, or a whole number for each part" };
+    let it = Argument {
+        name: "border",
+        value,
+        allowed: "True, False, or a whole number from 0 to 4294967295 for each part",
+    };
     if let Ok(yes) = it.bool() {
         return Ok(if yes { Border::Parts } else { Border::None });
     }
-    value.extract::<Vec<u32>>().map(Border::Colors).map_err(|_| it.wrong_type())
+    let is_whole = |item: PyResult<Bound<'_, PyAny>>| item.is_ok_and(|item| item.is_instance_of::<PyInt>());
+    value.extract::<Vec<u32>>().map(Border::Colors).map_err(|_| {
+        let is_whole = value.try_iter().is_ok_and(|mut items| items.all(is_whole));
+        if is_whole { it.wrong_value() } else { it.wrong_type() }
+    })
 }
 
 /// Positions, corners and offsets of a part.

@@ -13,6 +13,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::arrays;
 use crate::error::error;
+use crate::reports::counted;
 
 /// The flat mesh of a drawing, of triangles or of quads; made by `mesh_sketch`.
 ///
@@ -148,7 +149,7 @@ impl Patch {
     fn __repr__(&self) -> String {
         let (triangles, quads, loops) =
             (self.inner.triangles.len(), self.inner.quads.len(), self.inner.loops.len());
-        let cells = if quads > 0 { format!("{quads} quads") } else { format!("{triangles} triangles") };
+        let cells = if quads > 0 { counted(quads, "quad") } else { counted(triangles, "triangle") };
         format!("<gridmesh.Patch: {cells}, {} vertices, {loops} loops>", self.inner.vertices.len())
     }
 

@@ -63,3 +63,8 @@ pub fn seconds<'py>(py: Python<'py>, stages: &[(&'static str, f64)]) -> PyResult
     }
     Ok(dict)
 }
+
+/// A number of things.
+pub fn counted(number: usize, what: &str) -> String {
+    if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
+}

@@ -5,6 +5,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use crate::reports::counted;
 use crate::{arrays, reports};
 
 /// A mesh in space, of triangles or of quads; made by `stitch`, `inflate`, `flat` and `map_sketches`.
@@ -71,7 +72,7 @@ impl Surface {
 impl Surface {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let (triangles, quads) = (self.triangles.bind(py).len()?, self.quads.bind(py).len()?);
-        let cells = if quads > 0 { format!("{quads} quads") } else { format!("{triangles} triangles") };
+        let cells = if quads > 0 { counted(quads, "quad") } else { counted(triangles, "triangle") };
         Ok(format!("<gridmesh.Surface: {cells}, {} vertices>", self.vertices.bind(py).len()?))
     }
 

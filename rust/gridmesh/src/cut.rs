@@ -58,7 +58,8 @@ pub struct Cut {
 /// (with `cap`); vertices in which a piece would touch itself are doubled.
 ///
 /// With an `edge_length` the edges along the cut get about this length, and the faces along it are rebuilt; of the
-/// stroke, what is within a hundredth of it counts as straight.
+/// stroke, what is within a hundredth of it counts as straight. Where edges of this length leave a line without a cap, they become
+/// half as long, again and again, until they do not.
 ///
 /// Caps lie on the swept surface (with [`Smooth::Flat`](crate::fill::Smooth)), both pieces get the same vertices and
 /// faces, the right one's wound the other way. Cut lines that are not closed, because the mesh is not, get no

@@ -1,6 +1,7 @@
 //! What was drawn: closed curves cleaned, sorted into outlines and holes, joined, measured.
 
 pub mod combine;
+mod compact;
 pub mod contours;
 pub mod curve;
 pub(crate) mod symmetry;

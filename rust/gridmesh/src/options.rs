@@ -246,7 +246,7 @@ impl SketchOptions {
         }
         if let Some(n) = self.triangles {
             if n < 6 {
-                return refuse("triangles", n as f64, "at least 6");
+                return refuse(self.cells.plural(), n as f64, "at least 6");
             }
             if n as f64 > MAX_TRIANGLES {
                 return Err(Error::TooLarge { triangles: n as f64, limit: MAX_TRIANGLES });

@@ -21,6 +21,7 @@ mod simplify;
 mod smooth;
 mod threshold;
 mod tips;
+mod widened;
 
 use rayon::prelude::*;
 
@@ -86,9 +87,11 @@ pub struct Traced {
 /// but for those that would move the line by more than a sixth of a pixel or bend a corner. No contour meets itself or another one, so each part can be
 /// meshed. With a margin of 1 or more every pixel of the parts (each whole square of at least the threshold)
 /// lies inside; the outline is moved a little more where that needs it. Gaps that a margin leaves narrower than
-/// 0.8 pixels are closed.
+/// 0.8 pixels are closed. Where so many outlines meet that polygons would touch themselves, as in noise, they are moved on a
+/// grid: then corners become round, and the margin is exact to about a tenth of a pixel, or of a hundredth of it if that is more.
 ///
-/// Takes O(pixels + n log n) for n points, and about five bytes a pixel beside the picture. The same for any number of threads.
+/// Takes O(pixels + n log n) for n points, and about five bytes a pixel beside the picture, with a margin on a grid up to a
+/// gigabyte. The same for any number of threads.
 ///
 /// # Errors
 /// [`Error::InvalidOption`], and [`Error::Cancelled`].
@@ -107,13 +110,15 @@ pub fn trace_image(picture: &Picture, options: &TraceOptions, progress: Progress
     let sorted = islands::sort(contours, options.min_area, progress.part(0.3, 0.4))?;
     let refined = progress.part(0.4, 0.9);
     let parts = refine(picture, threshold, &sorted.islands, options.smooth, refined)?;
-    let parts = match options.margin {
+    let mut parts = match options.margin {
         0.0 => parts,
         margin => {
             let cover = margin::corners_to_cover(&sorted.islands);
             margin::expand(parts, margin, &cover, options.min_area, progress.part(0.9, 1.0))?
         }
     };
+    // Smoothing, and what is filled, change the order that pixels have.
+    parts.sort_by(|a, b| margin::area(b).total_cmp(&margin::area(a)));
     progress.report(1.0)?;
     let (dropped_islands, dropped_holes) = (sorted.dropped_islands, sorted.dropped_holes);
     Ok(Traced { parts, dropped_islands, dropped_holes, threshold })

@@ -115,8 +115,13 @@ impl CutOptions {
         if let Some(m) = self.mirrors.iter().find(|m| !m.is_sound()) {
             return invalid(
                 "mirrors",
-                format!("{m:?}"),
-                "finite points and normals of length 1, distances of 0 or more",
+                format!(
+                    "point {}, normal {}, distance {}",
+                    told_all(&m.point.to_array()),
+                    told_all(&m.normal.to_array()),
+                    told(m.within)
+                ),
+                "finite points, normals that are not zero, of length 1, and distances of 0 or more",
             );
         }
         if !(self.gap.is_finite() && self.gap >= 0.0) {

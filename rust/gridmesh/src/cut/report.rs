@@ -44,7 +44,8 @@ pub struct CutReport {
     pub volumes: Vec<f64>,
     /// The input's volume, with its faces divided alike.
     pub volume: f64,
-    /// Divisions that were repeated with a finer tolerance or a nudged stroke, and caps made in a simpler way.
+    /// Divisions that were repeated with a finer tolerance, a nudged stroke or half the edge length, and caps made in a simpler
+    /// way.
     pub repeated: usize,
     /// Seconds spent in each stage.
     pub seconds: Vec<(&'static str, f64)>,

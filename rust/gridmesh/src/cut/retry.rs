@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use super::attempt::Attempt;
 use super::caps::capper::Caps;
+use super::caps::loops::Loops;
 use super::caps::{cap, loops};
 use super::cutting::Cutting;
 use super::divide::node::Tolerance;
@@ -31,6 +32,9 @@ const THROUGH: f64 = 0.3;
 
 /// With an edge length, a line that touches itself in a vertex is moved aside by this part of it.
 const ASIDE: f64 = 0.02;
+
+/// So often an edge length is halved that leaves lines without caps; then edges stay as the mesh divides them.
+const HALVINGS: usize = 5;
 
 /// Divides and caps. Beside the result: which side of the cut that goes to which the stroke does not cross.
 pub(super) fn divide(
@@ -75,9 +79,16 @@ fn divide_with(
 ) -> Result<(Cut, Option<bool>)> {
     let mut tally = Tally::new();
     let since = Instant::now();
-    let (sheet, parted) = part(cutting, sheet, coarse, alone, &mut tally, progress.part(0.0, 0.4))?;
+    let (mut sheet, mut parted) = part(cutting, sheet, coarse, alone, &mut tally, progress.part(0.0, 0.4))?;
     progress.report(0.4)?;
-    let loops = loops::trace(cutting.faces, &parted, &sheet);
+    let mut loops = loops::trace(cutting.faces, &parted, &sheet);
+    if cutting.options.cap
+        && coarse.is_some()
+        && cap::uncapped(cutting, &parted, &sheet, &loops) > 0
+        && let Some(finer) = finer(cutting, &sheet, alone, &mut tally, progress.part(0.4, 0.4))?
+    {
+        (sheet, parted, loops) = finer;
+    }
     tally.report.open_lines = loops.open.len();
     tally.report.loops = loops.closed.len();
     let caps = if cutting.options.cap {
@@ -93,6 +104,36 @@ fn divide_with(
     tally.report.seconds.push(("total", since.elapsed().as_secs_f64()));
     progress.report(1.0)?;
     Ok((Cut { pieces, report: tally.report }, parted.alone))
+}
+
+/// Divided with the longest shorter edge length that leaves no line without a cap, if there is one: a line of few long edges
+/// may run around a closed sheet otherwise than it should, or not at all.
+fn finer(
+    cutting: Cutting<'_>,
+    sheet: &Sheet,
+    alone: Alone,
+    tally: &mut Tally,
+    progress: Progress<'_>,
+) -> Result<Option<(Sheet, Parted, Loops)>> {
+    let mut options = cutting.options.clone();
+    for halving in 0..=HALVINGS {
+        options.edge_length = options.edge_length.filter(|_| halving < HALVINGS).map(|length| 0.5 * length);
+        let coarse =
+            options.edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
+        let cutting = Cutting { options: &options, ..cutting };
+        let (sheet, parted) = match part(cutting, sheet, coarse, alone, tally, progress) {
+            Err(Error::Cancelled) => return Err(Error::Cancelled),
+            // Too many edges, or no consistent division.
+            Err(_) => continue,
+            Ok(done) => done,
+        };
+        let loops = loops::trace(cutting.faces, &parted, &sheet);
+        tally.report.repeated += 1;
+        if cap::uncapped(cutting, &parted, &sheet, &loops) == 0 {
+            return Ok(Some((sheet, parted, loops)));
+        }
+    }
+    Ok(None)
 }
 
 /// Divides the faces, evenly along the cut with an edge length.

@@ -14,6 +14,7 @@ use glam::DVec2;
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
+use crate::drawing::compact::is_compact;
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::{ClosedCurve, bounds};
 use crate::error::{Error, Result};
@@ -25,6 +26,10 @@ pub const ACROSS: f64 = 5.0;
 
 /// Samples along a drawing, beside its own points.
 const SAMPLES: f64 = 600.0;
+
+/// Samples in a mean width of a drawing, and the most in all: with fewer, chords of long bars lie askew.
+const IN_WIDTH: f64 = 4.0;
+const MOST_SAMPLES: f64 = 60_000.0;
 
 /// A branch is left out if it is shorter than this times its width at the root.
 const SALIENT: f64 = 0.9;
@@ -83,6 +88,11 @@ pub(crate) fn cells_for(area: f64, width: f64, across: f64, shape: CellShape) ->
 
 /// The limbs of cleaned contours: an outline, and holes that run the other way.
 pub(crate) fn limbs_of(contours: &[ClosedCurve]) -> Result<Vec<Limb>> {
+    if let [outline] = contours
+        && is_compact(outline)
+    {
+        return Ok(Vec::new());
+    }
     let axis = Axis::new(contours)?;
     let (low, high) = bounds(contours[0].points());
     let shortest = SHORTEST * low.distance(high);
@@ -358,7 +368,10 @@ impl Axis {
 
 /// Points along the contours, all different, and the edges between them; the drawing is on their left.
 fn samples(contours: &[ClosedCurve]) -> (Vec<DVec2>, Vec<[usize; 2]>) {
-    let step = contours.iter().map(ClosedCurve::length).sum::<f64>() / SAMPLES;
+    let length = contours.iter().map(ClosedCurve::length).sum::<f64>();
+    let area = contours.iter().map(ClosedCurve::area).sum::<f64>().abs();
+    let width = 2.0 * area / length;
+    let step = (length / SAMPLES).min((width / IN_WIDTH).max(length / MOST_SAMPLES));
     let mut points = Vec::new();
     let mut edges = Vec::new();
     for contour in contours {

@@ -32,6 +32,10 @@ const MORE: f64 = 1.5;
 /// Loops with more vertices get the patch of quads that is best in the plane.
 const LARGE: usize = 300;
 
+/// Other patches are tried until they have this many new vertices in sum: those that come later are worse in the plane, and each
+/// takes a second for every ten thousand.
+const TRIED: usize = 10_000;
+
 /// A patch in space.
 pub(super) struct Attempt {
     pub unrolled: Unrolled,
@@ -143,9 +147,14 @@ impl Task<'_> {
         let others = flat_quads(&unrolled.points, &room, &is_taken, single, true, progress.part(0.7, 0.8))?;
         clock.stage("grid");
         let first = best.patch.patch.triangles.clone();
+        let mut tried = 0;
         for made in others {
             if made.folded || made.patch.triangles == first {
                 continue;
+            }
+            tried += made.patch.interior.len();
+            if tried > TRIED {
+                break;
             }
             let other = match self.in_space(&unrolled, made, &room, progress.part(0.8, 1.0)) {
                 Err(Error::Solver { .. }) => continue,

@@ -82,14 +82,15 @@ pub fn harmonic(
 
 /// Numbers of the free vertices that a chain of edges joins to a fixed one.
 fn unknowns(n: usize, triangles: &[[u32; 3]], free: &[u32]) -> Result<Vec<Option<usize>>> {
-    let check = |index: u32| {
+    let check = |what: &str, index: u32| {
         if (index as usize) < n {
             Ok(())
         } else {
-            Err(Error::IndexOutOfRange { what: "triangles".to_owned(), index: index as i32, vertices: n })
+            Err(Error::IndexOutOfRange { what: what.to_owned(), index: index as i32, vertices: n })
         }
     };
-    triangles.iter().flatten().chain(free).try_for_each(|&v| check(v))?;
+    triangles.iter().flatten().try_for_each(|&v| check("triangles", v))?;
+    free.iter().try_for_each(|&v| check("free", v))?;
     let mut is_free = vec![false; n];
     free.iter().for_each(|&v| is_free[v as usize] = true);
     let mut sets = Disjoint::new(n);

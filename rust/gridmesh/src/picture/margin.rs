@@ -1,6 +1,7 @@
 //! Outlines moved outward, so that the rim of a drawing lies inside.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use glam::DVec2;
 use i_overlay::mesh::float::outline::offset::OutlineOffset;
@@ -8,12 +9,14 @@ use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
 
 use crate::drawing::combine::Part;
 use crate::drawing::contours::read_contours;
-use crate::error::{Error, Result};
+use crate::drawing::curve::bounds;
+use crate::error::Result;
 use crate::geometry::segments::{SegmentGrid, nearest_on_segment, orientation};
 use crate::picture::islands::Island;
 use crate::picture::levels::Crossing;
 use crate::picture::simplify::needed;
-use crate::progress::Progress;
+use crate::picture::widened::widen;
+use crate::progress::{Progress, aside};
 
 /// From this margin on, whole pixels lie inside.
 const WHOLE: f64 = 1.0;
@@ -34,8 +37,12 @@ const REACHES: [f64; 2] = [1.0, 3.0];
 /// Less than what is spare.
 const TOLERANCE: f64 = 0.01;
 
-/// Offsets tried where contours come to touch themselves.
+/// Offsets tried where contours come to touch themselves, and points of all tries together.
 const TRIES: i32 = 6;
+const TRIED: usize = 60_000;
+
+/// The most crossings of moved lines, on average over all directions, that are resolved as polygons.
+const CROSSINGS: f64 = 1e5;
 
 /// The corners on the outside of all pixels at the rim of islands.
 pub fn corners_to_cover(islands: &[Island]) -> Vec<DVec2> {
@@ -52,7 +59,8 @@ pub fn corners_to_cover(islands: &[Island]) -> Vec<DVec2> {
 
 /// Moves contours outward; parts that come nearer than 0.8 pixels become one, holes of less than the area are filled.
 ///
-/// From a margin of 1 on all points of `cover` lie inside.
+/// From a margin of 1 on all points of `cover` lie inside. Where the polygons of the moved contours touch themselves, or cross
+/// too often, they are moved on a grid instead, and corners become round.
 pub fn expand(
     parts: Vec<Part>,
     margin: f64,
@@ -72,21 +80,52 @@ pub fn expand(
             std::iter::once(&part.outline).chain(&part.holes).map(contour).collect()
         })
         .collect();
-    let mut refused = Error::Internal { reason: "no margin was tried" };
-    for attempt in 0..TRIES {
-        progress.report(0.3 + 0.1 * f64::from(attempt))?;
+    let (shapes, points) = (Arc::new(shapes), contours(&parts).map(Vec::len).sum::<usize>());
+    let distance = margin.max(least);
+    let tries = if crossings(&parts, distance) > CROSSINGS { 0 } else { TRIES };
+    for attempt in 0..tries {
+        if attempt > 0 && points * attempt as usize > TRIED {
+            break;
+        }
+        let here = progress.part(0.3 + 0.05 * f64::from(attempt), 0.3 + 0.05 * f64::from(attempt + 1));
+        here.report(0.0)?;
         // A little more parts what just touches.
-        let offset = margin.max(least) + 0.01 * f64::from(attempt);
-        let style = |offset: f64| OutlineStyle::new(offset).line_join(LineJoin::Miter(SHARPEST));
-        // Farther, and back again: what is left of gaps that the margin all but closes would be slits.
-        let wide = shapes.outline_as::<i64>(&style(offset + SLIT));
-        let parts = read(wide.outline_as::<i64>(&style(-SLIT)), min_area);
-        match parts.iter().try_for_each(|part| read_contours(&part.outline, &part.holes).map(|_| ())) {
-            Ok(()) => return Ok(parts),
-            Err(err) => refused = err,
+        let offset = distance + 0.01 * f64::from(attempt);
+        let shapes = Arc::clone(&shapes);
+        let work = move || {
+            let style = |offset: f64| OutlineStyle::new(offset).line_join(LineJoin::Miter(SHARPEST));
+            // Farther, and back again: what is left of gaps that the margin all but closes would be slits.
+            let wide = shapes.outline_as::<i64>(&style(offset + SLIT));
+            let parts = read(wide.outline_as::<i64>(&style(-SLIT)), min_area);
+            let check = |part: &Part| read_contours(&part.outline, &part.holes).map(|_| ());
+            parts.iter().try_for_each(check).is_ok().then_some(parts)
+        };
+        if let Some(parts) = aside(here, work)? {
+            return Ok(parts);
         }
     }
-    Err(refused)
+    widen(&parts, distance, SLIT, min_area, progress.part(0.6, 1.0))
+}
+
+fn contours(parts: &[Part]) -> impl Iterator<Item = &Vec<DVec2>> {
+    parts.iter().flat_map(|part| std::iter::once(&part.outline).chain(&part.holes))
+}
+
+/// How often the lines of contours cross once each is moved by itself: as often as lines of their length do that lie
+/// anywhere in their box, in any direction.
+fn crossings(parts: &[Part], distance: f64) -> f64 {
+    let mut length = 0.0;
+    for contour in contours(parts) {
+        let n = contour.len();
+        for k in 0..n {
+            let (before, after) = (contour[k] - contour[(k + n - 1) % n], contour[(k + 1) % n] - contour[k]);
+            length += after.length() + distance * before.angle_to(after).abs();
+        }
+    }
+    let boxes = parts.iter().map(|part| bounds(&part.outline));
+    let (low, high) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default();
+    let room = high - low + 2.0 * distance;
+    length * length / (PI * room.x * room.y)
 }
 
 fn read(shapes: Vec<Vec<Vec<[f64; 2]>>>, min_area: f64) -> Vec<Part> {
@@ -107,6 +146,11 @@ fn read(shapes: Vec<Vec<Vec<[f64; 2]>>>, min_area: f64) -> Vec<Part> {
     parts
 }
 
+/// What an outline encloses.
+pub fn area(part: &Part) -> f64 {
+    signed_area(&part.outline)
+}
+
 /// Signed area of a closed line: positive if counter-clockwise.
 pub fn signed_area(points: &[DVec2]) -> f64 {
     let Some(&origin) = points.first() else { return 0.0 };
@@ -116,7 +160,7 @@ pub fn signed_area(points: &[DVec2]) -> f64 {
 /// The largest distance of a point outside the parts from their contours, as far as a few pixels.
 fn farthest_outside(parts: &[Part], points: &[DVec2], progress: Progress<'_>) -> Result<f64> {
     let mut segments = Vec::new();
-    for contour in parts.iter().flat_map(|part| std::iter::once(&part.outline).chain(&part.holes)) {
+    for contour in contours(parts) {
         segments.extend((0..contour.len()).map(|i| [contour[i], contour[(i + 1) % contour.len()]]));
     }
     let grid = SegmentGrid::new(&segments);

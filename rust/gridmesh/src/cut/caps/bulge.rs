@@ -10,9 +10,11 @@ use crate::cut::caps::capper::{Capper, key};
 use crate::cut::divide::node::Node;
 use crate::cut::input::triangles;
 use crate::cut::options::{CutOptions, Keep};
+use crate::cut::sheet::roll::Roll;
 use crate::error::{Error, Result};
 use crate::fill::fill_hole;
 use crate::fill::options::FillOptions;
+use crate::fill::planar::flat_patch::FlatPatch;
 use crate::fill::surface::meet::{Box3, count_meetings, near_boxes};
 use crate::progress::Progress;
 
@@ -34,10 +36,37 @@ pub(in crate::cut) enum Bulged {
 }
 
 impl Capper<'_> {
-    /// Fills a loop so that it continues the piece around it, as much as there is room in what it closes.
+    /// The triangles of a cap that lies flat.
+    pub(in crate::cut) fn placed(&self, outline: &[Spot], patch: &FlatPatch) -> Vec<[DVec3; 3]> {
+        let roll = Roll::new(self.sheet, outline);
+        let mut at: Vec<DVec3> =
+            outline.iter().map(|s| self.parted.position(self.cutting.vertices, s.node)).collect();
+        at.extend(patch.interior.iter().map(|&p| self.node(roll.unflatten(p)).position));
+        patch.triangles.iter().map(|t| t.map(|v| at[v as usize])).collect()
+    }
+
+    /// Whether a cap that lies flat meets one that was made before.
+    pub(in crate::cut) fn meets_caps(&self, flat: &[[DVec3; 3]], progress: Progress<'_>) -> Result<bool> {
+        let first = self.first + self.caps.vertices.len() as u32;
+        let position = |v: u32| match v.checked_sub(first) {
+            Some(k) => flat[k as usize / 3][k as usize % 3],
+            None => match v.checked_sub(self.first) {
+                Some(k) => self.caps.vertices[k as usize].position,
+                None => self.parted.position(self.cutting.vertices, v),
+            },
+        };
+        let new: Vec<[u32; 3]> =
+            (0..flat.len() as u32).map(|t| [first + 3 * t, first + 3 * t + 1, first + 3 * t + 2]).collect();
+        let old: Vec<[u32; 3]> = self.caps.triangles().collect();
+        Ok(count_meetings(position, &new, &old, true, 1, progress)?.0 > 0)
+    }
+
+    /// Fills a loop so that it continues the piece around it, as much as there is room in what it closes, beside caps that are yet to
+    /// be made and may lie flat.
     pub(in crate::cut) fn bulge(
         &mut self,
         outline: &[Spot],
+        later: &[Vec<[DVec3; 3]>],
         inverted: bool,
         progress: Progress<'_>,
     ) -> Result<Bulged> {
@@ -70,7 +99,8 @@ impl Capper<'_> {
         let level = fill.extend(&rim, 3, progress.part(1.0, 1.0))?;
         let level = level.chunks_exact(3).map(DVec3::from_slice).collect::<Vec<_>>();
         let other = if both { self.side(!left) } else { vec![] };
-        let room = Room::new(self, &positions, [&around, &other], &nodes, inverted);
+        let mut room = Room::new(self, &positions, [&around, &other], &nodes, inverted);
+        room.keep_apart(later.iter().flatten());
         let facets = fill.facets();
         let mut chosen = None;
         for share in SHARES {
@@ -161,6 +191,15 @@ impl Room {
         rim.retain(|_, corners| corners.iter().all(|&v| v != u32::MAX));
         let near = own.iter().chain(other).copied().collect();
         Room { positions, known, near, wedges: rim, caps: capper.caps.triangles().collect(), inverted }
+    }
+
+    /// Adds triangles that a cap must not meet.
+    fn keep_apart<'t>(&mut self, triangles: impl Iterator<Item = &'t [DVec3; 3]>) {
+        for triangle in triangles {
+            let first = self.positions.len() as u32;
+            self.positions.extend(triangle);
+            self.caps.push([first, first + 1, first + 2]);
+        }
     }
 
     /// True if a cap with these new vertices meets nothing but its rim, and lies inside along it.

@@ -31,6 +31,27 @@ pub(in crate::cut) fn close(
     tally: &mut Tally,
     progress: Progress<'_>,
 ) -> Result<Caps> {
+    let before = tally.report.clone();
+    if let Some(caps) = close_with(false, cutting, parted, sheet, loops, tally, progress.part(0.0, 0.9))? {
+        return Ok(caps);
+    }
+    // A cap bulges through the place of another one, which has to lie flat: then all leave room for that.
+    tally.report = before;
+    let caps = close_with(true, cutting, parted, sheet, loops, tally, progress.part(0.9, 1.0))?;
+    caps.ok_or(Error::Internal { reason: "no caps were made" })
+}
+
+/// With `careful` each bulging cap leaves room for the others, if they come to lie flat. Without it `None` if one lies flat and
+/// meets another.
+fn close_with(
+    careful: bool,
+    cutting: Cutting<'_>,
+    parted: &Parted,
+    sheet: &Sheet,
+    loops: &Loops,
+    tally: &mut Tally,
+    progress: Progress<'_>,
+) -> Result<Option<Caps>> {
     let first = (parted.n_old + parted.nodes.len()) as u32;
     let seams = mirrored::close(cutting.vertices, parted, sheet, loops, &cutting.options.mirrors, first);
     tally.report.open_lines -= seams.outlines.len();
@@ -70,9 +91,22 @@ pub(in crate::cut) fn close(
         }
     }
     fill_flat(&mut capper, &polygons, found.inverted, report, progress.part(0.0, 0.5))?;
+    let mut flat = vec![];
+    if careful {
+        for outline in &bulging {
+            let plan = capper.plan(outline, progress.part(0.5, 0.5))?;
+            flat.push(capper.placed(outline, &plan.patch));
+        }
+    }
     for (k, outline) in bulging.iter().enumerate() {
         let here = k as f64 / bulging.len() as f64;
-        match capper.bulge(outline, found.inverted, progress.part(0.5 + 0.5 * here, 0.5 + 0.5 * here))? {
+        let later = flat.get(k + 1..).unwrap_or_default();
+        match capper.bulge(
+            outline,
+            later,
+            found.inverted,
+            progress.part(0.5 + 0.5 * here, 0.5 + 0.5 * here),
+        )? {
             Bulged::Whole => continue,
             Bulged::Reduced => {
                 report.reduced_caps += 1;
@@ -82,6 +116,9 @@ pub(in crate::cut) fn close(
         }
         let plan = capper.plan(outline, progress.part(1.0, 1.0))?;
         report.folded += usize::from(plan.folded);
+        if !careful && capper.meets_caps(&capper.placed(outline, &plan.patch), progress.part(1.0, 1.0))? {
+            return Ok(None);
+        }
         capper.roll_up(outline, &plan.patch, found.inverted, progress)?;
     }
     capper.name_sources(polygons.iter().chain(&rings).flatten());
@@ -89,7 +126,14 @@ pub(in crate::cut) fn close(
     capper.prove()?;
     progress.report(1.0)?;
     capper.measure(tally);
-    Ok(capper.caps)
+    Ok(Some(capper.caps))
+}
+
+/// How many closed lines will have no cap.
+pub(in crate::cut) fn uncapped(cutting: Cutting<'_>, parted: &Parted, sheet: &Sheet, loops: &Loops) -> usize {
+    let first = (parted.n_old + parted.nodes.len()) as u32;
+    let seams = mirrored::close(cutting.vertices, parted, sheet, loops, &cutting.options.mirrors, first);
+    regions::find(cutting.vertices, parted, sheet, loops, seams.outlines).uncapped
 }
 
 /// Simple polygons that cover a region with holes, or one around a closed sheet.
