@@ -376,9 +376,10 @@ fn samples(contours: &[ClosedCurve]) -> (Vec<DVec2>, Vec<[usize; 2]>) {
     let mut edges = Vec::new();
     for contour in contours {
         let first = points.len();
-        for pair in contour.points().windows(2) {
-            let parts = (pair[0].distance(pair[1]) / step).ceil().max(1.0);
-            points.extend((0..parts as usize).map(|k| pair[0].lerp(pair[1], k as f64 / parts)));
+        let own = contour.points();
+        for (&a, &b) in own.iter().zip(own.iter().cycle().skip(1)) {
+            let parts = (a.distance(b) / step).ceil().max(1.0);
+            points.extend((0..parts as usize).map(|k| a.lerp(b, k as f64 / parts)));
         }
         edges.extend((first..points.len()).map(|i| [i, if i + 1 < points.len() { i + 1 } else { first }]));
     }

@@ -45,6 +45,9 @@ const ROUNDS: usize = 3;
 /// Times at most that the triangles are made even on a surface that is made smooth.
 const SHAPED: usize = 10;
 
+/// A smooth surface that has so many times the vertices of an earlier one has no end to its growth.
+const GROWN: usize = 3;
+
 /// A round that changes the number of vertices by less than this share is the last.
 const SETTLED: f64 = 0.02;
 
@@ -136,14 +139,17 @@ impl Several<'_> {
         let outline = Outline { loops, at, outside, taken };
         let (positions, triangles) = triangulated(&outline, self.spanning, progress.part(0.0, 0.35))?;
         clock.stage("surface");
-        let mut local = border.local(positions, triangles);
-        let is_flat = self.options.smooth == Smooth::Flat;
+        let mut local = border.local(positions.clone(), triangles.clone());
+        let mut is_flat = self.options.smooth == Smooth::Flat;
+        if !is_flat && !self.shaped(&mut local, beyond, progress.part(0.35, 0.6))? {
+            local = border.local(positions, triangles);
+            is_flat = true;
+        }
         if is_flat {
             let ground = Ground::of(&local);
             remesh(&mut local, &ground, progress.part(0.35, 0.6))?;
             regularize(&mut local, Some(&ground), progress.part(0.6, 0.7))?;
         } else {
-            self.shaped(&mut local, beyond, progress.part(0.35, 0.6))?;
             regularize(&mut local, None, progress.part(0.6, 0.7))?;
             let near = self.near(border, &local);
             unfold(&mut local, &near, progress.part(0.7, 0.76))?;
@@ -198,18 +204,25 @@ impl Several<'_> {
 
     /// Makes the triangles even on a surface that is made smooth: shape and triangles depend on each other. Fairing spreads the
     /// vertices too: to project them to a surface with two sheets close to each other would mix these up.
-    fn shaped(&self, local: &mut Local, beyond: &Beyond, progress: Progress<'_>) -> Result<()> {
+    ///
+    /// False if there is no end to it: each smoother surface is larger, as where what lies beyond crosses itself.
+    fn shaped(&self, local: &mut Local, beyond: &Beyond, progress: Progress<'_>) -> Result<bool> {
         refine(local);
+        let mut least = local.positions.len();
         for round in 0..SHAPED {
             let part = progress.part(round as f64 / SHAPED as f64, (round + 1) as f64 / SHAPED as f64);
             local.positions = fair(local, beyond, part)?;
             let before = local.positions.len() as f64;
             adapt(local);
+            least = least.min(local.positions.len());
+            if local.positions.len() > GROWN * least {
+                return Ok(false);
+            }
             if round > 1 && (local.positions.len() as f64 - before).abs() < SETTLED * before {
                 break;
             }
         }
-        Ok(())
+        Ok(true)
     }
 
     /// Makes thin triangles of the patch in its place rounder, and takes back what meets something.
