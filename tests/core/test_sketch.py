@@ -303,3 +303,19 @@ def test_bars_have_every_number_of_triangles(aspect):
     for triangles in (200, 300, 364, 450, 500, 800):
         patch = gridmesh.mesh_sketch(bar, triangles=triangles)
         assert abs(len(patch.triangles) / triangles - 1) <= 0.1
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+@pytest.mark.parametrize("tip", [[[1.015, 0]], [[0.985, 0]], [[1.005, 0], [1.002, 0], [1.007, 0]]])
+def test_a_short_way_there_and_back_changes_nothing(tip, turn):
+    """As where the outline of a letter ends a little beyond its beginning, and goes back."""
+    plain = circle(200)
+    spiked = np.insert(plain, 1, [*tip, plain[0]], axis=0)
+    c, s = np.cos(turn), np.sin(turn)
+    rotation = np.array([[c, s], [-s, c]])
+    wanted = gridmesh.mesh_sketch(plain @ rotation, triangles=400)
+    for first in (0, 1, 2, 57):
+        for way in (1, -1):
+            made = gridmesh.mesh_sketch(np.roll(spiked @ rotation, first, axis=0)[::way], triangles=400)
+            assert bytes_of(made)[: wanted.vertices.nbytes] == wanted.vertices.tobytes()
+            assert made.report["repaired"] == len(spiked) - len(plain)

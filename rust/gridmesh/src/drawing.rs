@@ -4,6 +4,7 @@ pub mod combine;
 mod compact;
 pub mod contours;
 pub mod curve;
+mod spikes;
 pub(crate) mod symmetry;
 pub mod thickness;
 pub(crate) mod union;
