@@ -1054,7 +1054,8 @@ _LIBRARY_PARTS = {
     "a number from 0 to 10": "eine Zahl von 0 bis 10",
     "a number of square pixels, 0 or more": "eine Anzahl von Quadratpixeln, 0 oder mehr",
     "a number of pixels from 0 to 1000": "eine Anzahl von Pixeln von 0 bis 1000",
-    "no margin was tried": "kein Rand wurde versucht",
+    "no caps were made": "keine Deckel wurden gemacht",
+    "point {}, normal {}, distance {}": "Punkt {0}, Normale {1}, Abstand {2}",
     "the picture is {} by {} pixels; allowed: 1 to {} pixels in all, scale it": (
         "das Bild hat {0} mal {1} Pixel; erlaubt: insgesamt 1 bis {2} Pixel, das Bild verkleinern"
     ),
