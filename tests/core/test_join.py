@@ -349,18 +349,22 @@ def test_arms_side_by_side_whose_collars_would_touch():
 
 @pytest.mark.parametrize("blend", [1.0, 2.0, 5.0])
 def test_a_blend_wider_than_a_part_leaves_the_part(blend):
-    """It becomes narrower, and where even that is too wide, the line stays as a crease, with even triangles."""
+    """It becomes narrower, and where even that is too wide, the line stays as a crease, with even triangles.
+
+    One end of a bar in a ball of few faces is left with a crease or without, as its blend may change the volume by more than 3 % or not.
+    """
     turn = joins.rotation(np.array([1.0, 2, 3]), 0.7).T
     vertices, triangles = torus(n=6, m=4)
     bar_vertices, quads = bar((0.6, 0.6, 3), cells=(1, 1, 1))
     for parts, creased in (
-        (((vertices, triangles), (vertices @ turn + [0.9, 0.3, 0.1], triangles)), 1),
-        ((bar((1, 1, 4), cells=(1, 1, 4)), (bar_vertices @ turn, quads)), 1),
-        ((ball(edge=0.3), (bar_vertices @ turn + [0.3, 0, 0.4], quads)), 0),
+        (((vertices, triangles), (vertices @ turn + [0.9, 0.3, 0.1], triangles)), {1}),
+        ((bar((1, 1, 4), cells=(1, 1, 4)), (bar_vertices @ turn, quads)), {1}),
+        ((ball(edge=0.3), (bar_vertices @ turn + [0.3, 0, 0.4], quads)), {0, 1}),
     ):
         report = joined(*parts, blend=blend).report
-        assert abs(report["volume"] / report["exact_volume"] - 1) < 0.06
-        assert (report["creased"], report["exact"], report["self_intersections"]) == (creased, 0, 0)
+        assert abs(report["volume"] / report["exact_volume"] - 1) <= (0.06 if blend > 2 else 0.03)
+        assert report["creased"] in creased
+        assert (report["exact"], report["self_intersections"]) == (0, 0)
 
 
 @pytest.mark.parametrize("at", [(4.5, 0, 0), (0, 0, 0.3)])
