@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the header of a PLY says of it. No bpy."""
+"""What a PLY has to hold by its header, and what of it is damaged. No bpy."""
 
 from __future__ import annotations
 
 import re
 import struct
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,6 @@ _NUMPY = {
     **{"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4"},
     **{"float": "f4", "double": "f8", "float32": "f4", "float64": "f8"},
 }
-_STRUCT = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "f4": "f", "f8": "d"}
 _ASCII = re.compile(rb"^format ascii\s", re.MULTILINE)
 _END = re.compile(rb"^end_header\r?\n", re.MULTILINE)
 _ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
@@ -25,32 +25,60 @@ def is_ascii(data) -> bool:
     return end is not None and _ASCII.search(data[: end.start()]) is not None
 
 
-def binary_size(data) -> int | None:
-    """Size that a binary PLY must have; more than it has if it is cut off; None if its header does not say.
+class _Property(NamedTuple):
+    name: str
+    kinds: list[np.dtype]
+    """The type of it, or of a list that of its length and that of its items."""
 
-    data : the whole file, as bytes or a memory map.
-    """
+
+class _Element(NamedTuple):
+    name: str
+    count: int
+    properties: list[_Property]
+
+
+class _Header(NamedTuple):
+    end: int
+    order: str
+    """Of the bytes of numbers; empty in a text."""
+    elements: list[_Element]
+
+
+def _header(data) -> _Header | None:
+    """Read the header; None if there is none, or if it is not understood."""
     end = _END.search(data)
     if end is None:
         return None
     lines = [line.split() for line in data[: end.start()].decode("ascii", "replace").splitlines()]
     order = next((_ORDERS.get(words[1]) for words in lines if words[:1] == ["format"] and words[1:]), None)
-    elements: list[tuple[int, list[list[np.dtype]]]] = []
+    elements: list[_Element] = []
     for words in lines:
         if words[:1] == ["property"] and elements:
             kinds = words[2:4] if words[1:2] == ["list"] else words[1:2]
             if any(kind not in _NUMPY for kind in kinds):
                 return None
-            elements[-1][1].append([np.dtype((order or "<") + _NUMPY[kind]) for kind in kinds])
+            types = [np.dtype((order or "<") + _NUMPY[kind]) for kind in kinds]
+            elements[-1].properties.append(_Property(words[-1], types))
         elif words[:1] == ["element"]:
             if len(words) != 3 or not words[2].isascii() or not words[2].isdigit():
                 return None
-            elements.append((int(words[2]), []))
-    if order is None:
+            elements.append(_Element(words[1], int(words[2]), []))
+    if order is None and not is_ascii(data):
         return None
-    at = end.end()
-    for count, properties in elements:
-        at = _after(data, at, count, properties)
+    return _Header(end.end(), order or "", elements)
+
+
+def binary_size(data) -> int | None:
+    """Size that a binary PLY must have; more than it has if it is cut off; None if its header does not say.
+
+    data : the whole file, as bytes or a memory map.
+    """
+    header = _header(data)
+    if header is None or not header.order:
+        return None
+    at = header.end
+    for element in header.elements:
+        at = _after(data, at, element.count, [own.kinds for own in element.properties])
         if at > len(data):
             break
     return at
@@ -99,70 +127,55 @@ def fault(data) -> str | None:
 
     data : the whole file, as bytes or a memory map; not cut off.
     """
-    end = _END.search(data)
-    if end is None:
-        return None
-    elements: list[tuple[str, int, list[list[str]]]] = []
-    for line in data[: end.start()].decode("ascii", "replace").splitlines():
-        words = line.split()
-        if words[:1] == ["element"]:
-            if len(words) != 3 or not words[2].isascii() or not words[2].isdigit():
-                return None
-            elements.append((words[1], int(words[2]), []))
-        elif words[:1] == ["property"] and elements:
-            elements[-1][2].append(words[1:])
-    counts = [count for name, count, _ in elements if name == "vertex"]
+    header = _header(data)
+    counts = [element.count for element in header.elements if element.name == "vertex"] if header else []
     if len(counts) != 1:
         return None
-    is_text = _ASCII.search(data[: end.start()]) is not None
-    order = ">" if re.search(rb"^format binary_big", data[: end.start()], re.MULTILINE) else "<"
     try:
-        rows = _words(data, end.end()) if is_text else None
-        at = end.end()
-        for name, count, properties in elements:
+        at, lines = header.end, _words(data, header.end)
+        for element in header.elements:
             first = 0
-            if rows is None:
-                first, at, bad = _checked(data, at, (name, count, properties), order, counts[0])
+            if header.order:
+                first, at, bad = _checked(data, at, element, counts[0])
                 if bad:
                     return bad
-            for row in range(first, count):
-                if rows is None:
-                    values, at = _row(data, at, properties, order)
+            for row in range(first, element.count):
+                if header.order:
+                    values, at = _row(data, at, element.properties)
                 else:
-                    values = _text_row(next(rows), properties)
-                if name == "vertex" and not np.isfinite([values.get(axis, 0.0) for axis in "xyz"]).all():
+                    values = _text_row(next(lines), element.properties)
+                if (
+                    element.name == "vertex"
+                    and not np.isfinite([values.get(axis, 0.0) for axis in "xyz"]).all()
+                ):
                     return f"vertex {row} is not at a finite place"
-                if name == "face":
-                    corners = values.get("vertex_indices", values.get("vertex_index", ()))
-                    for corner in corners:
+                if element.name == "face":
+                    for corner in values.get("vertex_indices", values.get("vertex_index", ())):
                         if not 0 <= corner < counts[0]:
                             return f"face {row} refers to vertex {int(corner)} of {counts[0]}"
-    except (ValueError, IndexError, KeyError, StopIteration, struct.error):
-        return None
+    except (ValueError, IndexError, StopIteration, struct.error):
+        return None  # the importer says what it makes of that
     return None
 
 
-def _checked(data, at: int, element, order: str, vertices: int) -> tuple[int, int, str | None]:
+def _checked(data, at: int, element: _Element, vertices: int) -> tuple[int, int, str | None]:
     """The first rows of a binary element in one step, if they are alike: how many, where they end, and what is wrong."""
     name, count, properties = element
-    if all(kinds[0] != "list" for kinds in properties):
-        row = np.dtype([(kinds[1], order + _NUMPY[kinds[0]]) for kinds in properties])
+    if all(len(own.kinds) == 1 for own in properties):
+        row = np.dtype([(own.name, own.kinds[0]) for own in properties])
         if at + count * row.itemsize > len(data):
             return 0, at, None
         rows = np.frombuffer(data, row, count, at)
         axes = [rows[axis] for axis in "xyz" if axis in row.names] if name == "vertex" else []
         bad = [int(np.flatnonzero(~np.isfinite(axis))[0]) for axis in axes if not np.isfinite(axis).all()]
-        return (
-            count,
-            at + count * row.itemsize,
-            f"vertex {min(bad)} is not at a finite place" if bad else None,
-        )
+        said = f"vertex {min(bad)} is not at a finite place" if bad else None
+        return count, at + count * row.itemsize, said
     if len(properties) != 1 or not count:
         return 0, at, None
-    length, item = (np.dtype(order + _NUMPY[kind]) for kind in properties[0][1:3])
+    length, item = properties[0].kinds
     end, left = _equal_lists(data, at, count, length, item)
     whole = count - left
-    if name == "face" and whole and properties[0][3] in ("vertex_indices", "vertex_index"):
+    if name == "face" and whole and properties[0].name in ("vertex_indices", "vertex_index"):
         size = int(np.frombuffer(data, length, 1, at)[0])
         rows = np.frombuffer(data, np.uint8, end - at, at).reshape(whole, -1)[:, length.itemsize :]
         corners = np.ascontiguousarray(rows).view(item).reshape(whole, max(size, 0))
@@ -183,28 +196,29 @@ def _words(data, at: int):
         at = end + 1
 
 
-def _text_row(words: list[bytes], properties: list[list[str]]) -> dict:
+def _text_row(words: list[bytes], properties: list[_Property]) -> dict:
     values, k = {}, 0
-    for kinds in properties:
-        if kinds[0] == "list":
+    for name, kinds in properties:
+        if len(kinds) == 2:
             length = int(words[k])
-            values[kinds[3]] = [float(word) for word in words[k + 1 : k + 1 + length]]
+            values[name] = [float(word) for word in words[k + 1 : k + 1 + length]]
             k += 1 + length
         else:
-            values[kinds[1]] = float(words[k])
+            values[name] = float(words[k])
             k += 1
     return values
 
 
-def _row(data, at: int, properties: list[list[str]], order: str) -> tuple[dict, int]:
+def _row(data, at: int, properties: list[_Property]) -> tuple[dict, int]:
+    def read(kind: np.dtype, count: int) -> tuple:
+        nonlocal at
+        order = ">" if kind.str[0] == ">" else "<"
+        found = struct.unpack_from(f"{order}{count}{kind.char}", data, at)
+        at += count * kind.itemsize
+        return found
+
     values = {}
-    for kinds in properties:
-        if kinds[0] == "list":
-            (length,) = struct.unpack_from(order + _STRUCT[_NUMPY[kinds[1]]], data, at)
-            at += np.dtype(_NUMPY[kinds[1]]).itemsize
-            values[kinds[3]] = struct.unpack_from(f"{order}{length}{_STRUCT[_NUMPY[kinds[2]]]}", data, at)
-            at += length * np.dtype(_NUMPY[kinds[2]]).itemsize
-        else:
-            (values[kinds[1]],) = struct.unpack_from(order + _STRUCT[_NUMPY[kinds[0]]], data, at)
-            at += np.dtype(_NUMPY[kinds[0]]).itemsize
+    for name, kinds in properties:
+        (value,) = read(kinds[0], 1)
+        values[name] = read(kinds[1], value) if len(kinds) == 2 else value
     return values, at

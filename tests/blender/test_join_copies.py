@@ -4,22 +4,12 @@ import bpy
 import numpy as np
 import pytest
 from drawings import circle, vertices, world_vertices
-from test_join_following import redraw, settle, snowman, top
+from test_join_following import copy_of, redraw, settle, snowman, top
 
 from addon.join import following
 
 __all__ = ["snowman"]
 pytestmark = pytest.mark.usefixtures("awake")
-
-
-def copy_of(whole):
-    copy = whole.copy()
-    copy.data = whole.data.copy()
-    bpy.context.scene.collection.objects.link(copy)
-    copy.location.x += 5.0
-    bpy.context.view_layer.update()
-    assert settle() == 0
-    return copy
 
 
 def delete(ob, how="operator"):

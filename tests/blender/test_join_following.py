@@ -29,6 +29,17 @@ def settle():
     return following.refresh()
 
 
+def copy_of(whole):
+    """A copy beside it, which follows the same parts."""
+    copy = whole.copy()
+    copy.data = whole.data.copy()
+    bpy.context.scene.collection.objects.link(copy)
+    copy.location.x += 5.0
+    bpy.context.view_layer.update()
+    assert settle() == 0
+    return copy
+
+
 def top(ob):
     return max(point[1] for face in faces_in_world(ob) for point in face)
 
@@ -118,12 +129,7 @@ def test_a_moved_part_is_joined_where_it_is(snowman):
 
 def test_a_copy_follows_in_its_own_place(snowman):
     drawing, whole, _ = snowman
-    copy = whole.copy()
-    copy.data = whole.data.copy()
-    bpy.context.scene.collection.objects.link(copy)
-    copy.location.x += 5.0
-    bpy.context.view_layer.update()
-    assert settle() == 0
+    copy = copy_of(whole)
     redraw(drawing, "Head", circle(radius=0.8, centre=(0.0, 1.2)))
     assert settle() == 2
     assert np.allclose(vertices(copy.data), vertices(whole.data), atol=1e-5)

@@ -6,7 +6,7 @@ import pytest
 from drawings import circle, vertices, world_vertices
 from mathutils import Matrix
 from test_join import ball, join
-from test_join_following import redraw, settle, snowman
+from test_join_following import copy_of, redraw, settle, snowman
 
 from addon.join import characters, following
 
@@ -139,12 +139,7 @@ def test_saved_after_a_transform_was_applied_it_goes_on(snowman, tmp_path):
 def test_a_copy_stays_where_it_is_when_transforms_of_one_of_both_are_applied(snowman, which):
     _, whole, _ = snowman
     placed(whole)
-    copy = whole.copy()
-    copy.data = whole.data.copy()
-    bpy.context.scene.collection.objects.link(copy)
-    copy.location.x += 5.0
-    bpy.context.view_layer.update()
-    assert settle() == 0
+    copy = copy_of(whole)
     before = world_vertices(whole), world_vertices(copy)
     apply(whole if which == "whole" else copy)
     assert settle() == 0
