@@ -85,12 +85,12 @@ pub(crate) struct Corner {
     pub lengthening: DVec3,
     /// Its second derivative, times the identity.
     pub curvature: f64,
-    /// Twice the area. A folded corner is seen in the tangent plane, where it has to unfold; its area counts as small.
-    pub area: f64,
+    /// One over twice the area. A folded corner is seen in the tangent plane, where it has to unfold; its area counts as small.
+    pub inverse: f64,
     /// Gradient of the area.
     pub widening: DVec3,
-    /// `sides / area` of the ideal.
-    best: f64,
+    /// `area / sides` of the ideal.
+    share: f64,
 }
 
 impl Corner {
@@ -109,7 +109,7 @@ impl Corner {
             Ideal::Last => (-2.0 * b, 2.0),
         };
         let mut area = cross.length();
-        let mut facing = cross / area;
+        let mut facing = cross * (1.0 / area);
         if cross.dot(normal) <= 0.0 {
             facing = normal;
             area = cross.dot(normal);
@@ -118,16 +118,16 @@ impl Corner {
             sides,
             lengthening,
             curvature,
-            area: area.max(THINNEST * sides),
+            inverse: 1.0 / area.max(THINNEST * sides),
             widening: (a - b).cross(facing),
-            best: ideal.best(),
+            share: 1.0 / ideal.best(),
         }
     }
 
     /// Squared sides over area, against the ideal's: one at best.
     #[inline]
     pub fn badness(&self) -> f64 {
-        self.sides / self.area / self.best
+        self.sides * self.inverse * self.share
     }
 
     /// A positive definite model of `weight * sides / area` in the plane of two axes.
@@ -135,8 +135,9 @@ impl Corner {
     pub fn model(&self, weight: f64, [e, f]: [DVec3; 2]) -> Quadratic {
         let in_plane = |v: DVec3| DVec2::new(v.dot(e), v.dot(f));
         let (ds, da) = (in_plane(self.lengthening), in_plane(self.widening));
-        let (ratio, k) = (self.sides / self.area, weight / self.area);
-        let (m, n) = (1.0 / self.area, 2.0 * self.sides / (self.area * self.area));
+        let m = self.inverse;
+        let (ratio, k) = (self.sides * m, weight * m);
+        let n = 2.0 * ratio * m;
         Quadratic {
             gradient: k * (ds - da * ratio),
             xx: k * (self.curvature - 2.0 * m * ds.x * da.x + n * da.x * da.x),
@@ -158,7 +159,7 @@ mod tests {
         let axes = [DVec3::X, DVec3::Y];
         for ideal in IDEALS {
             let at = |x: DVec2| Corner::new(ideal, i - x.extend(0.0), j - x.extend(0.0), DVec3::Z);
-            let ratio = |x: DVec2| at(x).badness() * at(x).best;
+            let ratio = |x: DVec2| at(x).badness() * ideal.best();
             let x = DVec2::new(0.1, -0.05);
             let model = at(x).model(1.0, axes);
             let h = 1e-4;

@@ -70,7 +70,7 @@ pub(crate) fn sweep(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>
                 corner.sides += flatter * height * height;
                 corner.lengthening -= 2.0 * flatter * height * m;
                 let m = DVec2::new(m.dot(e), m.dot(f));
-                let k = 2.0 * flatter / corner.area;
+                let k = 2.0 * flatter * corner.inverse;
                 flat = Quadratic { xx: k * m.x * m.x, xy: k * m.x * m.y, yy: k * m.y * m.y, ..flat };
             }
             let weight = corner.badness().powi(power);

@@ -14,12 +14,21 @@ struct Rail {
     /// Ascending, over one round.
     around: Vec<f64>,
     points: Vec<DVec3>,
-    /// Derivatives along the curve.
-    along: Vec<DVec3>,
-    /// Derivatives across it, from the lower loop to the upper one.
-    across: Vec<DVec3>,
     /// For each of as many equal parts of a round the last vertex before it.
     index: Vec<u32>,
+    /// From each vertex to the next.
+    spans: Vec<Cubic>,
+}
+
+/// The curve between two vertices, by powers of the share of the way.
+#[derive(Clone, Copy, Debug)]
+struct Cubic {
+    powers: [DVec3; 4],
+    /// The derivative across where it begins, and how that changes along.
+    across: DVec3,
+    turn: DVec3,
+    width: f64,
+    inverse: f64,
 }
 
 /// Point and derivatives.
@@ -31,6 +40,7 @@ pub(super) struct Spot {
 }
 
 impl Rail {
+    /// `across`: derivatives across the curve at its vertices, from the lower loop to the upper one.
     fn new(around: Vec<f64>, points: Vec<DVec3>, across: Vec<DVec3>) -> Rail {
         let n = points.len();
         let width =
@@ -42,17 +52,30 @@ impl Rail {
             let (a, b) = (width(before), width(k));
             (slope(before) * b + slope(k) * a) / (a + b).max(1e-12)
         };
-        let along = (0..n).map(along).collect();
+        let along = (0..n).map(along).collect::<Vec<_>>();
+        let span = |a: usize| {
+            let (b, width) = ((a + 1) % n, width(a).max(1e-12));
+            let (p, q) = (points[a], points[b]);
+            let (u, v) = (along[a] * width, along[b] * width);
+            Cubic {
+                powers: [p, u, 3.0 * (q - p) - 2.0 * u - v, 2.0 * (p - q) + u + v],
+                across: across[a],
+                turn: (across[b] - across[a]) / width,
+                width,
+                inverse: 1.0 / width,
+            }
+        };
+        let spans = (0..n).map(span).collect();
         let index = |part: usize| {
             let at = around[0] + part as f64 / n as f64;
             (around.partition_point(|&x| x <= at) - 1) as u32
         };
         let index = (0..n).map(index).collect();
-        Rail { points, along, across, index, around }
+        Rail { points, index, around, spans }
     }
 
-    /// The place between two vertices.
-    fn segment(&self, around: f64) -> (usize, usize, f64, f64) {
+    /// The vertex before a place, and the share of the way to the next.
+    fn segment(&self, around: f64) -> (usize, f64) {
         let n = self.points.len();
         let start = self.around[0];
         let within = around - (around - start).floor();
@@ -61,22 +84,16 @@ impl Rail {
         while k + 1 < n && self.around[k + 1] <= within {
             k += 1;
         }
-        let end = if k + 1 < n { self.around[k + 1] } else { start + 1.0 };
-        let width = (end - self.around[k]).max(1e-12);
-        (k, (k + 1) % n, width, ((within - self.around[k]) / width).clamp(0.0, 1.0))
+        (k, ((within - self.around[k]) * self.spans[k].inverse).clamp(0.0, 1.0))
     }
 
     /// The point, the derivative along, the one across, and how that changes along.
     fn at(&self, around: f64) -> [DVec3; 4] {
-        let (a, b, width, t) = self.segment(around);
-        let (p, q) = (self.points[a], self.points[b]);
-        let (u, v) = (self.along[a] * width, self.along[b] * width);
-        let c = 3.0 * (q - p) - 2.0 * u - v;
-        let d = 2.0 * (p - q) + u + v;
+        let (k, t) = self.segment(around);
+        let Cubic { powers: [p, u, c, d], across, turn, width, inverse } = self.spans[k];
         let point = p + t * (u + t * (c + t * d));
-        let along = (u + t * (2.0 * c + t * (3.0 * d))) / width;
-        let turn = (self.across[b] - self.across[a]) / width;
-        [point, along, self.across[a] + t * width * turn, turn]
+        let along = (u + t * (2.0 * c + t * (3.0 * d))) * inverse;
+        [point, along, across + t * width * turn, turn]
     }
 }
 
@@ -116,9 +133,13 @@ impl Loft {
             };
             (0..own.around.len()).map(slope).collect::<Vec<_>>()
         };
-        let below = slopes(lower, upper, &b, 1.0);
-        let above = slopes(upper, lower, &a, -1.0);
-        Loft { lower: Rail { across: below, ..a }, upper: Rail { across: above, ..b }, pull }
+        let lower_slopes = slopes(lower, upper, &b, 1.0);
+        let upper_slopes = slopes(upper, lower, &a, -1.0);
+        Loft {
+            lower: Rail::new(a.around, a.points, lower_slopes),
+            upper: Rail::new(b.around, b.points, upper_slopes),
+            pull,
+        }
     }
 
     pub fn at(&self, around: f64, height: f64) -> Spot {
@@ -168,8 +189,8 @@ pub(super) fn onward(points: &[DVec3], apexes: &[Option<DVec3>]) -> Vec<DVec3> {
 /// The point of a loop at a place around the axis, and where its surface goes on there.
 fn straight_onward(edge: &Edge<'_>, rail: &Rail) -> impl Fn(f64) -> (DVec3, DVec3) {
     move |around: f64| {
-        let (a, b, _, t) = rail.segment(around);
-        let onward = edge.onward[a].lerp(edge.onward[b], t).normalize_or_zero();
+        let (k, t) = rail.segment(around);
+        let onward = edge.onward[k].lerp(edge.onward[(k + 1) % edge.onward.len()], t).normalize_or_zero();
         (rail.at(around)[0], onward)
     }
 }

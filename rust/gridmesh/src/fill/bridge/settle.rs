@@ -15,11 +15,19 @@ const HALVINGS: usize = 4;
 /// Sweeps at most.
 const SWEEPS: usize = 10;
 
-/// A vertex that gains less than this share of a good corner rests until one beside it gains more.
-const RESTS: f64 = 0.04;
+/// Steps are this many times those to the minimum for fixed neighbours: the neighbours follow.
+const BEYOND: f64 = 1.3;
+
+/// A vertex that gains less than this share of a good corner rests until one beside it gains more; one that is expected to
+/// gain less than half of it stays where it is.
+const RESTS: f64 = 0.08;
 
 /// The badness of a corner counts to this power, and one: the worst ones most.
 const POWER: i32 = 6;
+
+/// What a step gains of the sum over corners of badness to the power `POWER + 1`, for each unit that the model falls by: the
+/// model holds all but one factor fixed and leaves out the ideal's sides over its area.
+const GAINED: f64 = (POWER + 1) as f64 / 3.464;
 
 /// Moves the vertices between the loops. `flat`: where all vertices are on the loft; those of the loops stay. `spots`: what the
 /// loft is there, for those between.
@@ -103,7 +111,10 @@ impl Mover<'_> {
             return 0.0;
         }
         let Some(step) = model.minimum() else { return 0.0 };
-        let mut step = step.clamp_length_max(near.sqrt());
+        if -0.5 * model.gradient.dot(step) * GAINED < 0.5 * RESTS {
+            return 0.0;
+        }
+        let mut step = (BEYOND * step).clamp_length_max(near.sqrt());
         for _ in 0..HALVINGS {
             let height = step.y / q.y;
             let there = *flat + DVec2::new((step.x - height * q.x) / p, height);

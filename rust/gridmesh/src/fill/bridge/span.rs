@@ -46,7 +46,8 @@ struct Attempt {
     shape: Shape,
     lattice: bool,
     rows: f64,
-    min_angle: f64,
+    /// The least corner and the greatest one.
+    angles: [f64; 2],
     folds: usize,
 }
 
@@ -123,11 +124,11 @@ impl<'a> Span<'a> {
                 best = other;
             }
         }
-        if self.options.cells == CellShape::Triangle && best.lattice && best.min_angle < THIN {
+        if self.options.cells == CellShape::Triangle && best.lattice && best.angles[0] < THIN {
             let other = chooser.stacked();
             if apart(&other) {
                 let other = self.placed(&banks, &loft, &other, progress.part(0.9, 1.0))?;
-                if other.min_angle > 1.5 * best.min_angle {
+                if other.angles[0] > 1.5 * best.angles[0] {
                     best = other;
                 }
             }
@@ -257,13 +258,13 @@ impl<'a> Span<'a> {
         if shape.positions.iter().any(|p| !p.is_finite()) {
             return Err(Error::Solver { stage: "bridge", reason: "a vertex is not finite".into() });
         }
-        let [least, _] = shape.work.corner_range(&shape.positions);
+        let angles = shape.work.corner_range(&shape.positions);
         let folds = folds(&shape.work, &shape.positions);
-        Ok(Attempt { shape, lattice: chosen.lattice, rows: tube.rows, min_angle: least, folds })
+        Ok(Attempt { shape, lattice: chosen.lattice, rows: tube.rows, angles, folds })
     }
 
     fn finish(&self, attempt: Attempt, clock: Clock) -> Fill {
-        let Attempt { shape, lattice, rows, min_angle, folds } = attempt;
+        let Attempt { shape, lattice, rows, angles: [min_angle, max_angle], folds } = attempt;
         let work = &shape.work;
         let loops = self.loops.iter().map(|l| l.vertices.as_slice());
         let [irregular, irregular_loop] = work.irregular(loops, self.rim, &self.options.polygons);
@@ -282,7 +283,7 @@ impl<'a> Span<'a> {
             winding_conflicts: self.conflicts,
             wire_edges: self.loops.iter().map(|l| l.wire).sum(),
             min_angle,
-            max_angle: work.corner_range(&shape.positions)[1],
+            max_angle,
             folds,
             self_intersections: 0,
             creases: 0,

@@ -40,12 +40,12 @@ pub(crate) fn is_around(positions: &[DVec3], first: usize, n: usize, triangles: 
     if sign == 0.0 || once(two) != -sign {
         return false;
     }
+    let away = positions.iter().map(|&p| (out(p), out(p).length())).collect::<Vec<_>>();
     let facing = |t: &[u32; 3]| {
         let [p, q, r] = t.map(|v| positions[v as usize]);
         let normal = (q - p).cross(r - p);
-        let side = |p: DVec3| normal.dot(out(p)) * sign;
         let least = CLEAR * normal.length();
-        [p, q, r].into_iter().all(|p| side(p) > least * out(p).length())
+        t.iter().map(|&v| away[v as usize]).all(|(out, length)| normal.dot(out) * sign > least * length)
     };
     let outward = |t: &[u32; 3]| facing(t);
     let inward = |t: &[u32; 3]| facing(&[t[0], t[2], t[1]]);

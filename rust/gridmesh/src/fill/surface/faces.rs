@@ -206,13 +206,26 @@ impl Patchwork {
     /// concave, seen along its normal. Zero twice if there is none.
     pub fn corner_range(&self, positions: &[DVec3]) -> [f64; 2] {
         let at = |v: u32| positions[v as usize];
-        let mut range = [f64::INFINITY, 0.0];
+        // Of corners that are less than straight the squared cosine with its sign tells which is greater.
+        let mut found: [Option<(f64, f64)>; 2] = [None; 2];
+        let mut extremes = [f64::NEG_INFINITY, f64::INFINITY];
+        let mut reflex: f64 = 0.0;
         let mut corner = |before: DVec3, here: DVec3, after: DVec3, normal: DVec3| {
             let (back, ahead) = (before - here, after - here);
             let cross = ahead.cross(back);
-            let angle = libm::atan2(cross.length(), ahead.dot(back));
-            let angle = if cross.dot(normal) < 0.0 { std::f64::consts::TAU - angle } else { angle };
-            range = [angle.min(range[0]), angle.max(range[1])];
+            let (squared, dot) = (cross.length_squared(), ahead.dot(back));
+            if cross.dot(normal) < 0.0 {
+                reflex = reflex.max(std::f64::consts::TAU - libm::atan2(squared.sqrt(), dot));
+                return;
+            }
+            let whole = dot * dot + squared;
+            let cosine = if whole > 0.0 { dot * dot.abs() / whole } else { 1.0 };
+            if cosine > extremes[0] {
+                (extremes[0], found[0]) = (cosine, Some((squared, dot)));
+            }
+            if cosine < extremes[1] {
+                (extremes[1], found[1]) = (cosine, Some((squared, dot)));
+            }
         };
         for quad in self.quads() {
             let p = quad.map(at);
@@ -223,7 +236,12 @@ impl Patchwork {
             let p = triangle.map(at);
             (0..3).for_each(|k| corner(p[(k + 2) % 3], p[k], p[(k + 1) % 3], DVec3::ZERO));
         }
-        if range[0].is_finite() { range } else { [0.0; 2] }
+        let angles = found.map(|corner| corner.map(|(squared, dot)| libm::atan2(squared.sqrt(), dot)));
+        match angles {
+            [Some(least), Some(greatest)] => [least, greatest.max(reflex)],
+            // Never with faces: a quad has three corners that are no reflex ones.
+            _ => [reflex; 2],
+        }
     }
 }
 

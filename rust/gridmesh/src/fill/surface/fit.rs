@@ -396,10 +396,11 @@ fn across_seams(work: &Patchwork, positions: &[DVec3]) -> Vec<(f64, f64)> {
 /// Inner edges of a patch whose triangles are more than 120 degrees apart.
 pub(in crate::fill) fn folds(work: &Patchwork, positions: &[DVec3]) -> usize {
     const NONE: u32 = u32::MAX;
-    let normal = |t: usize| {
-        let [a, b, c] = work.triangles[t].map(|v| positions[v as usize]);
+    let normal = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| positions[v as usize]);
         (b - a).cross(c - a).normalize_or_zero()
     };
+    let normals = work.triangles[..work.n_patch].iter().map(normal).collect::<Vec<_>>();
     // The first triangle at each edge.
     let mut first = vec![NONE; work.near.len()];
     let mut count = 0;
@@ -409,7 +410,7 @@ pub(in crate::fill) fn folds(work: &Patchwork, positions: &[DVec3]) -> usize {
             if *other == NONE {
                 *other = t as u32;
             } else {
-                count += usize::from(normal(t).dot(normal(*other as usize)) < -0.5);
+                count += usize::from(normals[t].dot(normals[*other as usize]) < -0.5);
             }
         }
     }
