@@ -153,13 +153,17 @@ def test_the_border_between_parts_runs_along_the_line_without_teeth(at, blend):
     parts = ball(), ball(at, 0.5, edge=0.1)
     made = joined(*parts, blend=blend, border=True)
     plain = joined(*parts, blend=blend)
-    assert np.array_equal(made.triangles, plain.triangles)
-    assert np.array_equal(made.near_part[made.source_part >= 0], made.source_part[made.source_part >= 0])
+    old, before = made.source_part >= 0, plain.source_part >= 0
+    assert np.array_equal(made.source_part[old], plain.source_part[before])
+    assert np.array_equal(made.source_face[old], plain.source_face[before])
+    assert np.array_equal(made.near_part[old], made.source_part[old])
     assert set(made.near_part) == {0, 1}
     assert set(plain.near_part) == {-1, 0, 1}
-    moved = np.linalg.norm(made.vertices - plain.vertices, axis=1)
-    assert moved[made.vertex_part >= 0].max() == 0
-    assert moved.max() < 0.12
+    old, before = made.vertex_part >= 0, plain.vertex_part >= 0
+    assert np.array_equal(made.vertices[old], plain.vertices[before])
+    # Edges are 0.1 long, and the line may get vertices of its own.
+    off = made.vertices[~old][:, None] - plain.vertices[None]
+    assert np.linalg.norm(off, axis=2).min(axis=1).max() < 0.15
     assert least_angle(made.vertices[made.triangles[made.source_part[: len(made.triangles)] < 0]]) > 15
     line, turns = border_of(made)
     assert turns.max() < 40

@@ -20,7 +20,7 @@ const BEYOND: f64 = 1.3;
 
 /// A vertex that gains less than this share of a good corner rests until one beside it gains more; one that is expected to
 /// gain less than half of it stays where it is.
-const RESTS: f64 = 0.08;
+const RESTS: f64 = 0.05;
 
 /// The badness of a corner counts to this power, and one: the worst ones most.
 const POWER: i32 = 6;
