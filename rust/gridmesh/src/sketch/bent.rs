@@ -163,7 +163,8 @@ impl Job<'_> {
         Ok(bends)
     }
 
-    /// The next paths: until one is expected to be better than the next bend, and no corner of the drawing is lost.
+    /// The next paths: until one is expected to be better than the next bend, and no corner of the drawing is lost. After a
+    /// bend that has none, which those that follow seldom have either, all that are left, side by side.
     fn next_traced(
         &self,
         bends: &mut Peekable<impl Iterator<Item = (Bent, f64)>>,
@@ -172,7 +173,10 @@ impl Job<'_> {
     ) -> Result<Vec<Traced>> {
         let mut all = Vec::new();
         while let Some((bent, _)) = bends.next() {
-            let Some(traced) = self.bent_outline(asked, bent, progress.part(0.1, 0.3))? else { continue };
+            let Some(traced) = self.bent_outline(asked, bent, progress.part(0.1, 0.3))? else {
+                all.extend(self.all_traced(bends.collect(), asked, progress)?);
+                break;
+            };
             let next = bends.peek().map_or(f64::INFINITY, |next| next.1);
             let is_enough = expected(&traced) <= next && !self.loses_corners(&traced);
             all.push(traced);

@@ -21,7 +21,7 @@ const STATES: f64 = 10.0;
 /// States that one search may take, and more for each triangle: where a drawing has no mesh most are spent to find out, and a
 /// larger number is found sooner than it is shown that a smaller one fails. A number that is said to work does so with
 /// more effort too. And beyond what the search took that worked, where a smaller number is looked for after it.
-const MOST: u64 = 400_000;
+const MOST: u64 = 200_000;
 const MOST_EACH: u64 = 200;
 
 /// Sizes are tried in steps of this factor.
@@ -48,10 +48,11 @@ impl Job<'_> {
         let last = most_symmetric.map_or(limit, |most| steps(most - 1.0).min(limit));
         let mut work = WORK + 4.0 * asked;
         let mut fails = self.last_hopeless(last, at);
-        let (mut works, first, mut most) = (None, fails, 0);
+        let (mut works, first, mut taken) = (None, fails, 0);
+        let effort = |cells: usize| MOST + MOST_EACH * cells as u64;
         while works.is_none() && fails < last {
             // Small steps first, for drawings that nearly fit; larger ones after them.
-            let step = (fails + 1 + (fails - first) / 2).min(last);
+            let step = (fails + 2 + (fails - first) / 2).min(last);
             let ahead = at(step) as f64 + EDGE * self.boundary_edges(at(step));
             if work < ahead {
                 return Ok(Error::TooCoarse {
@@ -60,11 +61,11 @@ impl Job<'_> {
                     needed: Needed::MoreThan(at(fails)),
                 });
             }
-            let (does, states) = self.works(at(step), MOST + MOST_EACH * at(step) as u64, progress)?;
+            let (does, states) = self.works(at(step), effort(at(step)), progress)?;
             work -= (states as f64 / STATES).max(ahead);
             if does {
                 works = Some(step);
-                most = states + MOST;
+                taken = states;
             } else {
                 fails = step;
             }
@@ -77,7 +78,7 @@ impl Job<'_> {
         };
         while works - fails > 1 && work > 0.0 {
             let step = (works + fails) / 2;
-            let (does, states) = self.works(at(step), most, progress)?;
+            let (does, states) = self.works(at(step), taken + effort(at(step)), progress)?;
             work -= states as f64 / STATES;
             if does {
                 works = step;
