@@ -28,7 +28,7 @@ CUT_OFF_ACROSS = 0.14
 EMPTY = 0.03
 """This share of a mesh may be empty, what lies in the margin included; where it would be more, pictures are meshed finer."""
 
-EMPTY_AT_LEAST = 0.01
+EMPTY_AT_LEAST = 0.007
 """So much larger than their outlines meshes may be whatever lies in the margin."""
 
 SOFT = 0.5

@@ -11,6 +11,7 @@ from sketches import DRAWINGS
 
 from addon.pictures import cutouts
 from addon.pictures.cutouts import Options, cut_out
+from addon.pictures.sizes import area
 
 NAMES = sorted(DRAWINGS)[::3]
 
@@ -332,3 +333,13 @@ def test_quads_do_not_crumple_in_tips(body):
     assert max(faces) < 1.1 * asked / 0.7**4
     # Of a body at the ten corners, and at few other vertices.
     assert body is None or np.median(turned) <= 12
+
+
+def test_sprites_of_thin_figures_are_little_larger_than_their_outlines():
+    """Most of what is empty lies in the margin there, so that only a little more may."""
+    alpha = alpha_of("brazil", 64)
+    made = sprite(alpha, margin=1.0)
+    pixels = np.dstack([np.zeros((64, 64, 3)), alpha])
+    traced = gridmesh.trace_image(pixels, threshold=0.5, min_area=4.0, margin=1.0)
+    contours = [contour for outline, holes in traced for contour in [outline, *holes]]
+    assert areas(made).sum() < 1.007 * sum(map(area, contours))

@@ -1,7 +1,7 @@
 //! Patches that cover what was drawn: outlines moved outward where the edges of a mesh cut them off.
 //!
 //! [`cover_sketch`] meshes an outline and places the mesh a few times more, each time on an outline moved outward where it was left outside (`outside`, `outward`), as far as there is room (`room`), then
-//! moves ends of short edges apart (`short`), single vertices to tips (`tips`), and others back into inlets (`tight`). Patches that are to
+//! moves ends of short edges apart (`short`), single vertices to tips (`tips`), and others back into inlets (`tight`), until the boundary is as near around as it can be (`across`). Patches that are to
 //! lie [`Rim::Across`] their outline are meshed once, and their boundary vertices are moved until they do (`across`).
 
 mod across;
@@ -162,8 +162,8 @@ fn finished(
         least = tips::moved(patch, fine, followers, slack);
     }
     tight::pulled(patch, fine, followers, slack, progress.part(1.0, 1.0))?;
+    across::settled(patch, fine, followers, rim, progress.part(1.0, 1.0))?;
     if rim == Rim::Across {
-        across::settled(patch, fine, followers, progress.part(1.0, 1.0))?;
         least = largest(&needs(fine, patch, followers, slack));
     }
     Ok(least)

@@ -47,6 +47,11 @@ impl Lengths {
         &self.topology.near[self.topology.range(vertex)]
     }
 
+    /// The vertices beside one that are not on the boundary.
+    pub fn inner_near(&self, vertex: usize) -> impl Iterator<Item = usize> + '_ {
+        self.near(vertex).iter().map(|&v| v as usize).filter(|&v| v >= self.n_boundary)
+    }
+
     fn wanted(&self, a: usize, b: usize) -> f64 {
         if a < self.n_boundary && b < self.n_boundary { self.rim } else { self.inner }
     }
