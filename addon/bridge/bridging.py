@@ -39,8 +39,17 @@ class Job:
 
     def find(self) -> None:
         """Find the loops that the selection means, or say why they cannot be joined."""
+        if not self.edited.has_selection():
+            self.problems.append(Problem("nothing is selected; select two or more loops of open edges"))
+            return
         found = self.edited.selected_holes(close_chains=False)
         self.problems = list(found.problems)
+        if not found.holes and self.edited.mesh.total_face_sel > 0:
+            self.problems = [
+                Problem(
+                    "the selected faces have no open edges; delete them and select the loops that are left"
+                )
+            ]
         if self.problems:
             return
         self.loops = found.holes

@@ -88,6 +88,8 @@ class MESH_OT_gridmesh_bridge(PatchFaces, bpy.types.Operator):  # noqa: N801
         if not made:
             for job in jobs:
                 job.edited.point_out(job.problems)
+            if len(jobs) > 1 and all(len(job.loops) == 1 for job in jobs):
+                problems = ["the selected loops are of several objects; join these first (Ctrl-J)"]
             self.report({"ERROR"}, told(listed(problems)))
             return {"CANCELLED"}
         add_all(made)

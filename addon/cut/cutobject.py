@@ -14,6 +14,7 @@ import numpy as np
 from ..bodies.outlines import LARGEST
 from ..data import frames
 from ..data.meshes import Transaction
+from ..data.mirrors import mirror_planes
 from ..live import engine
 from .cutmesh import Surface, Surgery, Written
 from .cutsweep import CutError, Sweep, checked
@@ -70,7 +71,7 @@ class Target:
         mesh.loops.foreach_get("vertex_index", corners)
         mesh.polygons.foreach_get("loop_start", offsets[:-1])
         offsets[-1] = len(corners)
-        mirrors, within = _mirrors(ob)
+        mirrors, within = mirror_planes(ob)
         self.model = Model(shown @ linear.T, corners, offsets, mirrors, within)
         self._base, self._poses = own @ linear.T, [pose @ linear.T for pose in poses]
         self._check()
@@ -162,26 +163,6 @@ class Target:
         transaction.remember(bpy.data.objects, ob)
         ob.data = mesh
         return ob
-
-
-def _mirrors(ob: bpy.types.Object) -> tuple[list[tuple[np.ndarray, np.ndarray]], float]:
-    """Planes of the Mirror modifiers that join both halves there, about the object's origin; and how far off they do."""
-    planes, within = [], 0.0
-    for modifier in ob.modifiers:
-        if modifier.type != "MIRROR" or not modifier.show_viewport or not modifier.use_mirror_merge:
-            continue
-        about = modifier.mirror_object or ob
-        linear = np.array(about.matrix_world.to_3x3(), float)
-        if abs(np.linalg.det(linear)) < 1e-30:
-            continue  # it mirrors to nothing
-        point = np.array(about.matrix_world.translation - ob.matrix_world.translation, float)
-        for axis in range(3):
-            if modifier.use_axis[axis]:
-                normal = np.linalg.inv(linear)[axis]
-                length = float(np.linalg.norm(normal))
-                planes.append((point, normal / length))
-                within = max(within, modifier.merge_threshold / length)
-    return planes, within
 
 
 def _operate(mesh: bpy.types.Mesh, surface: Surface, parts: Sequence[Part]) -> None:

@@ -237,7 +237,11 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
         for k, (ob, points, sweep, cyclic) in enumerate(strokes):
             try:
                 if ob.data in meshes:
-                    raise cutsweep.CutError(f"it has the same mesh as '{meshes[ob.data]}'")
+                    missed.append(
+                        f"'{ob.name}' has the same mesh as '{meshes[ob.data]}' and is what that is; "
+                        "make it single-user to cut it by itself"
+                    )
+                    continue
                 target = Target(ob)
                 stroke, own = target.line(points, sweep, cyclic=cyclic, close_gaps=self._gaps())
                 if self.suggest_length:

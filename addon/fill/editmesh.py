@@ -13,6 +13,7 @@ import numpy as np
 
 from ..bodies.outlines import LARGEST
 from ..data import attributes
+from ..data.mirrors import mirror_planes
 from . import holes
 from .holes import Found, OpenEdge, Problem
 from .patches import Filled, Snapshot
@@ -82,8 +83,17 @@ class EditMesh:
         )
 
     def all_holes(self, max_edges: int) -> Found:
-        """Find all holes of at most so many edges (0: any number)."""
-        return holes.all_of(self.open_edges(), max_edges)
+        """Find all holes of at most so many edges (0: any number), but those that a Mirror modifier closes."""
+        found = holes.all_of(self.open_edges(), max_edges)
+        planes, within = mirror_planes(self.ob)
+        linear = np.array(self.ob.matrix_world.to_3x3(), float)
+        for hole in list(found.holes) if planes else ():
+            points = np.array([self.bm.verts[vertex].co for vertex in hole.vertices], float) @ linear.T
+            near = max(within, _FLAT * float(np.ptp(points, axis=0).max()))
+            if any((np.abs((points - point) @ normal) <= near).all() for point, normal in planes):
+                found.holes.remove(hole)
+                found.mirrored += 1
+        return found
 
     def has_selection(self) -> bool:
         """Whether anything is selected."""

@@ -13,6 +13,9 @@ from .editmesh import Added, EditMesh, MeshError, Patch
 from .holes import Found, Problem
 from .patches import Snapshot
 
+_LOST = 1.0
+"""So many of its edges a new surface may be off the old one until it is told."""
+
 _HARD = math.radians(30.0)
 """Edges with more than this angle between their faces are hard."""
 
@@ -108,11 +111,14 @@ def left_open(jobs: list[Job], max_edges: int) -> list[str]:
     """Tell of holes that were not to be filled."""
     larger = sum(job.found.larger for job in jobs)
     hidden = sum(job.found.hidden for job in jobs)
+    mirrored = sum(job.found.mirrored for job in jobs)
     left = []
     if larger:
         left.append(f"{counted(larger, 'hole')} with more than {max_edges} edges left open; raise Max Edges")
     if hidden:
         left.append(f"{counted(hidden, 'hidden hole')} left open")
+    if mirrored:
+        left.append(f"{counted(mirrored, 'hole')} left open at the plane of a Mirror modifier")
     return left
 
 
@@ -139,6 +145,13 @@ def warnings_of(reports: list[dict]) -> list[str]:
     if smoothed:
         warnings.append(
             f"{counted(smoothed, 'patch')} made without hard edges: those at the hole meet in no line or corner"
+        )
+    lost = sum(report.get("lost", 0.0) > _LOST for report in reports)
+    if lost:
+        most = max(report.get("lost", 0.0) for report in reports)
+        warnings.append(
+            f"{counted(lost, 'area')} lost shape: the new faces are up to {most:.1f} of their edges off, since there are few "
+            "vertices around for what lies within; select less, or subdivide first"
         )
     repaired = sum(report.get("repaired", 0) for report in reports)
     if repaired:

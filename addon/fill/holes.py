@@ -51,6 +51,8 @@ class Found:
     problems: list[Problem] = field(default_factory=list)
     larger: int = 0
     hidden: int = 0
+    mirrored: int = 0
+    """At the plane of a Mirror modifier, where the other half goes on."""
     _known: set[frozenset[int]] = field(default_factory=set)
 
     def add(self, hole: Hole) -> None:
@@ -76,7 +78,7 @@ def of_selection(
     meant.
 
     edges : all open edges. closed : selected edges that are not open and belong to no selected face.
-    vertices : selected vertices of no selected face. close_chains : whether chains of wires are closed by a
+    vertices : selected vertices of no selected face. close_chains : whether chains of open edges are closed by a
     straight edge.
     strict : whether `closed` were selected one by one, and not because both their ends are. anything : whether
     anything at all is selected, such as faces.
@@ -139,14 +141,18 @@ def _resolve(
     if barred:
         found.problems.append(_barred(barred))
         return
+    branches = sorted(vertex for vertex, degree in degrees.items() if degree > 2)
     if all(not edge.wire for edge in part):
-        _whole(part, graph, found, [])
+        if close_chains and len(part) >= 2 and not branches:
+            start = min(vertex for vertex, degree in degrees.items() if degree == 1)
+            found.add(Hole(tuple(_chain(part, start)), closing=True))
+        else:
+            _whole(part, graph, found, [])
         return
     trouble: list[Problem] = []
     _whole(part, graph, found, trouble)
     if not trouble:
         return
-    branches = sorted(vertex for vertex, degree in degrees.items() if degree > 2)
     if branches:
         found.problems.append(_branching(branches, degrees, part))
         return

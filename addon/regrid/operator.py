@@ -49,7 +49,7 @@ class MESH_OT_gridmesh_regrid(PatchFaces, bpy.types.Operator):  # noqa: N801
             job.find()
         jobs = [job for job in jobs if job.areas or job.problems]
         if not jobs:
-            self.report({"ERROR"}, told("Nothing is selected; select faces, or a closed loop of edges"))
+            self.report({"ERROR"}, told(self._nothing(context)))
             return {"CANCELLED"}
         try:
             with Pointer(context) as pointer:
@@ -67,6 +67,12 @@ class MESH_OT_gridmesh_regrid(PatchFaces, bpy.types.Operator):  # noqa: N801
         replace_all(done)
         self._tell(done, problems, perf_counter() - started)
         return {"FINISHED"}
+
+    def _nothing(self, context: bpy.types.Context) -> str:
+        """Why there is no area."""
+        if any(ob.data.total_vert_sel for ob in context.objects_in_mode_unique_data if ob.type == "MESH"):
+            return "Only vertices are selected; select faces, or a closed loop of edges"
+        return "Nothing is selected; select faces, or a closed loop of edges"
 
     def _tell(self, jobs: list[Job], problems: list[str], seconds: float) -> None:
         """Report numbers, and what the user should know."""

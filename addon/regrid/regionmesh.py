@@ -8,10 +8,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from mathutils.bvhtree import BVHTree
 
 from ..fill.editmesh import Added, EditMesh
 from ..fill.patches import Regridded, Snapshot
 from .carried import Carried, Places
+
+_LOOKED_AT = 5000
+"""Old vertices, at most, that are held against the new surface."""
 
 _MEMBER = 0.5
 """Weight from which on a vertex belongs to a group."""
@@ -139,6 +143,21 @@ class Region:
             points=self.made.vertices,
             faces=[*self.made.quads.tolist(), *self.made.triangles.tolist()],
         )
+
+    def lost(self, at: Snapshot) -> float:
+        """How far the vertices of the area are from the new faces at most, in mean edge lengths of these."""
+        faces = [*self.made.quads.tolist(), *self.made.triangles.tolist()]
+        used, named = np.unique(np.concatenate([np.array(face) for face in faces]), return_inverse=True)
+        points = np.vstack([at.positions, self.made.vertices])[used]
+        ends = np.cumsum([len(face) for face in faces])
+        polygons = [part.tolist() for part in np.split(named.ravel(), ends[:-1])]
+        tree = BVHTree.FromPolygons(points.tolist(), polygons)
+        old = np.unique(at.triangles[self.triangles])
+        off = max(
+            tree.find_nearest(point)[3] for point in at.positions[old[:: 1 + len(old) // _LOOKED_AT]].tolist()
+        )
+        sides = np.concatenate([points[part] - points[np.roll(part, 1)] for part in map(np.array, polygons)])
+        return off / float(np.linalg.norm(sides, axis=1).mean())
 
     def poses(self, at: Snapshot, places: Places) -> list[np.ndarray]:
         """Positions (j, 3) of the new vertices in every shape key: as far beside the old surface as they are now."""

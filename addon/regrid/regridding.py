@@ -73,7 +73,10 @@ class Job:
                 self.problems.append(f"'{self.edited.name}': {made}")
                 self.left.append(faces)
             else:
-                self.regions.append(Region(faces, triangles, made))
+                region = Region(faces, triangles, made)
+                if keep_shape:
+                    made.report["lost"] = region.lost(at)
+                self.regions.append(region)
 
 
 def _chords(faces: list[list[int]], n: int) -> set[frozenset[int]]:

@@ -51,6 +51,9 @@ _COMMON = {
     "{} left open": "{0} offen gelassen",
     "{} left out:": "{0} weggelassen:",
     "Meshed {} anew: {}, {}, {} ms": "{0} neu vernetzt: {1}, {2}, {3} ms",
+    "Only vertices are selected; select faces, or a closed loop of edges": (
+        "Nur Punkte sind ausgewählt; Flächen auswählen, oder eine geschlossene Schleife von Kanten"
+    ),
     "Nothing is selected; select faces, or a closed loop of edges": (
         "Nichts ist ausgewählt; Flächen oder eine geschlossene Schleife aus Kanten auswählen"
     ),
@@ -441,7 +444,9 @@ _CUTS = {
     "frozen, since a cut body cannot follow its drawing: {}": (
         "eingefroren, denn ein geschnittener Körper kann seiner Zeichnung nicht folgen: {0}"
     ),
-    "it has the same mesh as '{}'": "es hat dasselbe Mesh wie '{0}'",
+    "'{}' has the same mesh as '{}' and is what that is; make it single-user to cut it by itself": (
+        "'{0}' hat dasselbe Mesh wie '{1}' und ist, was jenes ist; zum Einzelnutzer machen, um es für sich zu schneiden"
+    ),
     "{} bulges less than the mesh around it, or lies flat; rounder, it would break through the mesh": (
         "{0} ist weniger gewölbt als das Mesh ringsum, oder flach; runder stieße er durch das Mesh"
     ),
@@ -658,6 +663,21 @@ _FILLS = {
     "{} of data not continued: a value at a hole is not finite": (
         "{0} mit Daten nicht fortgesetzt: ein Wert an einem Loch ist nicht endlich"
     ),
+    "nothing is selected; select two or more loops of open edges": (
+        "nichts ist ausgewählt; zwei oder mehr Schleifen offener Kanten auswählen"
+    ),
+    "the selected faces have no open edges; delete them and select the loops that are left": (
+        "die ausgewählten Flächen haben keine offenen Kanten; sie löschen und die Schleifen auswählen, die bleiben"
+    ),
+    "the selected loops are of several objects; join these first (Ctrl-J)": (
+        "die ausgewählten Schleifen gehören mehreren Objekten; diese zuerst verbinden (Strg-J)"
+    ),
+    "{} left open at the plane of a Mirror modifier": "{0} an der Ebene eines Spiegeln-Modifikators offen gelassen",
+    "{} lost shape: the new faces are up to {} of their edges off, since there are few vertices around for what lies "
+    "within; select less, or subdivide first": (
+        "{0} mit verlorener Form: die neuen Flächen liegen bis zu {1} ihrer Kanten daneben, da ringsum wenige Punkte sind "
+        "für das, was darin liegt; weniger auswählen oder zuerst unterteilen"
+    ),
     "{} with more than {} edges left open; raise Max Edges": (
         "{0} mit mehr als {1} Kanten offen gelassen; „Höchstens Kanten“ erhöhen"
     ),
@@ -804,6 +824,9 @@ _LIBRARY = {
     ),
     "loop {} uses the edge from vertex {} to vertex {} like loop {}; give each loop edge to one loop": (
         "Schleife {0} benutzt die Kante von Punkt {1} zu Punkt {2} wie Schleife {3}; jede Kante nur einer Schleife geben"
+    ),
+    "the faces are closed all around; leave some of them out, so that they have a border": (
+        "die Flächen sind rundum geschlossen; einige davon auslassen, sodass sie einen Rand haben"
     ),
     "the faces have {} borders or touch themselves; choose one connected region without holes": (
         "die Flächen haben {0} Ränder oder berühren sich selbst; ein zusammenhängendes Gebiet ohne Löcher wählen"

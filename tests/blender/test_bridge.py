@@ -476,7 +476,7 @@ def test_faces_that_look_the_other_way_are_told(capfd):
 @pytest.mark.parametrize(
     ("choose", "words"),
     [
-        (lambda bm: [], "select the edges"),
+        (lambda bm: [], "Nothing is selected; select two or more loops"),
         (lambda bm: facing(bm)[:1], "1 loop of open edges selected; select two or more"),
     ],
 )
@@ -491,6 +491,30 @@ def test_other_selections_are_refused_and_change_nothing(choose, words, capfd):
         bpy.ops.mesh.gridmesh_bridge()
     leave()
     assert fingerprint() == before
+
+
+def test_faces_in_place_of_loops_are_refused():
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    ob = bpy.context.object
+    bm = edit(ob, mode="FACE")
+    select(ob, [face for face in bm.faces if abs(face.calc_center_median().z) > 0.9])
+    with pytest.raises(RuntimeError, match="delete them and select the loops that are left"):
+        bpy.ops.mesh.gridmesh_bridge()
+    leave()
+
+
+def test_loops_of_two_objects_are_refused():
+    pipes = [two_pipes(), two_pipes()]
+    activate(*pipes)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.tool_settings.mesh_select_mode = (False, True, False)
+    bpy.ops.mesh.select_all(action="DESELECT")
+    for ob in pipes:
+        bm = bmesh.from_edit_mesh(ob.data)
+        select(ob, facing(bm)[:1])
+    with pytest.raises(RuntimeError, match=r"of several objects; join these first \(Ctrl-J\)"):
+        bpy.ops.mesh.gridmesh_bridge()
+    leave()
 
 
 def test_loops_with_a_common_vertex_are_refused():

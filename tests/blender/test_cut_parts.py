@@ -55,7 +55,7 @@ class TestSeveralMeshes:
         assert bpy.ops.object.gridmesh_cut(stroke=drawn(points), direction="Y", source="DRAWN") == {
             "FINISHED"
         }
-        assert f"it has the same mesh as '{one.name}'" in capfd.readouterr().out
+        assert f"has the same mesh as '{one.name}' and is what that is" in capfd.readouterr().out
         check_sound(one)
 
     def test_nothing_that_can_be_cut_is_an_error(self):

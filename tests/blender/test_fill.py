@@ -216,6 +216,38 @@ def test_open_chain_closed():
     assert frozenset((0, 19)) in {frozenset(edge.vertices) for edge in mesh.edges}
 
 
+def test_a_notch_is_closed_by_a_straight_edge():
+    ob = grid(6)
+    without_faces(ob, lambda centre: not (centre.y > 1 and abs(centre.x) < 1))
+    bm = edit(ob)
+    chosen = [
+        edge for edge in rim(bm) if all(abs(vertex.co.x) < 1.1 and vertex.co.y > 0.9 for vertex in edge.verts)
+    ]
+    before = len(ob.data.polygons)
+    select(ob, chosen)
+    fill(close_chains=True)
+    leave()
+    mesh = ob.data
+    assert not mesh.validate()
+    assert len(mesh.polygons) > before
+    assert np.abs(vertices(mesh)).max() < 3.01
+    assert len(mesh.vertices) - len(mesh.edges) + len(mesh.polygons) == 1
+
+
+def test_what_a_mirror_closes_is_left_open(capfd):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16)
+    ob = bpy.context.object
+    without_faces(ob, lambda centre: centre.x > 0 and centre.x < 0.9)
+    ob.modifiers.new("Mirror", "MIRROR")
+    edit(ob)
+    assert fill(holes="ALL") is None
+    leave()
+    told = capfd.readouterr().out
+    assert "Filled 1 hole" in told
+    assert "1 hole left open at the plane of a Mirror modifier" in told
+    assert vertices(ob.data)[:, 0].min() > -1e-6
+
+
 def test_several_meshes_at_once(capfd):
     first, second, idle = cylinder(12), cylinder(9, location=(4, 0, 0)), grid(3)
     befores = Before(first), Before(second), Before(idle)

@@ -217,6 +217,27 @@ def test_areas_become_quads():
     assert np.isfinite(uv_of(ob)).all()
 
 
+def test_lost_shape_is_told(capfd):
+    ob = suzanne()
+    select_faces(ob, lambda centre: centre.x > 0.75)
+    regrid()
+    assert "1 area lost shape" in capfd.readouterr().out
+    ob = sphere()
+    select_faces(ob, lambda centre: centre.z > 0.3)
+    regrid()
+    assert "lost shape" not in capfd.readouterr().out
+
+
+def test_refusals_say_what_is_selected():
+    ob = sphere()
+    select_faces(ob, lambda _centre: True)
+    assert "closed all around; leave some of them out" in refused()
+    ob = sphere()
+    bm = edit(ob, mode="VERT")
+    select(ob, bm.verts[:1])
+    assert "Only vertices are selected" in refused()
+
+
 def test_one_undo_step(capfd):
     ob = sphere()
     select_faces(ob, lambda at: at.x > 0.3)

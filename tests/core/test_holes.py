@@ -222,6 +222,15 @@ class TestProblems:
         assert hole.closing
         assert hole.vertices in {(0, 1, 2, 3), (3, 2, 1, 0)}
 
+    def test_open_chain_beside_faces(self):
+        chain = [(6, 7), (7, 12)]
+        (hole,) = select(RING, selected=chain, close_chains=True).holes
+        assert hole.closing
+        assert set(hole.vertices) == {6, 7, 12}
+        assert loops(select(RING, selected=chain)) == [sorted(HOLE)]
+        assert loops(select(RING, selected=chain[:1], close_chains=True)) == [sorted(HOLE)]
+        assert loops(select(RING, selected=cycle(*HOLE), close_chains=True)) == [sorted(HOLE)]
+
     def test_single_wire(self):
         for close_chains in (False, True):
             found = select(wires=[(0, 1)], selected=[(0, 1)], close_chains=close_chains)

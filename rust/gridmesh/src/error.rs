@@ -116,7 +116,7 @@ pub enum Error {
     },
     /// The mesh asked for is larger than is supported.
     #[error(
-        "about {triangles:.3e} triangles were asked for; at most {limit:.3e} are supported, use a larger \
+        "about {triangles:.0} triangles were asked for; at most {limit:.0} are supported, use a larger \
          edge length"
     )]
     TooLarge {
@@ -275,9 +275,7 @@ pub enum Error {
         second: usize,
     },
     /// Faces that were to be replaced do not form a disk.
-    #[error(
-        "the faces have {borders} borders or touch themselves; choose one connected region without holes"
-    )]
+    #[error("{}", not_a_disk(*.borders))]
     NotADisk {
         /// Their number of borders.
         borders: usize,
@@ -419,4 +417,13 @@ pub enum Error {
         /// Its column, from the left.
         column: usize,
     },
+}
+
+fn not_a_disk(borders: usize) -> String {
+    match borders {
+        0 => "the faces are closed all around; leave some of them out, so that they have a border".into(),
+        _ => format!(
+            "the faces have {borders} borders or touch themselves; choose one connected region without holes"
+        ),
+    }
 }
