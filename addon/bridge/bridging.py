@@ -57,6 +57,10 @@ class Job:
             loops = counted(len(self.loops), "loop")
             self.problems.append(Problem(f"{loops} of open edges selected; select two or more to join"))
             return
+        partial = self._partial()
+        if partial is not None:
+            self.problems.append(partial)
+            return
         touching = _touching(self.loops)
         if touching is not None:
             self.problems.append(touching)
@@ -68,6 +72,20 @@ class Job:
             return
         faulty = [self.edited.faulty(hole, self.snapshot.positions) for hole in self.loops]
         self.problems += [problem for problem in faulty if problem is not None]
+
+    def _partial(self) -> Problem | None:
+        """Say that a row of edges is selected and not the loop that it is part of, if so; one edge stands for its loop."""
+        selected = {frozenset(edge.ends) for edge in self.edited.open_edges() if edge.selected}
+        for loop in self.loops:
+            ends = zip(loop.vertices, loop.vertices[1:] + loop.vertices[:1], strict=True)
+            row = tuple(pair for pair in ends if frozenset(pair) in selected)
+            if 1 < len(row) < len(loop.vertices):
+                reason = (
+                    f"{len(row)} of the {len(loop.vertices)} edges of a loop are selected; select all of them, or one that stands "
+                    "for the loop: rows of edges are not joined"
+                )
+                return Problem(reason, loop.vertices, row)
+        return None
 
     def bridge(
         self, smooth: str, rows: int, twist: float, progress: Progress, *, cells: str = "triangles"

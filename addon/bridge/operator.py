@@ -100,7 +100,6 @@ class MESH_OT_gridmesh_bridge(PatchFaces, bpy.types.Operator):  # noqa: N801
         """Report numbers, and what the user should know."""
         self.result = summary(jobs, faces_made(jobs), 1000 * seconds)
         self.has_tube = any(job.is_tube for job in jobs)
-        self.report({"INFO"}, told(self.result))
         torn = sum(job.added.torn for job in jobs)
         if torn:
             self.report(
@@ -111,6 +110,8 @@ class MESH_OT_gridmesh_bridge(PatchFaces, bpy.types.Operator):  # noqa: N801
         if broken:
             layers = counted(broken, "layer")
             self.report({"INFO"}, told(f"{layers} of data not continued: a value at a loop is not finite"))
+        # The status line shows what is reported last.
+        self.report({"INFO"}, told(self.result))
         for job in jobs:
             for warning in job.warnings():
                 self.report({"WARNING"}, told(warning))

@@ -165,6 +165,12 @@ class Target:
         return ob
 
 
+def sharing(cut: Sequence[bpy.types.Object], chosen: Sequence[bpy.types.Object]) -> list[str]:
+    """Names of objects that change because they have the mesh of one that is cut, and were not chosen."""
+    meshes = {ob.data for ob in cut}
+    return [ob.name for ob in bpy.data.objects if ob.data in meshes and ob not in chosen]
+
+
 def _operate(mesh: bpy.types.Mesh, surface: Surface, parts: Sequence[Part]) -> None:
     bm = bmesh.new(use_operators=True)
     try:

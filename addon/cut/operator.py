@@ -25,7 +25,7 @@ from ..text.telling import told
 from ..ui.progress import Pointer
 from ..ui.properties import PATCH_FACES
 from . import cutline, cutsweep, cutting
-from .cutobject import Caps, Target
+from .cutobject import Caps, Target, sharing
 from .draw_operator import DrawnCut
 
 
@@ -195,6 +195,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
                 done, missed = self._divided(strokes, pointer)
             if not done:
                 raise cutsweep.CutError(listed(missed))
+            others = sharing([target.ob for target, *_ in done], [ob for ob, *_ in strokes])
             objects, frozen = [], []
             for target, division, stroke, sweep in done:
                 frozen += [target.ob.name] if target.is_live else []
@@ -218,6 +219,8 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
                     source.select_set(False)
         if frozen:
             notes.append(f"frozen, since a cut body cannot follow its drawing: {', '.join(frozen)}")
+        if others:
+            notes.append(f"also changed, with the same mesh: {', '.join(others)}")
         self._tell([division for _, division, _, _ in done], notes, missed, perf_counter() - started)
         return {"FINISHED"}
 

@@ -120,7 +120,6 @@ class MESH_OT_gridmesh_fill(PatchFaces, bpy.types.Operator):  # noqa: N801
             f"Filled {counted(len(reports), 'hole')}: {made}, {counted(irregular, 'irregular vertex')}, "
             f"{1000 * seconds:.0f} ms"
         )
-        self.report({"INFO"}, told(self.result))
         left = left_open(jobs, self.max_edges)
         torn = sum(job.added.torn for job in jobs)
         if torn:
@@ -132,6 +131,8 @@ class MESH_OT_gridmesh_fill(PatchFaces, bpy.types.Operator):  # noqa: N801
             left.append(f"{counted(broken, 'layer')} of data not continued: a value at a hole is not finite")
         if left:
             self.report({"INFO"}, told(listed(left)))
+        # The status line shows what is reported last.
+        self.report({"INFO"}, told(self.result))
         for warning in warnings_of(reports):
             self.report({"WARNING"}, told(warning))
         if problems:

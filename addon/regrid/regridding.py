@@ -47,6 +47,11 @@ class Job:
             self.problems.append(f"'{self.edited.name}': {error}")
             self.areas = []
 
+    def _hides(self, faces: list[int]) -> bool:
+        """Whether hidden faces share an edge with some."""
+        own = (self.edited.bm.faces[face] for face in faces)
+        return any(other.hide for face in own for edge in face.edges for other in edge.link_faces)
+
     def solve(self, smooth: str, progress: Progress, *, keep_shape: bool, cells: str = "triangles") -> None:
         """Mesh the areas anew, without touching the mesh. cells : "triangles" or "quads"."""
         at = self.snapshot
@@ -69,6 +74,8 @@ class Job:
                     )
                 else:
                     taken |= own
+            if isinstance(made, str) and self._hides(faces):
+                made = "hidden faces lie beside or within the area; reveal them first"
             if isinstance(made, str):
                 self.problems.append(f"'{self.edited.name}': {made}")
                 self.left.append(faces)

@@ -672,6 +672,15 @@ _FILLS = {
     "the selected loops are of several objects; join these first (Ctrl-J)": (
         "die ausgewählten Schleifen gehören mehreren Objekten; diese zuerst verbinden (Strg-J)"
     ),
+    "also changed, with the same mesh: {}": "mit demselben Mesh auch geändert: {0}",
+    "hidden faces lie beside or within the area; reveal them first": (
+        "verdeckte Flächen liegen neben oder in dem Gebiet; sie zuerst einblenden"
+    ),
+    "{} of the {} edges of a loop are selected; select all of them, or one that stands for the loop: rows of edges are "
+    "not joined": (
+        "{0} der {1} Kanten einer Schleife sind ausgewählt; alle auswählen, oder eine, die für die Schleife steht: Reihen "
+        "von Kanten werden nicht verbunden"
+    ),
     "{} left open at the plane of a Mirror modifier": "{0} an der Ebene eines Spiegeln-Modifikators offen gelassen",
     "{} lost shape: the new faces are up to {} of their edges off, since there are few vertices around for what lies "
     "within; select less, or subdivide first": (

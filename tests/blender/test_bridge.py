@@ -478,6 +478,7 @@ def test_faces_that_look_the_other_way_are_told(capfd):
     [
         (lambda bm: [], "Nothing is selected; select two or more loops"),
         (lambda bm: facing(bm)[:1], "1 loop of open edges selected; select two or more"),
+        (lambda bm: [*facing(bm)[:3], *facing(bm)[-3:]], "rows of edges are not joined"),
     ],
 )
 def test_other_selections_are_refused_and_change_nothing(choose, words, capfd):

@@ -58,6 +58,15 @@ class TestSeveralMeshes:
         assert f"has the same mesh as '{one.name}' and is what that is" in capfd.readouterr().out
         check_sound(one)
 
+    def test_what_shares_the_mesh_is_told(self, capfd):
+        one = ball()
+        twin = one.copy()
+        bpy.context.scene.collection.objects.link(twin)
+        activate(one)
+        stroke = drawn(line(*BEHIND))
+        assert bpy.ops.object.gridmesh_cut(stroke=stroke, direction="Y", source="DRAWN") == {"FINISHED"}
+        assert f"lso changed, with the same mesh: {twin.name}" in capfd.readouterr().out
+
     def test_nothing_that_can_be_cut_is_an_error(self):
         one, far = ball(), ball(9.0)
         activate(one, far)

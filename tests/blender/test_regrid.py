@@ -236,6 +236,12 @@ def test_refusals_say_what_is_selected():
     bm = edit(ob, mode="VERT")
     select(ob, bm.verts[:1])
     assert "Only vertices are selected" in refused()
+    ob = sphere()
+    bm = edit(ob, mode="FACE")
+    for face in bm.faces:
+        face.hide_set(face.calc_center_median().z > 0.8)
+    select(ob, [face for face in bm.faces if not face.hide and face.calc_center_median().z > 0.2])
+    assert "reveal them first" in refused()
 
 
 def test_one_undo_step(capfd):
