@@ -142,10 +142,12 @@ def _resolve(
         found.problems.append(_barred(barred))
         return
     branches = sorted(vertex for vertex, degree in degrees.items() if degree > 2)
+    ends = sorted(vertex for vertex, degree in degrees.items() if degree == 1)
     if all(not edge.wire for edge in part):
-        if close_chains and len(part) >= 2 and not branches:
-            start = min(vertex for vertex, degree in degrees.items() if degree == 1)
-            found.add(Hole(tuple(_chain(part, start)), closing=True))
+        # Edges across faces, which do not matter, may hold several rows together.
+        chain = _chain(part, ends[0]) if close_chains and len(ends) == 2 and not branches else []
+        if len(chain) == len(part) + 1 >= 3:
+            found.add(Hole(tuple(chain), closing=True))
         else:
             _whole(part, graph, found, [])
         return
@@ -156,7 +158,6 @@ def _resolve(
     if branches:
         found.problems.append(_branching(branches, degrees, part))
         return
-    ends = sorted(vertex for vertex, degree in degrees.items() if degree == 1)
     if close_chains and len(part) >= 2:
         found.add(Hole(tuple(_chain(part, ends[0])), closing=True))
         return

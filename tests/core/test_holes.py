@@ -228,6 +228,11 @@ class TestProblems:
         assert hole.closing
         assert set(hole.vertices) == {6, 7, 12}
         assert loops(select(RING, selected=chain)) == [sorted(HOLE)]
+        # Vertices that are selected bring along edges across faces, here from the border to the hole.
+        border = [(0, 1), (1, 2)]
+        found = select(RING, selected=[*border, (1, 6), *chain], close_chains=True, strict=False)
+        assert not found.problems
+        assert all(not hole.closing for hole in found.holes)
         assert loops(select(RING, selected=chain[:1], close_chains=True)) == [sorted(HOLE)]
         assert loops(select(RING, selected=cycle(*HOLE), close_chains=True)) == [sorted(HOLE)]
 
