@@ -423,5 +423,5 @@ fn edge_lengths_that_ask_for_too_much_are_refused_before_the_work() {
     // The limit itself: a cap of two million triangles.
     let told = cube().cut(&stroke, &CutOptions { edge_length: Some(1e-3), ..down() }).err();
     let told = told.map(|e| e.to_string()).unwrap_or_default();
-    assert!(told.contains("2.3") && told.contains("2.000e6"), "{told}");
+    assert!(told.starts_with("about 23") && told.contains("2000000"), "{told}");
 }
