@@ -75,10 +75,10 @@ class Job:
 
     def _partial(self) -> Problem | None:
         """Say that a row of edges is selected and not the loop that it is part of, if so; one edge stands for its loop."""
-        selected = {frozenset(edge.ends) for edge in self.edited.open_edges() if edge.selected}
+        bm = self.edited.bm
         for loop in self.loops:
             ends = zip(loop.vertices, loop.vertices[1:] + loop.vertices[:1], strict=True)
-            row = tuple(pair for pair in ends if frozenset(pair) in selected)
+            row = tuple(pair for pair in ends if bm.edges.get([bm.verts[vertex] for vertex in pair]).select)
             if 1 < len(row) < len(loop.vertices):
                 reason = (
                     f"{len(row)} of the {len(loop.vertices)} edges of a loop are selected; select all of them, or one that stands "

@@ -14,7 +14,7 @@ from .holes import Found, Problem
 from .patches import Snapshot
 
 _LOST = 1.0
-"""So many of its edges a new surface may be off the old one until it is told."""
+"""So many edges of its border a new surface may be off the old one until it is told."""
 
 _HARD = math.radians(30.0)
 """Edges with more than this angle between their faces are hard."""
@@ -150,8 +150,8 @@ def warnings_of(reports: list[dict]) -> list[str]:
     if lost:
         most = max(report.get("lost", 0.0) for report in reports)
         warnings.append(
-            f"{counted(lost, 'area')} lost shape: the new faces are up to {most:.1f} of their edges off, since there are few "
-            "vertices around for what lies within; select less, or subdivide first"
+            f"{counted(lost, 'area')} lost shape: the new faces are up to {most:.1f} edges of the border off, which are too "
+            "long for what lies within; select less, or subdivide first"
         )
     repaired = sum(report.get("repaired", 0) for report in reports)
     if repaired:

@@ -106,6 +106,8 @@ def regrid(
             )
     except gridmesh.GridMeshError as error:
         return str(error)
+    rim = at.positions[done.fill.loop]
+    edge = float(np.linalg.norm(rim - np.roll(rim, 1, axis=0), axis=1).mean())
     return Regridded(
         vertices=done.fill.vertices,
         triangles=done.fill.triangles,
@@ -113,7 +115,11 @@ def regrid(
         source_faces=done.source_faces,
         source_weights=done.source_weights,
         unused=done.unused,
-        report={**done.fill.report, "off": done.off},
+        report={
+            **done.fill.report,
+            "off": done.off,
+            "lost": done.lost / edge if options.get("keep_shape", True) else 0.0,
+        },
     )
 
 

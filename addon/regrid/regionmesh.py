@@ -8,14 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from mathutils.bvhtree import BVHTree
 
 from ..fill.editmesh import Added, EditMesh
 from ..fill.patches import Regridded, Snapshot
 from .carried import Carried, Places
-
-_LOOKED_AT = 5000
-"""Old vertices, at most, that are held against the new surface."""
 
 _MEMBER = 0.5
 """Weight from which on a vertex belongs to a group."""
@@ -143,24 +139,6 @@ class Region:
             points=self.made.vertices,
             faces=[*self.made.quads.tolist(), *self.made.triangles.tolist()],
         )
-
-    def lost(self, at: Snapshot) -> float:
-        """How far the vertices of the area are from the new faces at most, in mean edge lengths of these."""
-        faces = [np.array(face) for face in (*self.made.quads.tolist(), *self.made.triangles.tolist())]
-        all_points = np.vstack([at.positions, self.made.vertices])
-        sides = np.concatenate([all_points[face] - all_points[np.roll(face, 1)] for face in faces])
-        mean = float(np.linalg.norm(sides, axis=1).mean())
-        used, named = np.unique(np.concatenate(faces), return_inverse=True)
-        # The tree has single precision, and a farthest distance.
-        middle = all_points[used].mean(axis=0)
-        polygons = np.split(named.ravel(), np.cumsum([len(face) for face in faces])[:-1])
-        tree = BVHTree.FromPolygons(
-            ((all_points[used] - middle) / mean).tolist(), [polygon.tolist() for polygon in polygons]
-        )
-        old = np.unique(at.triangles[self.triangles])
-        old = old[:: 1 + len(old) // _LOOKED_AT]
-        places = ((at.positions[old] - middle) / mean).tolist()
-        return max(found[3] or 0.0 for found in map(tree.find_nearest, places))
 
     def poses(self, at: Snapshot, places: Places) -> list[np.ndarray]:
         """Positions (j, 3) of the new vertices in every shape key: as far beside the old surface as they are now."""

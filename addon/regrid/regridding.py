@@ -80,10 +80,7 @@ class Job:
                 self.problems.append(f"'{self.edited.name}': {made}")
                 self.left.append(faces)
             else:
-                region = Region(faces, triangles, made)
-                if keep_shape:
-                    made.report["lost"] = region.lost(at)
-                self.regions.append(region)
+                self.regions.append(Region(faces, triangles, made))
 
 
 def _chords(faces: list[list[int]], n: int) -> set[frozenset[int]]:

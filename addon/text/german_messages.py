@@ -682,10 +682,10 @@ _FILLS = {
         "von Kanten werden nicht verbunden"
     ),
     "{} left open at the plane of a Mirror modifier": "{0} an der Ebene eines Spiegeln-Modifikators offen gelassen",
-    "{} lost shape: the new faces are up to {} of their edges off, since there are few vertices around for what lies "
-    "within; select less, or subdivide first": (
-        "{0} mit verlorener Form: die neuen Flächen liegen bis zu {1} ihrer Kanten daneben, da ringsum wenige Punkte sind "
-        "für das, was darin liegt; weniger auswählen oder zuerst unterteilen"
+    "{} lost shape: the new faces are up to {} edges of the border off, which are too long for what lies within; select "
+    "less, or subdivide first": (
+        "{0} mit verlorener Form: die neuen Flächen liegen bis zu {1} Kanten des Randes daneben, die für das, was darin "
+        "liegt, zu lang sind; weniger auswählen oder zuerst unterteilen"
     ),
     "{} with more than {} edges left open; raise Max Edges": (
         "{0} mit mehr als {1} Kanten offen gelassen; „Höchstens Kanten“ erhöhen"
@@ -834,8 +834,8 @@ _LIBRARY = {
     "loop {} uses the edge from vertex {} to vertex {} like loop {}; give each loop edge to one loop": (
         "Schleife {0} benutzt die Kante von Punkt {1} zu Punkt {2} wie Schleife {3}; jede Kante nur einer Schleife geben"
     ),
-    "the faces are closed all around; leave some of them out, so that they have a border": (
-        "die Flächen sind rundum geschlossen; einige davon auslassen, sodass sie einen Rand haben"
+    "the faces have no border; choose one connected region, not the whole of a closed mesh": (
+        "die Flächen haben keinen Rand; ein zusammenhängendes Gebiet wählen, nicht ein geschlossenes Mesh als Ganzes"
     ),
     "the faces have {} borders or touch themselves; choose one connected region without holes": (
         "die Flächen haben {0} Ränder oder berühren sich selbst; ein zusammenhängendes Gebiet ohne Löcher wählen"

@@ -231,7 +231,7 @@ def test_lost_shape_is_told(capfd):
 def test_refusals_say_what_is_selected():
     ob = sphere()
     select_faces(ob, lambda _centre: True)
-    assert "closed all around; leave some of them out" in refused()
+    assert "not the whole of a closed mesh" in refused()
     ob = sphere()
     bm = edit(ob, mode="VERT")
     select(ob, bm.verts[:1])

@@ -88,6 +88,7 @@ pub fn regrid(
         source_weights: arrays::space_points(py, &weights)?,
         unused: arrays::indices(py, done.unused.into_iter()),
         off: done.off,
+        lost: done.lost,
         fill: Py::new(py, Fill::new(py, done.fill)?)?,
     })
 }
@@ -106,6 +107,8 @@ pub fn regrid(
 ///     Vertices of the mesh that only the region used.
 /// off : float
 ///     Largest distance of a new vertex from the old surface.
+/// lost : float
+///     Largest distance of an unused vertex from the new surface: shape for which the patch has no vertices.
 #[pyclass(frozen, module = "gridmesh")]
 pub struct Regrid {
     #[pyo3(get)]
@@ -118,6 +121,8 @@ pub struct Regrid {
     unused: Py<PyArray1<i32>>,
     #[pyo3(get)]
     off: f64,
+    #[pyo3(get)]
+    lost: f64,
 }
 
 #[pymethods]
@@ -134,7 +139,8 @@ impl Regrid {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let py = slf.py();
         let this = slf.get();
-        let fields = (&this.fill, &this.source_faces, &this.source_weights, &this.unused, this.off);
+        let fields =
+            (&this.fill, &this.source_faces, &this.source_weights, &this.unused, this.off, this.lost);
         Ok((py.import("gridmesh._native")?.getattr("_regrid")?, fields.into_pyobject(py)?.into_any()))
     }
 }
@@ -147,6 +153,7 @@ pub fn _regrid(
     source_weights: Py<PyArray2<f64>>,
     unused: Py<PyArray1<i32>>,
     off: f64,
+    lost: f64,
 ) -> Regrid {
-    Regrid { fill, source_faces, source_weights, unused, off }
+    Regrid { fill, source_faces, source_weights, unused, off, lost }
 }

@@ -421,7 +421,7 @@ pub enum Error {
 
 fn not_a_disk(borders: usize) -> String {
     match borders {
-        0 => "the faces are closed all around; leave some of them out, so that they have a border".into(),
+        0 => "the faces have no border; choose one connected region, not the whole of a closed mesh".into(),
         _ => format!(
             "the faces have {borders} borders or touch themselves; choose one connected region without holes"
         ),

@@ -9,6 +9,7 @@ use crate::geometry::facet::Facet;
 
 use super::parallel::steady;
 use crate::error::{Error, Result};
+use crate::fill::even::nearest::Facets;
 use crate::fill::filled::{Fill, NO_ITEM};
 use crate::fill::job::Job;
 use crate::fill::loops::check::check_size;
@@ -39,6 +40,8 @@ pub struct Regrid {
     pub unused: Vec<u32>,
     /// Largest distance of a new vertex from the old surface.
     pub off: f64,
+    /// Largest distance of a vertex that only the region used from the new surface: shape that the patch has no vertices for.
+    pub lost: f64,
 }
 
 /// Replaces the triangles `faces` of a mesh, which must be a disk, by a patch on the same boundary.
@@ -138,8 +141,24 @@ fn replaced(
     let mut elsewhere = vec![false; vertices.len()];
     rest.iter().flatten().chain(&border).for_each(|&v| elsewhere[v as usize] = true);
     used.retain(|&v| !elsewhere[v as usize]);
+    let lost = farthest(&fill, vertices, &used, progress)?;
     progress.report(1.0)?;
-    Ok(Regrid { fill, sources, unused: used, off })
+    Ok(Regrid { fill, sources, unused: used, off, lost })
+}
+
+/// The largest distance of some vertices from the faces of a fill.
+fn farthest(fill: &Fill, vertices: &[DVec3], some: &[u32], progress: Progress<'_>) -> Result<f64> {
+    let shape = fill.shape.as_ref();
+    let corners = |t: &[u32; 3]| t.map(|v| shape.positions[v as usize]);
+    let faces = Facets::new(shape.work.triangles[..shape.work.n_patch].iter().map(corners).collect());
+    let mut most = 0.0f64;
+    for (k, &v) in some.iter().enumerate() {
+        if k % ASK_EVERY == 0 {
+            progress.report(1.0)?;
+        }
+        most = most.max(faces.distance(vertices[v as usize]));
+    }
+    Ok(most)
 }
 
 /// Moves the new vertices of a fill onto the surface of the region.
@@ -321,7 +340,7 @@ mod tests {
             (0..triangles.len() as u32).filter(|&t| inside(&triangles[t as usize])).collect::<Vec<_>>();
         let options = FillOptions::default();
         let done = regrid(&vertices, &triangles, &faces, true, &options, Progress::NONE).unwrap();
-        assert!(done.off < 1e-9, "{}", done.off);
+        assert!(done.off < 1e-9 && done.lost < 0.5, "{} {}", done.off, done.lost);
         let mut all = (0..triangles.len() as u32)
             .filter(|t| !faces.contains(t))
             .map(|t| triangles[t as usize])
@@ -339,6 +358,17 @@ mod tests {
             assert!(there.distance(*p) < 1e-9);
             assert!(faces.contains(face));
         }
+    }
+
+    #[test]
+    fn lost_shape_is_told() {
+        let (mut vertices, triangles) = sheet(16);
+        // Between the vertices of the patch, but for chance.
+        vertices[8 * 17 + 8].z += 6.0;
+        let all = (0..triangles.len() as u32).collect::<Vec<_>>();
+        let done =
+            regrid(&vertices, &triangles, &all, true, &FillOptions::default(), Progress::NONE).unwrap();
+        assert!(done.lost > 1.0 && done.lost < 6.0, "{}", done.lost);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::quadratic::Quadratic;
 use crate::path::placement::ROW_HEIGHT;
 
 /// Squared sides over twice the area, of an equilateral triangle.
-const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
+pub(crate) const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
 
 /// A corner with a smaller share of area in its squared sides counts as one with this.
 const THINNEST: f64 = 0.02;

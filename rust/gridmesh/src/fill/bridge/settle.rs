@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::loft::{Loft, Spot};
 use crate::error::Result;
 use crate::fill::surface::patchwork::Patchwork;
-use crate::geometry::corner::{Corner, Ideal};
+use crate::geometry::corner::{Corner, EQUILATERAL, Ideal};
 use crate::geometry::quadratic::Quadratic;
 use crate::progress::Progress;
 
@@ -26,8 +26,8 @@ const RESTS: f64 = 0.05;
 const POWER: i32 = 6;
 
 /// What a step gains of the sum over corners of badness to the power `POWER + 1`, for each unit that the model falls by: the
-/// model holds all but one factor fixed and leaves out the ideal's sides over its area.
-const GAINED: f64 = (POWER + 1) as f64 / 3.464;
+/// model holds all but one factor fixed and leaves out the ideal's sides over its area, which are those of a triangle here.
+const GAINED: f64 = (POWER + 1) as f64 / EQUILATERAL;
 
 /// Moves the vertices between the loops. `flat`: where all vertices are on the loft; those of the loops stay. `spots`: what the
 /// loft is there, for those between.
