@@ -9,8 +9,11 @@ use rustc_hash::FxHashMap;
 
 use super::parts::Parts;
 use crate::error::{Error, Result};
+use crate::fill::parallel::in_parallel;
 use crate::geometry::topology::{NONE, Topology};
 use crate::progress::Progress;
+
+const BROKE_DOWN: &str = "the Boolean operation on them broke down";
 
 /// A closed mesh of what is in any of the parts.
 pub(super) struct Union {
@@ -35,27 +38,40 @@ impl Union {
     pub fn new(parts: &Parts, progress: Progress<'_>) -> Result<Union> {
         let failed = |reason| Error::JoinFailed { reason, at: parts.vertices[0].into() };
         let first_id = Manifold::reserve_ids(parts.len() as u32);
-        let mut united: Option<Manifold> = None;
-        for part in 0..parts.len() {
-            progress.report(part as f64 / parts.len() as f64)?;
-            let mesh = solid(parts, part, first_id);
-            let step = || {
-                let own = Manifold::from_mesh_gl64(&mesh);
-                match &united {
-                    Some(all) => all.boolean_with_engine(&own, OpType::Add, BooleanEngine::Exact),
-                    None => own,
-                }
-            };
-            let next = catch_unwind(AssertUnwindSafe(step))
-                .map_err(|_| failed("the Boolean operation on them broke down"))?;
-            if next.is_empty() {
-                return Err(failed("the Boolean operation on them has no result"));
+        // Side by side, in pairs, pairs of pairs and so on: the order is the same on any number of threads.
+        let solids = (0..parts.len()).map(|part| solid(parts, part, first_id)).collect::<Vec<_>>();
+        let size = |solid: &MeshGL64| solid.tri_verts.len();
+        let mut all = in_parallel(&solids, size, progress.part(0.0, 0.2), |solid, progress| {
+            progress.report(0.0)?;
+            catch_unwind(AssertUnwindSafe(|| Manifold::from_mesh_gl64(solid))).map_err(|_| failed(BROKE_DOWN))
+        })?;
+        let rounds = f64::from(parts.len().next_power_of_two().ilog2().max(1));
+        for round in 0.. {
+            if all.len() < 2 {
+                break;
             }
-            united = Some(next);
+            let part = |k: i32| 0.2 + 0.8 * f64::from(k) / rounds;
+            let pairs = all.chunks(2).collect::<Vec<_>>();
+            let size = |pair: &&[Manifold]| pair.iter().map(Manifold::num_tri).sum();
+            let mut united =
+                in_parallel(&pairs, size, progress.part(part(round), part(round + 1)), |pair, progress| {
+                    progress.report(0.0)?;
+                    let [a, b] = pair else { return Ok(pair[0].clone()) };
+                    let unite = || a.boolean_with_engine(b, OpType::Add, BooleanEngine::Exact);
+                    let both = catch_unwind(AssertUnwindSafe(unite)).map_err(|_| failed(BROKE_DOWN))?;
+                    if both.is_empty() {
+                        Err(failed("the Boolean operation on them has no result"))
+                    } else {
+                        Ok(both)
+                    }
+                })?;
+            // What was left over is the first to get a partner.
+            united.rotate_right(all.len() % 2);
+            all = united;
         }
-        let united = united.ok_or(Error::Internal { reason: "no part" })?;
-        let mesh = catch_unwind(AssertUnwindSafe(|| united.get_mesh_gl64(-1)))
-            .map_err(|_| failed("the Boolean operation on them broke down"))?;
+        let united = all.pop().ok_or(Error::Internal { reason: "no part" })?;
+        let mesh =
+            catch_unwind(AssertUnwindSafe(|| united.get_mesh_gl64(-1))).map_err(|_| failed(BROKE_DOWN))?;
         progress.report(1.0)?;
         Self::of(parts, &mesh, first_id)
             .ok_or_else(|| failed("the Boolean operation on them has no sound result"))

@@ -121,10 +121,10 @@ impl Net {
         self.positions[a as usize].distance(self.positions[b as usize]) / wanted
     }
 
-    /// The triangles at the edge that faces a corner, each edge once; none at hard ones.
+    /// The triangles at the edge that faces a corner; none at hard ones and at the border.
     pub fn pair(&self, t: u32, k: usize) -> Option<Pair> {
         let s = self.across[t as usize][k];
-        if s == NONE || s < t {
+        if s == NONE {
             return None;
         }
         let [c, a, b] = [0, 1, 2].map(|i| self.triangles[t as usize][(k + i) % 3]);
