@@ -39,13 +39,13 @@ impl Union {
         let failed = |reason| Error::JoinFailed { reason, at: parts.vertices[0].into() };
         let first_id = Manifold::reserve_ids(parts.len() as u32);
         // Side by side, in pairs, pairs of pairs and so on: the order is the same on any number of threads.
-        let solids = (0..parts.len()).map(|part| solid(parts, part, first_id)).collect::<Vec<_>>();
+        let solids = groups(parts).iter().map(|group| solid(parts, group, first_id)).collect::<Vec<_>>();
         let size = |solid: &MeshGL64| solid.tri_verts.len();
         let mut all = in_parallel(&solids, size, progress.part(0.0, 0.2), |solid, progress| {
             progress.report(0.0)?;
             catch_unwind(AssertUnwindSafe(|| Manifold::from_mesh_gl64(solid))).map_err(|_| failed(BROKE_DOWN))
         })?;
-        let rounds = f64::from(parts.len().next_power_of_two().ilog2().max(1));
+        let rounds = f64::from(solids.len().next_power_of_two().ilog2().max(1));
         for round in 0.. {
             if all.len() < 2 {
                 break;
@@ -150,23 +150,48 @@ impl Union {
     }
 }
 
-/// A part as the Boolean operation takes it: each triangle a face of its own.
-fn solid(parts: &Parts, part: usize, first_id: u32) -> MeshGL64 {
-    let ([v, _, t], [v_end, _, t_end]) = (parts.first[part], parts.first[part + 1]);
-    let vertices = &parts.vertices[v as usize..v_end as usize];
-    let triangles = &parts.triangles[t as usize..t_end as usize];
-    // Vertices of no face would count as points of the solid's box.
-    let mut used = vec![NONE; vertices.len()];
-    let mut mesh = MeshGL64 { num_prop: 3, ..MeshGL64::default() };
-    for &corner in triangles.iter().flatten() {
-        let slot = &mut used[(corner - v) as usize];
-        if *slot == NONE {
-            *slot = (mesh.vert_properties.len() / 3) as u32;
-            mesh.vert_properties.extend(vertices[(corner - v) as usize].to_array());
+/// Parts whose boxes are apart in groups that need no Boolean operation among themselves: often all limbs of a body.
+fn groups(parts: &Parts) -> Vec<Vec<usize>> {
+    let bounds = (0..parts.len()).map(|part| {
+        let [v, end] = [part, part + 1].map(|part| parts.first[part][0] as usize);
+        let first = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        parts.vertices[v..end].iter().fold(first, |(low, high), &p| (low.min(p), high.max(p)))
+    });
+    let bounds = bounds.collect::<Vec<_>>();
+    let is_apart = |&a: &usize, &b: &usize| {
+        let ([low, high], [first, last]) = ([bounds[a].0, bounds[a].1], [bounds[b].0, bounds[b].1]);
+        high.cmplt(first).any() || last.cmplt(low).any()
+    };
+    let mut groups: Vec<Vec<usize>> = vec![];
+    for part in 0..parts.len() {
+        match groups.iter_mut().find(|group| group.iter().all(|other| is_apart(&part, other))) {
+            Some(group) => group.push(part),
+            None => groups.push(vec![part]),
         }
-        mesh.tri_verts.push(u64::from(*slot));
     }
-    mesh.run_original_id = vec![first_id + part as u32];
-    mesh.face_id = (0..triangles.len() as u64).collect();
+    groups
+}
+
+/// Parts as the Boolean operation takes them: each triangle a face of its own.
+fn solid(parts: &Parts, group: &[usize], first_id: u32) -> MeshGL64 {
+    let mut mesh = MeshGL64 { num_prop: 3, run_index: vec![0], ..MeshGL64::default() };
+    for &part in group {
+        let ([v, _, t], [v_end, _, t_end]) = (parts.first[part], parts.first[part + 1]);
+        let vertices = &parts.vertices[v as usize..v_end as usize];
+        let triangles = &parts.triangles[t as usize..t_end as usize];
+        // Vertices of no face would count as points of the solid's box.
+        let mut used = vec![NONE; vertices.len()];
+        for &corner in triangles.iter().flatten() {
+            let slot = &mut used[(corner - v) as usize];
+            if *slot == NONE {
+                *slot = (mesh.vert_properties.len() / 3) as u32;
+                mesh.vert_properties.extend(vertices[(corner - v) as usize].to_array());
+            }
+            mesh.tri_verts.push(u64::from(*slot));
+        }
+        mesh.run_original_id.push(first_id + part as u32);
+        mesh.run_index.push(mesh.tri_verts.len() as u64);
+        mesh.face_id.extend(0..triangles.len() as u64);
+    }
     mesh
 }
