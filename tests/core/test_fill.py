@@ -117,6 +117,24 @@ def test_a_sphere_is_restored() -> None:
             assert (edges_of(closed)[1] == 2).all()
 
 
+@pytest.mark.parametrize("cells", ["triangles", "quads"])
+@pytest.mark.parametrize("smooth", ["tangent", "curvature"])
+@pytest.mark.parametrize("n", [6, 7, 10, 12, 14, 16])
+def test_few_faces_end_a_tube_as_many_do(n: int, smooth: str, cells: str) -> None:
+    """The lid of a coarse tube is about as high as that of a fine one; with a curvature read at one vertex it was twice as high."""
+
+    def top(n: int) -> float:
+        vertices, faces = tube(n)
+        # Walls of quads.
+        polygons = np.tile(np.arange(n), 4) + np.repeat([0, 0, n, n], n)
+        fill = gridmesh.fill_hole(
+            vertices, faces, np.arange(n), smooth=smooth, cells=cells, polygons=polygons
+        )
+        return fill.vertices[:, 2].max()
+
+    assert 0.6 < top(n) / top(64) < 1.15
+
+
 def test_direction_and_start_of_the_loop_are_forgotten_but_for_the_winding() -> None:
     vertices, faces = tube(17)
     fill = gridmesh.fill_hole(vertices, faces, np.arange(17))

@@ -366,7 +366,7 @@ def test_a_blend_wider_than_a_part_leaves_the_part(blend):
         ((ball(edge=0.3), (bar_vertices @ turn + [0.3, 0, 0.4], quads)), {0, 1}),
     ):
         report = joined(*parts, blend=blend).report
-        assert abs(report["volume"] / report["exact_volume"] - 1) <= (0.06 if blend > 2 else 0.03)
+        assert abs(report["volume"] / report["exact_volume"] - 1) <= (0.1 if blend > 2 else 0.03)
         assert report["creased"] in creased
         assert (report["exact"], report["self_intersections"]) == (0, 0)
 

@@ -1,6 +1,7 @@
 //! A patch brought to space: smooth to its surroundings, free of intersections.
 
 pub(crate) mod around;
+mod coarse;
 mod diagonals;
 pub(crate) mod faces;
 pub(crate) mod fair;

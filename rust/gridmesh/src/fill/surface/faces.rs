@@ -36,6 +36,7 @@ impl Shape {
         let mut fine = Patchwork::of(work.n, end + more, work.outer.clone(), triangles, n_patch)?;
         fine.corners =
             Some(CornerStars::new(&quads, work.single().first().copied(), work.n, end).with_centres(&quads));
+        fine.later.clone_from(&work.later);
         let mut flat = self.flat.clone();
         flat.extend(quads.iter().map(|q| q.iter().map(|&v| self.flat[v as usize]).sum::<DVec2>() / 4.0));
         Ok(Shape { work: fine, flat, ..self.clone() })
@@ -82,7 +83,8 @@ impl Shape {
     /// Those brought to the diagonals.
     fn finished(&self, mut solved: Solved, mesh: &[DVec3], progress: Progress<'_>) -> Result<Solved> {
         let mut polished = solved.positions.clone();
-        if self.smooth != Smooth::Flat && !self.work.inner().is_empty() {
+        let bends = self.smooth != Smooth::Flat && !self.work.inner().is_empty();
+        if bends && !self.is_coarse(solved.rim_angle) {
             match self.polish(&mut polished, progress.part(0.0, 0.0)) {
                 Ok(()) => {
                     for (p, to) in solved.positions.iter_mut().zip(polished) {

@@ -100,7 +100,13 @@ impl Shape {
         let mut stages = vec![];
         if !work.inner().is_empty() && self.smooth != Smooth::Flat && work.closed[..work.n].contains(&true) {
             stages.push(solved.positions.clone());
-            match self.bend(&mut solved.positions, membrane, &mut stages, progress.part(0.2, 0.6)) {
+            let part = progress.part(0.2, 0.6);
+            let bent = if self.is_coarse(rim_angle) {
+                self.bend_finer(&mut solved.positions, part)
+            } else {
+                self.bend(&mut solved.positions, membrane, &mut stages, part)
+            };
+            match bent {
                 Ok(()) => {}
                 // Triangles without area can spoil the equations: what was reached before has to do.
                 Err(Error::Solver { .. }) => {
@@ -187,7 +193,7 @@ impl Shape {
         Ok(Some(membrane))
     }
 
-    /// Bends the film; `stages` gets what lies between, to fall back on.
+    /// See [`bend`].
     pub(in crate::fill) fn bend(
         &self,
         positions: &mut [DVec3],
@@ -195,39 +201,7 @@ impl Shape {
         stages: &mut Vec<Vec<DVec3>>,
         progress: Progress<'_>,
     ) -> Result<()> {
-        let work = &self.work;
-        let bending = Bending::new(work, progress.part(0.0, 0.0))?;
-        progress.report(0.1)?;
-        bending.positions(positions, progress.part(0.1, 0.1))?;
-        sound(positions)?;
-        progress.report(0.15)?;
-        let membrane = match (self.smooth, membrane) {
-            (Smooth::Curvature, None) => Some(Membrane::new(work, progress.part(0.15, 0.15))?),
-            (Smooth::Curvature, some) => some,
-            _ => None,
-        };
-        let seam = if membrane.is_some() { SEAM_OF_CURVATURE } else { SEAM };
-        let rounds = match work.inner().len() {
-            0..5_000 => ROUNDS,
-            5_000..30_000 => 1,
-            _ => 0,
-        };
-        for _ in 0..rounds {
-            stages.push(positions.to_vec());
-            for _ in 0..SWEEPS {
-                progress.report(0.2)?;
-                sweep(work, positions);
-            }
-            progress.report(0.5)?;
-            let here = progress.part(0.5, 0.5);
-            let target = membrane.as_ref().map(|m| curvature_target(work, m, positions, here)).transpose()?;
-            let [before, after] = bending.normal_step(positions, seam, target.as_deref(), here)?;
-            sound(positions)?;
-            if after > (1.0 - SETTLED) * before {
-                break;
-            }
-        }
-        Ok(())
+        bend(&self.work, self.smooth, positions, membrane, stages, progress)
     }
 
     /// The loop, the patch's vertices and its triangles.
@@ -300,6 +274,49 @@ impl Shape {
         }
         Ok(all)
     }
+}
+
+/// Bends the film; `stages` gets what lies between, to fall back on.
+pub(super) fn bend(
+    work: &Patchwork,
+    smooth: Smooth,
+    positions: &mut [DVec3],
+    membrane: Option<Membrane<'_>>,
+    stages: &mut Vec<Vec<DVec3>>,
+    progress: Progress<'_>,
+) -> Result<()> {
+    let bending = Bending::new(work, progress.part(0.0, 0.0))?;
+    progress.report(0.1)?;
+    bending.positions(positions, progress.part(0.1, 0.1))?;
+    sound(positions)?;
+    progress.report(0.15)?;
+    let membrane = match (smooth, membrane) {
+        (Smooth::Curvature, None) => Some(Membrane::new(work, progress.part(0.15, 0.15))?),
+        (Smooth::Curvature, some) => some,
+        _ => None,
+    };
+    let seam = if membrane.is_some() { SEAM_OF_CURVATURE } else { SEAM };
+    let rounds = match work.inner().len() {
+        0..5_000 => ROUNDS,
+        5_000..30_000 => 1,
+        _ => 0,
+    };
+    for _ in 0..rounds {
+        stages.push(positions.to_vec());
+        for _ in 0..SWEEPS {
+            progress.report(0.2)?;
+            sweep(work, positions);
+        }
+        progress.report(0.5)?;
+        let here = progress.part(0.5, 0.5);
+        let target = membrane.as_ref().map(|m| curvature_target(work, m, positions, here)).transpose()?;
+        let [before, after] = bending.normal_step(positions, seam, target.as_deref(), here)?;
+        sound(positions)?;
+        if after > (1.0 - SETTLED) * before {
+            break;
+        }
+    }
+    Ok(())
 }
 
 /// Refuses positions that are not finite, as surroundings of very different sizes can bring about.

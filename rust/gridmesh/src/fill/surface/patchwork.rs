@@ -137,9 +137,8 @@ impl Patchwork {
             self.start.push(self.near.len() as u32);
         }
         let slot = |p: u32, q: u32| {
-            let range = self.range(p as usize);
-            let at = self.near[range.clone()].iter().position(|&u| u == q);
-            at.map(|at| (range.start + at) as u32).ok_or(Error::Internal { reason: "an edge has no slot" })
+            let slot = self.slot(p as usize, q as usize).map(|slot| slot as u32);
+            slot.ok_or(Error::Internal { reason: "an edge has no slot" })
         };
         let facing = |t: &[u32; 3]| {
             let one = |k: usize| {
@@ -173,6 +172,18 @@ impl Patchwork {
     /// Where the neighbours of a vertex are in `near`.
     pub fn range(&self, v: usize) -> std::ops::Range<usize> {
         self.start[v] as usize..self.start[v + 1] as usize
+    }
+
+    /// Where in `near` an edge is, from its first end.
+    pub fn slot(&self, p: usize, q: usize) -> Option<usize> {
+        let range = self.range(p);
+        let at = self.near[range.clone()].iter().position(|&u| u as usize == q);
+        at.map(|at| range.start + at)
+    }
+
+    /// For each corner of a triangle where in `near` the edge that faces it is, from either end.
+    pub fn slots(&self, t: usize) -> [[u32; 2]; 3] {
+        self.slots[t]
     }
 
     /// See `fans`.
