@@ -104,7 +104,7 @@ def fill(source: Path, pattern: str | None, options: dict[str, Any], *, scripts:
     most = options.get("max_open_edges", defaults.MAX_OPEN_EDGES)
     reports: list[dict[str, Any]] = []
     reasons: list[str] = []
-    larger = 0
+    larger = outer = 0
     for ob in found:
         n_open = _open_edges(ob.data)
         if n_open > most:
@@ -118,11 +118,14 @@ def fill(source: Path, pattern: str | None, options: dict[str, Any], *, scripts:
         reports += job.reports
         reasons += [f"'{ob.name}': {problem.reason}" for problem in job.found.problems]
         larger += job.found.larger + job.found.hidden
+        outer += job.found.outer
     if reasons and not reports:
         raise MakeError("holes", "; ".join(reasons))
     notes = notes + reasons + filling.warnings_of(reports)
     if larger:
         notes.append(f"{larger} holes left open: hidden, or with more than max_edges edges")
+    if outer:
+        notes.append(f"{outer} outer borders of flat sheets left open")
     return Made(found, _numbers("holes", len(reports), reports), notes)
 
 

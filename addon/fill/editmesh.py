@@ -14,7 +14,7 @@ import numpy as np
 from ..bodies.outlines import LARGEST
 from ..data import attributes
 from ..data.mirrors import mirror_planes
-from . import holes
+from . import borders, holes
 from .holes import Found, OpenEdge, Problem
 from .patches import Filled, Snapshot
 
@@ -83,17 +83,35 @@ class EditMesh:
         )
 
     def all_holes(self, max_edges: int) -> Found:
-        """Find all holes of at most so many edges (0: any number), but those that a Mirror modifier closes."""
+        """Find all holes of at most so many edges (0: any number), but those that a Mirror modifier closes.
+
+        The outer borders of flat sheets are none.
+        """
         found = holes.all_of(self.open_edges(), max_edges)
         planes, within = mirror_planes(self.ob)
         linear = np.array(self.ob.matrix_world.to_3x3(), float)
-        for hole in list(found.holes) if planes else ():
+        for hole in list(found.holes):
             points = np.array([self.bm.verts[vertex].co for vertex in hole.vertices], float) @ linear.T
+            if borders.is_outer(points, self._into_faces(hole) @ linear.T):
+                found.holes.remove(hole)
+                found.outer += 1
+                continue
             near = max(within, _FLAT * float(np.ptp(points, axis=0).max()))
             if any((np.abs((points - point) @ normal) <= near).all() for point, normal in planes):
                 found.holes.remove(hole)
                 found.mirrored += 1
         return found
+
+    def _into_faces(self, hole: holes.Hole) -> np.ndarray:
+        """From each edge of a hole to the middle of its face, (n, 3); zero where it has none."""
+        verts = self.bm.verts
+        into = np.zeros((len(hole.vertices), 3))
+        for k, vertex in enumerate(hole.vertices):
+            other = hole.vertices[(k + 1) % len(hole.vertices)]
+            edge = self.bm.edges.get((verts[vertex], verts[other]))
+            if edge is not None and edge.link_faces:
+                into[k] = edge.link_faces[0].calc_center_median() - verts[vertex].co
+        return into
 
     def has_selection(self) -> bool:
         """Whether anything is selected."""

@@ -53,6 +53,8 @@ class Found:
     hidden: int = 0
     mirrored: int = 0
     """At the plane of a Mirror modifier, where the other half goes on."""
+    outer: int = 0
+    """Outer borders of flat sheets, on which a patch would lie."""
     _known: set[frozenset[int]] = field(default_factory=set)
 
     def add(self, hole: Hole) -> None:

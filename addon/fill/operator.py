@@ -41,7 +41,7 @@ class MESH_OT_gridmesh_fill(PatchFaces, bpy.types.Operator):  # noqa: N801
     )
     max_edges: IntProperty(
         name="Max Edges",
-        description="Holes with more edges are left open; 0 fills holes of any size, the outer border too",
+        description="Holes with more edges are left open; 0 fills holes of any size. The outer border of a flat sheet is no hole",
         default=defaults.MAX_HOLE_EDGES,
         min=0,
         soft_max=1000,

@@ -21,6 +21,8 @@ _COUNTED = {
     "{} hidden holes": "{0} ausgeblendete Löcher",
     "{} hole": "{0} Loch",
     "{} holes": "{0} Löcher",
+    "{} outer border": "{0} äußerer Rand",
+    "{} outer borders": "{0} äußere Ränder",
     "{} irregular vertex": "{0} unregelmäßiger Punkt",
     "{} irregular vertices": "{0} unregelmäßige Punkte",
     "{} layer": "{0} Ebene",
@@ -680,6 +682,9 @@ _FILLS = {
     "not joined": (
         "{0} der {1} Kanten einer Schleife sind ausgewählt; alle auswählen, oder eine, die für die Schleife steht: Reihen "
         "von Kanten werden nicht verbunden"
+    ),
+    "{} left open, inside which the mesh lies already; select a border to fill it": (
+        "{0} offen gelassen, worin das Mesh schon liegt; zum Füllen einen Rand auswählen"
     ),
     "{} left open at the plane of a Mirror modifier": "{0} an der Ebene eines Spiegeln-Modifikators offen gelassen",
     "{} lost shape: the new faces are up to {} edges of the border off, which are too long for what lies within; select "

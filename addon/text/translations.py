@@ -683,8 +683,8 @@ GERMAN = {
         "treffen, wie an einer Würfelecke"
     ),
     "Curvature": "Krümmung",
-    "Holes with more edges are left open; 0 fills holes of any size, the outer border too": (
-        "Löcher mit mehr Kanten bleiben offen; 0 füllt Löcher jeder Größe, auch den äußeren Rand"
+    "Holes with more edges are left open; 0 fills holes of any size. The outer border of a flat sheet is no hole": (
+        "Löcher mit mehr Kanten bleiben offen; 0 füllt Löcher jeder Größe. Der äußere Rand eines flachen Blatts ist kein Loch"
     ),
     "How a patch continues the surface around it": "Wie ein Flicken die Fläche um ihn herum fortsetzt",
     "Keep Hard Edges": "Harte Kanten erhalten",

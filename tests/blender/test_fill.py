@@ -92,6 +92,42 @@ def test_ball_stays_a_ball():
     assert abs(radius - 1).max() < 0.1
 
 
+def height_of(vertex):
+    return 0.3 * np.sin(vertex.co.x) * np.cos(vertex.co.y)
+
+
+@pytest.mark.parametrize("bent", [False, True])
+@pytest.mark.parametrize("max_edges", [0, 100])
+def test_all_holes_of_a_sheet_but_its_outer_border(bent, max_edges, capfd):
+    ob = without_faces(grid(6), lambda c: max(abs(c.x), abs(c.y)) > 1)
+    for vertex in ob.data.vertices if bent else ():
+        vertex.co.z = height_of(vertex)
+    before = Before(ob)
+    edit(ob)
+    fill(holes="ALL", max_edges=max_edges)
+    leave()
+    before.check(ob, closed=False)
+    outer = rim_of(ob)
+    assert len(outer) == 24
+    told = capfd.readouterr().out
+    assert "Filled 1 hole: " in told
+    assert "1 outer border left open, inside which the mesh lies already; select a border to fill it" in told
+
+
+def test_a_sheet_without_a_hole_has_none_and_its_border_is_filled_if_selected(capfd):
+    ob = grid(4)
+    edit(ob)
+    assert bpy.ops.mesh.gridmesh_fill(holes="ALL") == {"CANCELLED"}
+    assert "1 outer border left open" in capfd.readouterr().out
+    leave()
+    assert len(rim_of(ob)) == 16
+    bm = edit(ob)
+    select(ob, rim(bm))
+    fill()
+    leave()
+    assert len(rim_of(ob)) == 0
+
+
 class TestSelection:
     def hole(self, **options):
         """A grid with two holes of four edges, in Edit Mode."""

@@ -192,3 +192,80 @@ def test_a_spike_on_a_square_is_a_limb():
         [[0, 0], [10, 0], [10, 4.8], [14, 4.8], [14, 5.2], [10, 5.2], [10, 10], [0, 10]]
     )
     assert limbs[0, 2] == pytest.approx(0.4, rel=0.05)
+
+
+def shaken(points, step, tremble, seed):
+    """The outline with points a step apart that tremble, as of an unsteady pen."""
+    points = np.r_[points, points[:1]]
+    arc = np.r_[0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    at = np.linspace(0, arc[-1], max(8, round(arc[-1] / step)), endpoint=False)
+    even = np.c_[np.interp(at, arc, points[:, 0]), np.interp(at, arc, points[:, 1])]
+    return even + tremble * np.random.default_rng(seed).uniform(-1, 1, even.shape)
+
+
+def chosen(points, holes=()):
+    return density.automatic(np.asarray(points), list(holes))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("tremble", [0.01, 0.04, 0.08])
+@pytest.mark.parametrize("px", [60, 120, 200])
+def test_a_shaky_compact_stroke_gets_the_least_number(px, tremble, seed):
+    """A stroke of so many pixels with a point every three, and a part of its radius off to either side."""
+    points = shaken(circle() * [px / 2, 0.3 * px], 3.0, 0.0, seed)
+    points = points * (1 + tremble * np.random.default_rng(seed).uniform(-1, 1, (len(points), 1)))
+    assert chosen(points) == 1000
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("name", ["guitar", "frog", "puzzle", "whale"])
+def test_a_shaky_drawing_gets_a_number_like_the_smooth_one(name, seed):
+    points = DRAWINGS[name]["points"]
+    size = np.ptp(points, axis=0).max()
+    shaky = shaken(points, 0.015 * size, 0.004 * size, seed)
+    assert chosen(shaky) == pytest.approx(chosen(points), rel=0.5)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_short_limb_may_be_lost_in_a_shaky_drawing_but_makes_no_more(seed):
+    """The thinnest arm of the octopus is 13% of it long."""
+    points = DRAWINGS["octopus"]["points"]
+    size = np.ptp(points, axis=0).max()
+    assert chosen(shaken(points, 0.015 * size, 0.004 * size, seed)) <= 1.5 * chosen(points)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_shaky_fingers_still_get_five_across(seed):
+    width = 0.12
+    points = shaken(hand(width), 0.03, 0.008, seed)
+    limbs = gridmesh.thickness(points)
+    assert (limbs[:, 2] < 1.3 * width).sum() == 5
+    assert limbs[0, 2] == pytest.approx(width, rel=0.15)
+    report = gridmesh.mesh_sketch(points, triangles="auto").report
+    assert 4.2 <= report["across"] * width / limbs[0, 2] <= 6
+
+
+def test_the_number_of_a_shaky_stroke_turns_and_scales_with_it_and_has_no_beginning():
+    points = shaken(hand(0.12), 0.03, 0.008, 0)
+    wanted = chosen(points)
+    for scale in SIZES:
+        for turn in (0.0, 0.5, 2.0):
+            assert chosen(scale * turned(points, turn)) == pytest.approx(wanted, rel=0.1)
+    assert chosen(np.roll(points, 77, axis=0)) == pytest.approx(wanted, rel=0.1)
+    assert chosen(points[::-1]) == pytest.approx(wanted, rel=0.1)
+    halves = np.stack([points, (points + np.roll(points, -1, axis=0)) / 2], axis=1).reshape(-1, 2)
+    assert chosen(halves) == pytest.approx(wanted, rel=0.1)
+
+
+@pytest.mark.parametrize("length", [0.3, 0.5])
+def test_spikes_that_are_slips_of_the_pen_do_not_count(length):
+    points = np.array(bar(10, 3, n=60))
+    for k in (10, 25, 40):
+        points[k] *= 1 + length / np.linalg.norm(points[k])
+    assert gridmesh.thickness(points)[0, 2] == pytest.approx(3.0, rel=0.1)
+
+
+def test_walls_that_touch_after_rounding_are_measured():
+    """Two places became one, and the triangulation has one vertex less than there were."""
+    points = np.array([[-0.5, -0.5], [0.5, -0.5], [1e-17, 0.0], [0.5, 0.5], [-0.5, 0.5], [-1e-17, 0.0]])
+    assert np.isfinite(gridmesh.thickness(points)).all()

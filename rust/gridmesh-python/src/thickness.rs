@@ -19,9 +19,10 @@ use crate::{arrays, error};
 /// -------
 /// (l, 4) float64 array, read-only
 ///     A row for each limb, thinnest first: the middle of its thinnest place (x, y), its width there (the mean over a
-///     stretch as long as it is wide) and the limb's length, in the units of the outline. The outer third of a limb
-///     does not count, so that tips may be sharp; corners and a trembling line are no limbs. A compact shape has
-///     none. In O(n log n).
+///     stretch as long as it is wide) and the limb's length, in the units of the outline. The outer half of a limb
+///     does not count, so that tips may be sharp. What is shorter than a tenth of the drawing's size is no limb, more
+///     where the line is ragged: corners, a trembling line and slips of the pen are none. A compact shape has none.
+///     In O(n log n).
 ///
 /// Raises
 /// ------
