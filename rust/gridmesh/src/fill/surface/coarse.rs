@@ -69,7 +69,7 @@ impl Finer {
             let after = work.after(v);
             let slots = [[v, after], [after, v]].map(|[a, b]| work.slot(a, b));
             let [Some(first), Some(second)] = slots else {
-                return Err(Error::Internal { reason: "an edge of a loop has no triangle" });
+                return Err(Error::Internal { reason: "an edge has no slot" });
             };
             own[v] = all.len() as u32;
             all.push(positions[v]);
