@@ -310,6 +310,14 @@ def warnings_of(report: dict[str, Any], *, capped: bool) -> list[str]:
             if n == 1
             else f"{caps} bulge less than the mesh around them, or lie flat; rounder, they would break through the mesh"
         )
+    if report["flat_caps"]:
+        n = report["flat_caps"]
+        caps = counted(n, "cap")
+        warnings.append(
+            f"{caps} lies flat, since it has holes, goes around a closed stroke or ends at a plane of symmetry; only others bulge"
+            if n == 1
+            else f"{caps} lie flat, since they have holes, go around a closed stroke or end at a plane of symmetry; only others bulge"
+        )
     if report["folded"]:
         n = report["folded"]
         caps = counted(n, "cap")

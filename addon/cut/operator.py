@@ -380,7 +380,7 @@ class OBJECT_OT_gridmesh_cut(DrawnCut, bpy.types.Operator):  # noqa: N801
             self.report({"INFO"}, told(listed(notes)))
         summed = {
             name: sum(report[name] for report in reports)
-            for name in ("open_lines", "uncapped", "folded", "reduced_caps")
+            for name in ("open_lines", "uncapped", "flat_caps", "folded", "reduced_caps")
         }
         warnings = missed + cutting.warnings_of(summed, capped=self.use_cap)
         if warnings:

@@ -449,6 +449,14 @@ _CUTS = {
     "'{}' has the same mesh as '{}' and is what that is; make it single-user to cut it by itself": (
         "'{0}' hat dasselbe Mesh wie '{1}' und ist, was jenes ist; zum Einzelnutzer machen, um es für sich zu schneiden"
     ),
+    "{} lies flat, since it has holes, goes around a closed stroke or ends at a plane of symmetry; only others bulge": (
+        "{0} ist flach, da er Löcher hat, um einen geschlossenen Strich läuft oder an einer Symmetrieebene endet; nur "
+        "andere wölben sich"
+    ),
+    "{} lie flat, since they have holes, go around a closed stroke or end at a plane of symmetry; only others bulge": (
+        "{0} sind flach, da sie Löcher haben, um einen geschlossenen Strich laufen oder an einer Symmetrieebene enden; "
+        "nur andere wölben sich"
+    ),
     "{} bulges less than the mesh around it, or lies flat; rounder, it would break through the mesh": (
         "{0} ist weniger gewölbt als das Mesh ringsum, oder flach; runder stieße er durch das Mesh"
     ),
@@ -858,6 +866,9 @@ _LIBRARY = {
         "der Strich hat in Richtung des Schnitts gesehen {0} verschiedene Punkte; ein offener braucht 2, ein "
         "geschlossener 3: quer über das Modell zeichnen, oder in einer anderen Richtung schneiden"
     ),
+    "the cut would get about {} {}; at most {} are supported, use a larger edge length": (
+        "der Schnitt bekäme rund {0} {1}; höchstens {2} werden unterstützt, eine größere Kantenlänge nehmen"
+    ),
     "the stroke does not divide the mesh: all of it lies on one side, continued ends included; draw across the model": (
         "der Strich teilt das Mesh nicht: alles liegt auf einer Seite, auch mit fortgesetzten Enden; quer über das "
         "Modell zeichnen"
@@ -939,6 +950,8 @@ _LIBRARY_PARTS = {
     "lies inside hole {}": "liegt in Loch {0}",
     "lies outside the outline": "liegt außerhalb des Umrisses",
     "meets hole {}": "trifft Loch {0}",
+    "edges along its lines": "Kanten an seinen Linien",
+    "triangles in its caps": "Dreiecke in seinen Deckeln",
     "meets the outline": "trifft den Umriss",
     "a face has no area": "eine Fläche hat keinen Inhalt",
     "a face is on both sides": "eine Fläche liegt auf beiden Seiten",

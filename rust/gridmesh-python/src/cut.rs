@@ -49,8 +49,9 @@ use crate::{arrays, reports};
 ///     edges.
 /// extend_ends : bool
 ///     True continues the ends of an open stroke to infinity. False continues them only as far as the part of the mesh
-///     that the stroke itself crosses: cut lines that it does not meet stay whole, and parts of the mesh
-///     that it does not cross belong to the larger piece, or to the only one that is kept.
+///     that the stroke itself crosses: cut lines that it does not meet stay whole. Parts of the mesh that it does not
+///     cross belong to the side of the line, continued, on which they lie; those on both, and all if the line would
+///     cross what is cut elsewhere, too, to the larger piece, or to the only one that is kept.
 /// mirrors : sequence of k pairs of a point and a normal, (k, 2, 3)
 ///     Planes at which the mesh is open because its mirror image continues it there: cut lines with both ends on one of
 ///     them are closed along it and capped.
@@ -283,7 +284,7 @@ pub fn polygons(faces: &Bound<'_, PyAny>) -> PyResult<(Vec<u32>, Vec<u32>)> {
 ///     whose line crosses itself on the swept surface), "rim_min_angle" (smallest angle of a face along the cut, radians), "defect" (largest distance
 ///     of rebuilt faces from the old surface), "volumes" (of the pieces), "volume" (of the input), "repeated"
 ///     (divisions and caps that had to be made in another way), "reduced_caps" (caps that bulge less than they should
-///     because they would leave the model), and "seconds", a dict of times per stage.
+///     because they would leave the model), "flat_caps" (caps that lie flat whatever `smooth` is), and "seconds", a dict of times per stage.
 #[pyclass(frozen, module = "gridmesh")]
 pub struct Cut {
     #[pyo3(get)]
@@ -347,6 +348,7 @@ fn report(py: Python<'_>, report: &CutReport) -> PyResult<Py<PyDict>> {
     dict.set_item("cap_min_angle", report.cap_min_angle)?;
     dict.set_item("cap_radius_ratio", report.cap_radius_ratio)?;
     dict.set_item("reduced_caps", report.reduced_caps)?;
+    dict.set_item("flat_caps", report.flat_caps)?;
     dict.set_item("folded", report.folded)?;
     dict.set_item("rim_min_angle", report.rim_min_angle)?;
     dict.set_item("defect", report.defect)?;

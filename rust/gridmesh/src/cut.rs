@@ -30,7 +30,7 @@ pub use self::report::CutReport;
 use self::sheet::Sheet;
 use crate::cut::cutting::Cutting;
 use crate::cut::divide::{cross, locate};
-use crate::cut::sheet::reach::Alone;
+use crate::cut::sheet::sides::Alone;
 use crate::cut::sheet::{offset, reach, simplify};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
@@ -71,7 +71,7 @@ pub struct Cut {
 /// [`Error::StrokeTooShort`] and [`Error::SelfIntersecting`] for strokes that sweep no surface,
 /// [`Error::BehindEye`], [`Error::StrokeMisses`] if nothing is divided, [`Error::StillJoined`] if what a stroke crosses
 /// without its ends continued does not come apart, [`Error::CutFailed`] where rounding leaves no
-/// consistent division, [`Error::TooLarge`] if an `edge_length` would make more than 20,000 edges along the cut or two million
+/// consistent division, [`Error::CutTooLarge`] if an `edge_length` would make more than 20,000 edges along the cut or two million
 /// triangles of caps, [`Error::Cancelled`]. Nothing is returned half cut.
 ///
 /// Source: Nealen et al. 2009, section V and figure 2. The paper takes the cut itself from FiberMesh.
@@ -137,11 +137,11 @@ fn cut_along(cutting: Cutting<'_>, stroke: &[DVec3], progress: Progress<'_>) -> 
     let Cutting { vertices, options, .. } = cutting;
     if options.gap == 0.0 {
         let sheet = Sheet::new(vertices, stroke, options.sweep)?;
-        return retry::divide(cutting, sheet, Alone::Kept(options.keep), progress).map(|done| done.0);
+        return retry::divide(cutting, sheet, &Alone::Kept(options.keep), progress).map(|done| done.0);
     }
     // A kerf is two cuts: one to either side of the stroke.
     let mut both: Option<Cut> = None;
-    // What is not crossed goes to the same side in both.
+    // What is not cut goes to the same side in both.
     let mut alone = Alone::Kept(options.keep);
     let sides = [(Keep::Left, 0.5 * options.gap), (Keep::Right, -0.5 * options.gap)];
     for (k, (keep, shift)) in sides.into_iter().filter(|(k, _)| options.keep.has(*k)).enumerate() {
@@ -149,8 +149,8 @@ fn cut_along(cutting: Cutting<'_>, stroke: &[DVec3], progress: Progress<'_>) -> 
         let sheet =
             Sheet::new(vertices, &offset::shifted(vertices, stroke, options.sweep, shift)?, options.sweep)?;
         let here = progress.part(0.5 * k as f64, 0.5 * (k + 1) as f64);
-        let (one, side) = retry::divide(Cutting { options: &half, ..cutting }, sheet, alone, here)?;
-        alone = side.map_or(alone, Alone::On);
+        let (one, side) = retry::divide(Cutting { options: &half, ..cutting }, sheet, &alone, here)?;
+        alone = side.map_or(alone, Alone::As);
         both = Some(match both {
             None => one,
             Some(mut first) => {

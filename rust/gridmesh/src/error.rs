@@ -317,6 +317,18 @@ pub enum Error {
          across the model"
     )]
     StrokeMisses,
+    /// A cut would have more edges or triangles than is supported.
+    #[error(
+        "the cut would get about {number:.0} {what}; at most {limit:.0} are supported, use a larger edge length"
+    )]
+    CutTooLarge {
+        /// What there would be too many of: `edges along its lines` or `triangles in its caps`.
+        what: &'static str,
+        /// Their number, estimated.
+        number: f64,
+        /// The largest number allowed.
+        limit: f64,
+    },
     /// A point is not in front of the eye.
     #[error(
         "point {point} of the {what} is not in front of the eye; move the eye back, or cut along a \

@@ -10,7 +10,8 @@ use super::divide::parted::Parted;
 use super::divide::split;
 use super::report::Tally;
 use super::sheet::Sheet;
-use super::sheet::reach::{self, Alone};
+use super::sheet::reach;
+use super::sheet::sides::{Alone, retell};
 use super::{bounds, rim};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
@@ -46,7 +47,7 @@ impl<'a> Attempt<'a> {
     pub fn new(
         cutting: Cutting<'a>,
         sheet: &'a Sheet,
-        alone: Alone,
+        alone: &Alone,
         progress: Progress<'_>,
     ) -> Result<Attempt<'a>> {
         let Cutting { vertices, faces, options } = cutting;
@@ -55,7 +56,7 @@ impl<'a> Attempt<'a> {
         let mut edges = cross::cross(vertices, faces, sheet, &locator, &met);
         if !options.extend_ends && !sheet.closed {
             let reach = reach::reach(vertices, sheet, &met, &edges, progress)?;
-            reach.restrict(vertices, faces, &mut met, &mut edges, alone)?;
+            retell(&reach.cut, (vertices, faces), &mut met, &mut edges, alone)?;
         }
         Ok(Attempt { cutting, sheet, locator, met, edges })
     }

@@ -11,14 +11,13 @@ use crate::error::{Error, Result};
 /// Triangles that caps may have.
 const CAPS: f64 = 2e6;
 
-/// Triangles that may lie along the lines of a cut: two on each side of every edge.
-const ALONG: f64 = 80_000.0;
-const BESIDE: f64 = 4.0;
+/// Edges that the lines of a cut may have.
+const ALONG: f64 = 20_000.0;
 
-/// Refuses edge lengths that would make too many triangles, by the length of the lines and the area within them.
+/// Refuses edge lengths that would make too many edges or triangles, by the length of the lines and the area within them.
 ///
 /// # Errors
-/// [`Error::TooLarge`].
+/// [`Error::CutTooLarge`].
 pub(super) fn check(
     vertices: &[DVec3],
     faces: Polygons<'_>,
@@ -30,7 +29,7 @@ pub(super) fn check(
     let mut edges = parted.cut.keys().copied().collect::<Vec<_>>();
     edges.sort_unstable();
     let along: f64 = edges.iter().map(|&(a, b)| position(a).distance(position(b))).sum();
-    refuse(BESIDE * (along / length), ALONG)?;
+    refuse("edges along its lines", along / length, ALONG)?;
     let loops = loops::trace(faces, parted, sheet);
     let (mut area, mut heights, mut count) = (0.0, 0.0, 0usize);
     for l in &loops.closed {
@@ -45,9 +44,10 @@ pub(super) fn check(
     }
     // Through an eye the places are angles.
     let unit = if sheet.view.central { heights / count.max(1) as f64 } else { 1.0 };
-    refuse((unit * area).abs() / length / length / (0.25 * 3f64.sqrt()), CAPS)
+    let triangles = (unit * area).abs() / length / length / (0.25 * 3f64.sqrt());
+    refuse("triangles in its caps", triangles, CAPS)
 }
 
-fn refuse(triangles: f64, limit: f64) -> Result<()> {
-    if triangles <= limit { Ok(()) } else { Err(Error::TooLarge { triangles, limit }) }
+fn refuse(what: &'static str, number: f64, limit: f64) -> Result<()> {
+    if number <= limit { Ok(()) } else { Err(Error::CutTooLarge { what, number, limit }) }
 }

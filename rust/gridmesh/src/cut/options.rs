@@ -76,7 +76,8 @@ pub struct CutOptions {
     pub cells: CellShape,
     /// Continue the ends of an open stroke to infinity. Otherwise they are continued as far as the part of the
     /// mesh that the stroke itself crosses: only those cut lines are cut that it meets, and others around the
-    /// same caps. What it does not cross stays whole, in the larger piece, or in the only one that is kept.
+    /// same caps. What it does not cross stays whole: on the side of the line on which all of it lies, or
+    /// else, and where the line continued would cross what is cut elsewhere, in the larger piece, or in the only one that is kept.
     pub extend_ends: bool,
     /// Planes that the mesh is open at: cut lines with both ends on one of them are closed along it, flat.
     pub mirrors: Vec<Mirror>,

@@ -34,6 +34,8 @@ pub struct CutReport {
     /// Caps that bulge less than they should, or not at all, because they would leave the model or repeat one of its edges,
     /// or their line has edges without a length or touches itself.
     pub reduced_caps: usize,
+    /// Caps that lie flat though they were to bulge, because they have holes, go around a closed stroke, or end at a plane of symmetry.
+    pub flat_caps: usize,
     /// Caps that lie folded on the swept surface, because their line crosses itself there.
     pub folded: usize,
     /// Smallest angle of a face along the cut, caps aside, in radians; pi if there is none.
@@ -73,6 +75,7 @@ impl CutReport {
         self.cap_irregular += other.cap_irregular;
         self.cap_min_angle = self.cap_min_angle.min(other.cap_min_angle);
         self.reduced_caps += other.reduced_caps;
+        self.flat_caps += other.flat_caps;
         self.folded += other.folded;
         self.rim_min_angle = self.rim_min_angle.min(other.rim_min_angle);
         self.defect = self.defect.max(other.defect);

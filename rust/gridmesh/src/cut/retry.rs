@@ -14,7 +14,7 @@ use super::divide::node::Tolerance;
 use super::divide::parted::Parted;
 use super::report::Tally;
 use super::sheet::Sheet;
-use super::sheet::reach::Alone;
+use super::sheet::sides::{Alone, Uncut};
 use super::{Cut, pieces};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
@@ -36,13 +36,13 @@ const ASIDE: f64 = 0.02;
 /// So often an edge length is halved that leaves lines without caps; then edges stay as the mesh divides them.
 const HALVINGS: usize = 5;
 
-/// Divides and caps. Beside the result: which side of the cut that goes to which the stroke does not cross.
+/// Divides and caps. Beside the result: which side of the cut the parts are on that are not cut.
 pub(super) fn divide(
     cutting: Cutting<'_>,
     sheet: Sheet,
-    alone: Alone,
+    alone: &Alone,
     progress: Progress<'_>,
-) -> Result<(Cut, Option<bool>)> {
+) -> Result<(Cut, Option<Uncut>)> {
     let edge_length = cutting.options.edge_length;
     let coarse = edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
     // Drawn through vertices near by, lines may touch that were apart; and through a vertex exactly, a line may touch
@@ -74,9 +74,9 @@ fn divide_with(
     cutting: Cutting<'_>,
     sheet: &Sheet,
     coarse: Option<Tolerance>,
-    alone: Alone,
+    alone: &Alone,
     progress: Progress<'_>,
-) -> Result<(Cut, Option<bool>)> {
+) -> Result<(Cut, Option<Uncut>)> {
     let mut tally = Tally::new();
     let since = Instant::now();
     let (mut sheet, mut parted) = part(cutting, sheet, coarse, alone, &mut tally, progress.part(0.0, 0.4))?;
@@ -103,7 +103,7 @@ fn divide_with(
     tally.stage("pieces");
     tally.report.seconds.push(("total", since.elapsed().as_secs_f64()));
     progress.report(1.0)?;
-    Ok((Cut { pieces, report: tally.report }, parted.alone))
+    Ok((Cut { pieces, report: tally.report }, parted.uncut))
 }
 
 /// Divided with the longest shorter edge length that leaves no line without a cap, if there is one: a line of few long edges
@@ -111,7 +111,7 @@ fn divide_with(
 fn finer(
     cutting: Cutting<'_>,
     sheet: &Sheet,
-    alone: Alone,
+    alone: &Alone,
     tally: &mut Tally,
     progress: Progress<'_>,
 ) -> Result<Option<(Sheet, Parted, Loops)>> {
@@ -141,7 +141,7 @@ fn part(
     cutting: Cutting<'_>,
     sheet: &Sheet,
     coarse: Option<Tolerance>,
-    alone: Alone,
+    alone: &Alone,
     tally: &mut Tally,
     progress: Progress<'_>,
 ) -> Result<(Sheet, Parted)> {

@@ -7,6 +7,7 @@
 pub(crate) mod offset;
 pub(crate) mod reach;
 pub(crate) mod roll;
+pub(crate) mod sides;
 pub(crate) mod simplify;
 
 use std::f64::consts::TAU;

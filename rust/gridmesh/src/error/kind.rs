@@ -16,7 +16,7 @@ impl Error {
             Error::NotSymmetric { .. } => "not_symmetric",
             Error::InvalidOption { .. } => "invalid_option",
             Error::TooCoarse { .. } => "too_coarse",
-            Error::TooLarge { .. } => "too_large",
+            Error::TooLarge { .. } | Error::CutTooLarge { .. } => "too_large",
             Error::NoPatch { .. } => "no_patch",
             Error::Solver { .. } => "solver",
             Error::Cancelled => "cancelled",

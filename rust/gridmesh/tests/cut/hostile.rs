@@ -420,8 +420,16 @@ fn edge_lengths_that_ask_for_too_much_are_refused_before_the_work() {
         let options = CutOptions { edge_length: Some(0.02), ..down() };
         assert_closed(&mesh.cut(&stroke, &options).unwrap());
     }
-    // The limit itself: a cap of two million triangles.
-    let told = cube().cut(&stroke, &CutOptions { edge_length: Some(1e-3), ..down() }).err();
-    let told = told.map(|e| e.to_string()).unwrap_or_default();
-    assert!(told.starts_with("about 23") && told.contains("2000000"), "{told}");
+    // The limits themselves: a cap of two million triangles, and 20,000 edges along a cut.
+    for (length, number, what) in [
+        (1e-3, "23", "triangles in its caps; at most 2000000"),
+        (1e-4, "4", "edges along its lines; at most 20000"),
+    ] {
+        let told = cube().cut(&stroke, &CutOptions { edge_length: Some(length), ..down() }).err();
+        let told = told.map(|e| e.to_string()).unwrap_or_default();
+        assert!(
+            told.starts_with(&format!("the cut would get about {number}")) && told.contains(what),
+            "{told}"
+        );
+    }
 }

@@ -6,6 +6,7 @@ mod models;
 mod quads;
 mod random;
 mod rims;
+mod uncrossed;
 
 use std::f64::consts::TAU;
 

@@ -70,16 +70,19 @@ fn close_with(
     let report = &mut tally.report;
     report.uncapped = found.uncapped;
     report.caps = found.regions.len();
+    let smooth = cutting.options.smooth;
     let (mut polygons, mut bulging, mut rings) = (vec![], vec![], vec![]);
     for region in found.regions {
         match region {
             Region::Sheet { outline, holes } if holes.is_empty() => {
                 let is_seamed = outline.iter().any(|s| s.node >= first);
-                let is_flat = cutting.options.smooth == Smooth::Flat || is_seamed;
+                let is_flat = smooth == Smooth::Flat || is_seamed;
+                report.flat_caps += usize::from(smooth != Smooth::Flat && is_seamed);
                 if is_flat { &mut polygons } else { &mut bulging }.push(outline);
             }
             ring => {
                 report.rings += 1;
+                report.flat_caps += usize::from(smooth != Smooth::Flat);
                 match capper.ring(&ring, progress.part(0.0, 0.0))? {
                     Some((rim, patch)) => {
                         capper.roll_up(&rim, &patch, found.inverted, progress.part(0.0, 0.0))?;

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::cut::input::Polygons;
 use crate::cut::sheet::Sheet;
+use crate::cut::sheet::sides::Uncut;
 use crate::error::{Error, Result};
 
 /// The line, sorted into the cells of a grid over the mesh.
@@ -30,8 +31,8 @@ pub(in crate::cut) struct Met {
     pub faces: Vec<u32>,
     /// For every vertex: on the left.
     pub left: Vec<bool>,
-    /// Where the parts are that are not cut, on the left or not, if that was chosen.
-    pub alone: Option<bool>,
+    /// Sides of the parts that are not cut, if these were told one by one.
+    pub uncut: Option<Uncut>,
 }
 
 impl<'a> Locator<'a> {
@@ -213,6 +214,6 @@ impl<'a> Locator<'a> {
         if near.is_empty() {
             return Err(Error::StrokeMisses);
         }
-        Ok(Met { faces: near, left, alone: None })
+        Ok(Met { faces: near, left, uncut: None })
     }
 }

@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 
 use super::locate::Locator;
 use crate::cut::divide::node::Node;
+use crate::cut::sheet::sides::Uncut;
 use crate::geometry::disjoint::Disjoint;
 
 /// Snapping tolerance: distance from the swept surface over the diagonal of the cut loop's bounding box.
@@ -34,8 +35,8 @@ pub(in crate::cut) struct Parted {
     /// one of the two may be off by a turn, their difference is right.
     pub cut: FxHashMap<(u32, u32), [f64; 2]>,
     pub cut_faces: usize,
-    /// Where the parts are that are not cut, on the left or not, if that was chosen.
-    pub alone: Option<bool>,
+    /// Sides of the parts that are not cut, if these were told one by one.
+    pub uncut: Option<Uncut>,
 }
 
 impl Parted {

@@ -71,8 +71,16 @@ pub(in crate::cut) fn split(
         return Err((error, in_the_way));
     }
     let Divider { nodes, parts, cut, .. } = divider;
-    let parted =
-        Parted { n_old: vertices.len(), nodes, left, divided, parts, cut, cut_faces, alone: met.alone };
+    let parted = Parted {
+        n_old: vertices.len(),
+        nodes,
+        left,
+        divided,
+        parts,
+        cut,
+        cut_faces,
+        uncut: met.uncut.clone(),
+    };
     // Faces that only touch the swept surface, lying in it, are no piece.
     let touches = |f: usize| {
         let corners = faces.face(f).iter().map(|&v| sheet.view.project(vertices[v as usize]));
