@@ -121,10 +121,21 @@ impl Net {
         self.positions[a as usize].distance(self.positions[b as usize]) / wanted
     }
 
-    /// The triangles at the edge that faces a corner; none at hard ones and at the border.
+    /// Whether [`Net::pair`] has any irregular corner: at most edges there is none.
+    pub fn is_irregular_at(&self, t: u32, k: usize) -> bool {
+        let off = |v: u32| self.off[v as usize];
+        let (own, s) = (self.triangles[t as usize], self.across[t as usize][k]);
+        if s == NONE || s < t || own == GONE {
+            return false;
+        }
+        let [p, q, r] = self.triangles[s as usize];
+        off(own[0]) | off(own[1]) | off(own[2]) | off(p ^ q ^ r ^ own[(k + 1) % 3] ^ own[(k + 2) % 3]) != 0
+    }
+
+    /// The triangles at the edge that faces a corner, each edge once; none at hard ones.
     pub fn pair(&self, t: u32, k: usize) -> Option<Pair> {
         let s = self.across[t as usize][k];
-        if s == NONE {
+        if s == NONE || s < t {
             return None;
         }
         let [c, a, b] = [0, 1, 2].map(|i| self.triangles[t as usize][(k + i) % 3]);

@@ -7,7 +7,7 @@
 //! Source: Kirkpatrick, Gelatt and Vecchi, *Optimization by simulated annealing*, 1983; the moves are those of Li, Zhang, Kobayashi
 //! and Wonka, *Editing operations for irregular vertices in triangle meshes*, 2010.
 
-use super::local::{GONE, Local, quality};
+use super::local::{Local, quality};
 use super::net::{Net, Pair, normal};
 use super::remesh::{Ground, relax};
 use crate::error::Result;
@@ -96,7 +96,7 @@ fn anneal(local: &mut Local, ground: Option<&Ground>, held: &[u32], progress: Pr
     let before = cost(&net);
     // They cannot all be taken out: flips leave the sum as it is.
     let least = 2 * net.off.iter().sum::<i32>().abs();
-    let mut annealer = Annealer::new(net, HOT);
+    let mut annealer = Annealer { net, dice: Dice(1), chance: Chance::new(HOT), ring: vec![] };
     for sweep in 0..SWEEPS {
         if sweep % ASKED == 0 {
             progress.report(sweep as f64 / SWEEPS as f64)?;
@@ -106,7 +106,6 @@ fn anneal(local: &mut Local, ground: Option<&Ground>, held: &[u32], progress: Pr
         }
         let share = sweep as f64 / (COOL * SWEEPS as f64);
         annealer.chance = Chance::new(HOT * (1.0 - share).max(0.0));
-        annealer.look();
         annealer.flips();
         if sweep % CLIMBS == 0 {
             annealer.climbs();
@@ -204,36 +203,9 @@ struct Annealer {
     chance: Chance,
     /// Neighbours of the vertex in hand.
     ring: Vec<[u32; 2]>,
-    /// Triangles with an irregular vertex in ascending order, as of the last look; and for each triangle and each vertex whether it is
-    /// one of them, or of one of them.
-    beside: Vec<u32>,
-    is_beside: [Vec<bool>; 2],
 }
 
 impl Annealer {
-    fn new(net: Net, heat: f64) -> Annealer {
-        let (dice, chance) = (Dice(1), Chance::new(heat));
-        Annealer { net, dice, chance, ring: vec![], beside: vec![], is_beside: [vec![], vec![]] }
-    }
-
-    /// Finds the triangles with irregular vertices: most have none, and are not looked at again.
-    fn look(&mut self) {
-        let Annealer { net, beside, is_beside: [triangles, vertices], .. } = self;
-        beside.clear();
-        triangles.clear();
-        triangles.resize(net.triangles.len(), false);
-        vertices.clear();
-        vertices.resize(net.positions.len(), false);
-        for (t, own) in net.triangles.iter().enumerate().filter(|(_, own)| **own != GONE) {
-            let [a, b, c] = own.map(|v| v as usize);
-            if net.off[a] | net.off[b] | net.off[c] != 0 {
-                beside.push(t as u32);
-                triangles[t] = true;
-                [a, b, c].into_iter().for_each(|v| vertices[v] = true);
-            }
-        }
-    }
-
     fn off(&self, v: u32) -> i32 {
         self.net.off[v as usize]
     }
@@ -244,17 +216,15 @@ impl Annealer {
 
     /// Flips edges beside irregular vertices.
     fn flips(&mut self) {
-        let beside = std::mem::take(&mut self.beside);
-        for &t in &beside {
+        for t in 0..self.net.triangles.len() as u32 {
             for k in 0..3 {
-                let pair = self.net.pair(t, k);
-                // Once, where both of its triangles are among them.
-                if let Some(pair) = pair.filter(|pair| pair.s > t || !self.is_beside[0][pair.s as usize]) {
+                if self.net.is_irregular_at(t, k)
+                    && let Some(pair) = self.net.pair(t, k)
+                {
                     self.flip(pair);
                 }
             }
         }
-        self.beside = beside;
     }
 
     fn flip(&mut self, it: Pair) {
@@ -282,10 +252,7 @@ impl Annealer {
     /// Takes vertices out and puts some in, where irregular ones are.
     fn climbs(&mut self) {
         let mut ring = std::mem::take(&mut self.ring);
-        for v in self.net.border as u32..self.is_beside[1].len() as u32 {
-            if !self.is_beside[1][v as usize] {
-                continue;
-            }
+        for v in self.net.border as u32..self.net.positions.len() as u32 {
             self.net.ring(v, &mut ring);
             let regular = self.off(v) == 0 && ring.iter().all(|r| self.off(r[0]) == 0);
             // A vertex where two fans meet stays, and so do those of hard lines.
@@ -447,8 +414,7 @@ mod tests {
         local.wanted = vec![2, 2, 3, 2, 2, 2, 3, 2];
         let first = [local.positions.len(), local.triangles.len()];
         let net = Net::new(&local);
-        let mut annealer = Annealer::new(net, 0.0);
-        annealer.look();
+        let mut annealer = Annealer { net, dice: Dice(1), chance: Chance::new(0.0), ring: vec![] };
         annealer.climbs();
         assert_eq!(cost(&annealer.net), 0);
         annealer.net.write(&mut local);

@@ -57,15 +57,14 @@ impl Ground {
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled).
 pub(crate) fn remesh(local: &mut Local, ground: &Ground, progress: Progress<'_>) -> Result<()> {
-    let mut round = 0;
-    while round < ROUNDS + LAST {
+    for round in 0..ROUNDS + LAST {
         progress.report(round as f64 / (ROUNDS + LAST) as f64)?;
-        if round < ROUNDS && !(split_long(local) | collapse_short(local)) {
-            round = ROUNDS;
+        if round < ROUNDS {
+            split_long(local);
+            collapse_short(local);
         }
         flip_valences(local);
         relax(local, Some(ground));
-        round += 1;
     }
     mend_thin(local);
     relax(local, Some(ground));
@@ -93,31 +92,28 @@ pub(crate) fn refine(local: &mut Local) {
     }
 }
 
-/// Whether it splits any.
-fn split_long(local: &mut Local) -> bool {
+fn split_long(local: &mut Local) {
     let mut long = local.edges().into_iter().map(|e| (local.length(e), e)).collect::<Vec<_>>();
     long.retain(|&(length, e)| length > LONG && !local.is_border(e));
     long.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    for &(_, e) in &long {
+    for (_, e) in long {
         local.split(e);
     }
-    !long.is_empty()
 }
 
-/// Whether it collapses any.
-fn collapse_short(local: &mut Local) -> bool {
+fn collapse_short(local: &mut Local) {
     let mut short = local.edges().into_iter().map(|e| (local.length(e), e)).collect::<Vec<_>>();
     short.retain(|&(length, _)| length < SHORT);
     short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut any = false;
     for (_, [a, b]) in short {
         if local.beside([a, b]).is_empty() || local.length([a, b]) >= SHORT {
             continue;
         }
         // Towards the border, and towards hard lines.
-        any |= local.collapse(b, a, LONG) || local.collapse(a, b, LONG);
+        if !local.collapse(b, a, LONG) {
+            local.collapse(a, b, LONG);
+        }
     }
-    any
 }
 
 /// Flips edges where that brings the numbers of triangles at vertices nearer to those wanted.

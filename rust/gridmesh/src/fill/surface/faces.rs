@@ -36,7 +36,6 @@ impl Shape {
         let mut fine = Patchwork::of(work.n, end + more, work.outer.clone(), triangles, n_patch)?;
         fine.corners =
             Some(CornerStars::new(&quads, work.single().first().copied(), work.n, end).with_centres(&quads));
-        fine.later.clone_from(&work.later);
         let mut flat = self.flat.clone();
         flat.extend(quads.iter().map(|q| q.iter().map(|&v| self.flat[v as usize]).sum::<DVec2>() / 4.0));
         Ok(Shape { work: fine, flat, ..self.clone() })
