@@ -21,10 +21,12 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use crate::drawing::compact::is_compact;
 use crate::drawing::contours::{centroid, read_contours};
 use crate::drawing::curve::{ClosedCurve, bounds};
-use crate::drawing::thickness::branch::Branch;
 use crate::error::{Error, Result};
 use crate::options::CellShape;
 use crate::path::placement::ROW_HEIGHT;
+
+use branch::Branch;
+pub use branch::Limb;
 
 /// Triangles across a limb that look round, also where it lies askew to the lattice and the body is subdivided.
 pub const ACROSS: f64 = 5.0;
@@ -45,17 +47,6 @@ const STRAIGHT: f64 = 0.92;
 
 /// Stretches of the line whose straightness tells how ragged it is.
 const STRETCHES: f64 = 2000.0;
-
-/// A part of a drawing that is longer than it is wide.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limb {
-    /// The middle of its thinnest place.
-    pub at: DVec2,
-    /// Its width there, the mean over a stretch as long as it is wide.
-    pub width: f64,
-    /// How long it is.
-    pub length: f64,
-}
 
 /// The limbs of a drawing, thinnest first; none if nothing of it is longer than it is wide.
 ///

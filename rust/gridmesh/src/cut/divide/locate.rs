@@ -6,8 +6,10 @@ use rayon::prelude::*;
 
 use crate::cut::input::Polygons;
 use crate::cut::sheet::Sheet;
-use crate::cut::sheet::sides::Uncut;
 use crate::error::{Error, Result};
+
+/// Of every vertex: on the left or not, if the part of the mesh that it is on is not cut.
+pub(in crate::cut) type Uncut = Vec<Option<bool>>;
 
 /// The line, sorted into the cells of a grid over the mesh.
 pub(in crate::cut) struct Locator<'a> {

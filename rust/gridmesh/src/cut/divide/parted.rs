@@ -3,9 +3,8 @@
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::locate::Locator;
+use super::locate::{Locator, Uncut};
 use crate::cut::divide::node::Node;
-use crate::cut::sheet::sides::Uncut;
 use crate::geometry::disjoint::Disjoint;
 
 /// Snapping tolerance: distance from the swept surface over the diagonal of the cut loop's bounding box.

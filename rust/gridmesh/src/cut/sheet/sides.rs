@@ -3,13 +3,10 @@
 use glam::DVec3;
 
 use crate::cut::divide::cross::{Edges, Hit};
-use crate::cut::divide::locate::Met;
+use crate::cut::divide::locate::{Met, Uncut};
 use crate::cut::input::{Polygons, triangles};
 use crate::cut::options::Keep;
 use crate::error::{Error, Result};
-
-/// Of every vertex: on the left or not, if the part of the mesh that it is on is not cut.
-pub(in crate::cut) type Uncut = Vec<Option<bool>>;
 
 /// Where parts go that are not cut, and have vertices on both sides of the line.
 #[derive(Clone, Debug)]

@@ -2,8 +2,6 @@
 
 use glam::DVec2;
 
-use super::Limb;
-
 /// A branch is left out if it is shorter than this times its width at the root.
 const SALIENT: f64 = 0.9;
 
@@ -21,6 +19,17 @@ const WIDENED: f64 = 4.0;
 
 /// The axis is measured with steps of at least this part of the shortest limb: it trembles with the line.
 const STEP: f64 = 0.125;
+
+/// A part of a drawing that is longer than it is wide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limb {
+    /// The middle of its thinnest place.
+    pub at: DVec2,
+    /// Its width there, the mean over a stretch as long as it is wide.
+    pub width: f64,
+    /// How long it is.
+    pub length: f64,
+}
 
 /// A place on a branch.
 #[derive(Clone, Copy, Debug)]
