@@ -81,11 +81,11 @@ pub(in crate::cut) fn retell(
         _ => larger,
     };
     let mut uncut = vec![None; vertices.len()];
-    for v in 0..vertices.len() {
+    for (v, uncut) in uncut.iter_mut().enumerate() {
         let (root, odd) = sides.root(v as u32);
         met.left[v] = match known[root as usize] {
             Some(side) => side != odd,
-            None => *uncut[v].insert(side(root)),
+            None => *uncut.insert(side(root)),
         };
     }
     met.uncut = Some(uncut);
