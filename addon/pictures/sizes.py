@@ -46,7 +46,7 @@ PIXELS = 0.03
 SHORT = 1 / 3
 """Edges shorter than this, in mean lengths of the edges of a picture, show in a texture."""
 
-_ROUNDS = 3
+_ROUNDS = 8
 """Times that parts are made finer because others are."""
 
 _STEP = 0.7
@@ -136,8 +136,13 @@ def even(results: list[Any], mesh: Callable[[list[int], float], dict[int, Any]])
             sizes[k] *= max(_STEP, 0.95 * ratio)
         for size in sorted({sizes[k] for k in coarse}):
             for k, surface in mesh([k for k in coarse if sizes[k] == size], size).items():
-                if hasattr(surface, "vertices") and edge_lengths(surface).mean() < edges[k].mean():
+                if hasattr(surface, "vertices") and _is_better(edge_lengths(surface), edges[k]):
                     results[k] = surface
+
+
+def _is_better(now: np.ndarray, before: np.ndarray) -> bool:
+    """Whether edges are shorter in the mean, and none is shorter for its part than allowed."""
+    return bool(now.mean() < before.mean() and now.min() >= SHORT * now.mean())
 
 
 def shortest(surface: Any) -> float:

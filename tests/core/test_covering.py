@@ -256,6 +256,26 @@ def test_parts_beside_thin_ones_have_no_coarser_edges_than_show():
     assert lengths.min() >= lengths.mean() / 3
 
 
+@pytest.mark.parametrize("seed", [2, 4, 5, 12, 21, 24])
+def test_wide_parts_become_finer_until_no_edge_is_short(seed):
+    rng = np.random.default_rng(seed)
+    y, x = np.mgrid[:300, :300]
+    alpha = np.zeros((300, 300))
+    for _ in range(2):
+        (down, right), radius = rng.uniform(60, 240, 2), rng.uniform(25, 70)
+        waves = np.sin(rng.integers(3, 9) * np.arctan2(y - down, x - right))
+        blob = radius * (1 + 0.25 * waves) - np.hypot(x - right, y - down)
+        alpha = np.maximum(alpha, np.clip(blob, 0, 1))
+    line = rng.uniform(3, 8) / 2 + 0.5 - abs(y - 22 - 10 * np.sin(x / 30))
+    alpha = np.maximum(alpha, np.clip(line, 0, 1) * (x > 10) * (x < 290))
+    pixels = np.dstack([np.ones((300, 300, 3)), alpha])
+    cutout = cut_out(pixels, Options(threshold=0.5, margin=1.0, min_area=0.0, triangles=200))
+    edges = np.sort(np.concatenate([cutout.faces[:, [k, k - 1]] for k in range(3)]), axis=1)
+    ends = cutout.vertices[np.unique(edges, axis=0)]
+    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    assert lengths.min() > lengths.mean() / 3
+
+
 def wound(size):
     """A spiral line a pixel wide, ten pixels apart."""
     y, x = (np.mgrid[: 4 * size, : 4 * size] + 0.5) / 4 - size / 2

@@ -214,6 +214,25 @@ def test_all_kinds_of_numbers_say_the_same():
     )
 
 
+@pytest.mark.parametrize("channels", [1, 3, 4])
+def test_views_are_read_as_what_they_show(channels):
+    picture = np.zeros((70, 90, channels))
+    picture[8:40, 10:70] = 1
+    picture[30:60, 20:35, -1] = 0.8
+    background = "transparent" if channels == 4 else "paper"
+    picture = picture[..., 0] if channels == 1 else picture
+    wanted = [c.tobytes() for c in contours_of(gridmesh.trace_image(picture, background=background))]
+    for turned in (
+        np.ascontiguousarray(picture[::-1])[::-1],
+        np.ascontiguousarray(picture[:, ::-1])[:, ::-1],
+        np.asfortranarray(picture),
+        np.repeat(np.repeat(picture, 2, axis=0), 3, axis=1)[::2, ::3],
+    ):
+        assert not turned.flags.c_contiguous
+        found = contours_of(gridmesh.trace_image(turned, background=background))
+        assert [c.tobytes() for c in found] == wanted
+
+
 def test_rows_come_from_the_top_and_the_picture_has_a_border():
     picture = np.zeros((10, 30))
     picture[:5, :10] = 1

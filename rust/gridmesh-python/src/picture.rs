@@ -3,7 +3,7 @@
 use gridmesh::drawing::combine::Part;
 use gridmesh::error::Result;
 use gridmesh::picture::{Picture, Threshold, TraceOptions, paper, trace_image as core_trace};
-use numpy::ndarray::ArrayViewD;
+use numpy::ndarray::{ArrayViewD, Axis, Ix3, ShapeError};
 use numpy::{
     AllowTypeChange, PyArrayDescrMethods, PyArrayLikeDyn, PyReadonlyArrayDyn, PyUntypedArray,
     PyUntypedArrayMethods,
@@ -144,63 +144,61 @@ enum Pixels {
 impl Pixels {
     fn read(it: &Argument<'_, '_>, on_paper: bool) -> PyResult<Self> {
         let array = as_array(it)?;
-        let channels = match array.shape() {
-            [_, _] => 1,
-            [_, _, 4] => 4,
-            [_, _, 3] if on_paper => 3,
-            shape => return Err(it.wrong_shape(&format!("has shape {shape:?}"))),
-        };
+        let wrong = || it.wrong_shape(&format!("has shape {:?}", array.shape()));
+        if !matches!(array.shape(), [_, _] | [_, _, 4]) && !(on_paper && matches!(array.shape(), [_, _, 3])) {
+            return Err(wrong());
+        }
         let (height, width) = (array.shape()[0], array.shape()[1]);
         Picture::check_size(width, height).map_err(|err| error::from_core(it.value.py(), &err))?;
         let bits = array.dtype().itemsize();
-        match (array.dtype().kind(), bits) {
+        let read = match (array.dtype().kind(), bits) {
             (b'b', _) => {
                 let array = array.extract::<PyReadonlyArrayDyn<'_, bool>>()?;
-                Ok(Self::of(array.as_array(), channels, on_paper, |value| f32::from(u8::from(value))))
+                Self::of(array.as_array(), on_paper, |value| f32::from(u8::from(value)))
             }
             (b'u', 1) => {
                 let array = array.extract::<PyReadonlyArrayDyn<'_, u8>>()?;
-                Ok(Self::of(array.as_array(), channels, on_paper, |value| f32::from(value) / 255.0))
+                Self::of(array.as_array(), on_paper, |value| f32::from(value) / 255.0)
             }
             (b'u', 2) => {
                 let array = array.extract::<PyArrayLikeDyn<'_, u16, AllowTypeChange>>()?;
-                Ok(Self::of(array.as_array(), channels, on_paper, |value| f32::from(value) / 65535.0))
+                Self::of(array.as_array(), on_paper, |value| f32::from(value) / 65535.0)
             }
             (b'f', _) => {
                 let array = array.extract::<PyArrayLikeDyn<'_, f32, AllowTypeChange>>()?;
-                Ok(Self::of(array.as_array(), channels, on_paper, |value| value))
+                Self::of(array.as_array(), on_paper, |value| value)
             }
-            _ => Err(it.wrong_type()),
-        }
+            _ => return Err(it.wrong_type()),
+        };
+        read.map_err(|_| wrong())
     }
 
+    /// Row by row: pictures that were turned over come as views whose rows run backward in memory.
     fn of<T: Copy>(
         array: ArrayViewD<'_, T>,
-        channels: usize,
         on_paper: bool,
         value: impl Fn(T) -> f32,
-    ) -> Self {
-        let (height, width) = (array.shape()[0], array.shape()[1]);
+    ) -> std::result::Result<Self, ShapeError> {
+        let array = if array.ndim() == 2 { array.insert_axis(Axis(2)) } else { array };
+        let array = array.into_dimensionality::<Ix3>()?;
+        let (height, width, channels) = array.dim();
         if !on_paper {
-            let skipped = channels - 1;
-            let values = array.iter().skip(skipped).step_by(channels).map(|&item| value(item)).collect();
-            return Self::Coverage { width, height, values };
+            let mut values = Vec::with_capacity(width * height);
+            for row in array.outer_iter() {
+                values.extend(row.column(channels - 1).iter().map(|&item| value(item)));
+            }
+            return Ok(Self::Coverage { width, height, values });
         }
-        let mut items = array.iter().map(|&item| value(item));
         let mut values = Vec::with_capacity(width * height);
-        while let Some(first) = items.next() {
-            values.push(match channels {
-                1 => [first; 3],
-                3 => [first, items.next().unwrap_or(0.0), items.next().unwrap_or(0.0)],
+        for row in array.outer_iter() {
+            values.extend(row.outer_iter().map(|pixel| match channels {
+                1 => [value(pixel[0]); 3],
+                3 => [0, 1, 2].map(|k| value(pixel[k])),
                 // Over white paper.
-                _ => {
-                    let colour = [first, items.next().unwrap_or(0.0), items.next().unwrap_or(0.0)];
-                    let alpha = items.next().unwrap_or(1.0);
-                    colour.map(|channel| channel * alpha + 1.0 - alpha)
-                }
-            });
+                _ => [0, 1, 2].map(|k| value(pixel[k]) * value(pixel[3]) + 1.0 - value(pixel[3])),
+            }));
         }
-        Self::Colours { width, height, values }
+        Ok(Self::Colours { width, height, values })
     }
 
     fn picture(self) -> Result<Picture> {
