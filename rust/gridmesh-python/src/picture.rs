@@ -145,8 +145,10 @@ impl Pixels {
     fn read(it: &Argument<'_, '_>, on_paper: bool) -> PyResult<Self> {
         let array = as_array(it)?;
         let wrong = || it.wrong_shape(&format!("has shape {:?}", array.shape()));
-        if !matches!(array.shape(), [_, _] | [_, _, 4]) && !(on_paper && matches!(array.shape(), [_, _, 3])) {
-            return Err(wrong());
+        match array.shape() {
+            [_, _] | [_, _, 4] => {}
+            [_, _, 3] if on_paper => {}
+            _ => return Err(wrong()),
         }
         let (height, width) = (array.shape()[0], array.shape()[1]);
         Picture::check_size(width, height).map_err(|err| error::from_core(it.value.py(), &err))?;
