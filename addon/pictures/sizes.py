@@ -118,7 +118,7 @@ def finest(number: int) -> tuple[float, ...]:
 def even(results: list[Any], mesh: Callable[[list[int], float], dict[int, Any]]) -> None:
     """Make parts finer, in place, as long as edges of others are short for the picture and that helps.
 
-    `mesh` makes parts with edges of this length, relative to that wanted; what is no surface stays.
+    `mesh` makes parts with edges of this length, relative to that wanted; what is no surface, or has an edge that is short for itself, is left.
     """
     sizes = dict.fromkeys(range(len(results)), 1.0)
     for _ in range(_ROUNDS):
@@ -136,13 +136,10 @@ def even(results: list[Any], mesh: Callable[[list[int], float], dict[int, Any]])
             sizes[k] *= max(_STEP, 0.95 * ratio)
         for size in sorted({sizes[k] for k in coarse}):
             for k, surface in mesh([k for k in coarse if sizes[k] == size], size).items():
-                if hasattr(surface, "vertices") and _is_better(edge_lengths(surface), edges[k]):
+                if not hasattr(surface, "vertices") or shortest(surface) < SHORT:
+                    continue
+                if edge_lengths(surface).mean() < edges[k].mean():
                     results[k] = surface
-
-
-def _is_better(now: np.ndarray, before: np.ndarray) -> bool:
-    """Whether edges are shorter in the mean, and none is shorter for its part than allowed."""
-    return bool(now.mean() < before.mean() and now.min() >= SHORT * now.mean())
 
 
 def shortest(surface: Any) -> float:
