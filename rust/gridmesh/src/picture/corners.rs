@@ -48,6 +48,9 @@ const LONG: f64 = 5.0;
 /// A closed line of samples.
 #[derive(Clone, Copy)]
 struct Line<'a> {
+    reaches: &'a [Reach],
+    /// Whether samples are corners as it is.
+    has_corners: bool,
     samples: &'a [Sample],
     /// Arc length at each, and of all.
     arc: &'a [f64],
@@ -78,17 +81,19 @@ pub fn restore(
         return Ok(samples);
     }
     let arc = arcs(&samples);
-    let line = Line { samples: &samples, arc: &arc, noise, evidence };
-    let mut sides: Vec<(f64, (f64, f64))> = SIDES.map(|side| (1.0, side)).to_vec();
+    let reaches = SIDES.map(|side| Reach::new(&samples, &arc, side));
+    let has_corners = samples.iter().any(|sample| sample.corner);
+    let line = Line { reaches: &reaches, has_corners, samples: &samples, arc: &arc, noise, evidence };
+    let mut sides: Vec<(f64, usize)> = (0..SIDES.len()).map(|k| (1.0, k)).collect();
     if noise > 1.0 {
-        sides.extend(SIDES.into_iter().filter(|&(_, length)| length >= LONG).map(|side| (noise, side)));
+        sides.extend((0..SIDES.len()).filter(|&k| SIDES[k].1 >= LONG).map(|k| (noise, k)));
     }
     let mut found: Vec<Option<Corner>> = Vec::with_capacity(n);
     for i in 0..n {
         if i.is_multiple_of(REPORT) {
             report(0.3 * i as f64 / n as f64)?;
         }
-        found.push(sides.iter().find_map(|&(noise, side)| corner(&Line { noise, ..line }, i, side)));
+        found.push(sides.iter().find_map(|&(noise, k)| corner(&Line { noise, ..line }, i, k)));
     }
     let away = |i: usize, j: usize| {
         let apart = (arc[i] - arc[j]).abs();
@@ -138,17 +143,84 @@ fn around(n: usize, i: usize, near: impl Fn(usize) -> bool) -> Vec<usize> {
     back.chain(ahead).collect()
 }
 
+/// How many samples ahead of each one, and back, are nearer than a side begins, and no farther than it ends.
+struct Reach {
+    ahead: Vec<[u32; 2]>,
+    back: Vec<[u32; 2]>,
+}
+
+impl Reach {
+    fn new(samples: &[Sample], arc: &[f64], (gap, length): (f64, f64)) -> Self {
+        let n = samples.len();
+        let counts = |ahead: bool| {
+            let mut counts = vec![[0_u32; 2]; n];
+            // Ahead of the next sample one less lies as near, then maybe more.
+            let mut now = [0_usize; 2];
+            for step in 0..n {
+                let i = if ahead { step } else { n - 1 - step };
+                let away = |k: usize| {
+                    let j = if ahead { i + k } else { i + n - k };
+                    offset(arc, i, if j < n { j } else { j - n }, ahead)
+                };
+                now = now.map(|count| count.saturating_sub(1));
+                while now[0] + 1 < n && away(now[0] + 1) < gap {
+                    now[0] += 1;
+                }
+                while now[1] + 1 < n && away(now[1] + 1) <= gap + length {
+                    now[1] += 1;
+                }
+                counts[i] = now.map(|count| count as u32);
+            }
+            counts
+        };
+        Self { ahead: counts(true), back: counts(false) }
+    }
+}
+
+/// Arc length from one sample to another, ahead or back.
+fn offset(arc: &[f64], i: usize, j: usize, ahead: bool) -> f64 {
+    let s = if ahead { arc[j] - arc[i] } else { arc[i] - arc[j] };
+    if s < 0.0 { s + arc[arc.len() - 1] } else { s }
+}
+
+/// Whether lines through both sides may turn enough, and both may be straight: told from their ends and middles. A line that
+/// is near to all samples of a side leans against its ends by twice that at most, over their distance.
+fn may_turn(line: &Line<'_>, i: usize, k: usize) -> bool {
+    let n = line.samples.len();
+    let (back, ahead) = (line.reaches[k].back[i], line.reaches[k].ahead[i]);
+    let at = |steps: u32, ahead: bool| {
+        let j = if ahead { i + steps as usize } else { i + n - steps as usize };
+        line.samples[if j < n { j } else { j - n }]
+    };
+    // Sides end at corners that there are.
+    let is_cut = |end: u32, ahead: bool| line.has_corners && (0..=end).any(|steps| at(steps, ahead).corner);
+    if is_cut(back[1], false) || is_cut(ahead[1], true) {
+        return true;
+    }
+    let most = 2.0 * STRAIGHT * line.noise;
+    let side = |[gap, end]: [u32; 2], ahead: bool| {
+        let places = [gap + 1, (gap + 1 + end) / 2, end].map(|steps| at(steps, ahead).at);
+        let (way, middle) = (places[2] - places[0], places[1] - places[0]);
+        // Ends that are far apart tell which way the line runs.
+        let is_far = way.length() > 2.0 * most && (0.0..=way.length_squared()).contains(&way.dot(middle));
+        let is_bent = is_far && way.perp_dot(middle).abs() > 2.0 * most * way.length();
+        (end >= gap + 3 && !is_bent).then_some(way)
+    };
+    let (Some(before), Some(after)) = (side(back, false), side(ahead, true)) else { return false };
+    let lean = 1.06 * most * (1.0 / before.length() + 1.0 / after.length());
+    // The tangent of an angle is more than the angle.
+    let (cross, dot) = ((-before).perp_dot(after), (-before).dot(after));
+    lean >= 0.5 * TURN || dot <= 0.0 || cross.abs() >= (TURN - lean - 1e-9) * dot
+}
+
 /// The corner near a sample, if lines fit both sides and it is not rounded.
-fn corner(line: &Line<'_>, i: usize, (gap, length): (f64, f64)) -> Option<Corner> {
-    let &Line { samples, arc, noise, evidence } = line;
+fn corner(line: &Line<'_>, i: usize, k: usize) -> Option<Corner> {
+    let (&Line { samples, arc, noise, evidence, .. }, (gap, length)) = (line, SIDES[k]);
     let n = samples.len();
-    if samples[i].corner || arc[n] < 3.0 * (gap + length) {
+    if samples[i].corner || arc[n] < 3.0 * (gap + length) || !may_turn(line, i, k) {
         return None;
     }
-    let offset = |j: usize, ahead: bool| {
-        let s = if ahead { arc[j] - arc[i] } else { arc[i] - arc[j] };
-        if s < 0.0 { s + arc[n] } else { s }
-    };
+    let offset = |j: usize, ahead: bool| offset(arc, i, j, ahead);
     let side = |ahead: bool| -> Vec<DVec2> {
         (1..n)
             .map(|k| if ahead { (i + k) % n } else { (i + n - k) % n })

@@ -156,7 +156,8 @@ impl<'a> Ring<'a> {
     /// The sample after or before one at `k` steps.
     fn step(&self, i: usize, k: usize, ahead: bool) -> usize {
         let n = self.samples.len();
-        if ahead { (i + k) % n } else { (i + n - k) % n }
+        let j = if ahead { i + k } else { i + n - k };
+        if j < n { j } else { j - n }
     }
 
     /// The place at an arc length from a sample.
