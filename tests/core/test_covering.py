@@ -94,6 +94,33 @@ def encloses(polygon, point):
     ).sum() % 2 == 1
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_vertices_are_not_dented_into_the_drawing_between_its_points(seed):
+    # A block with an inlet whose bottom slants, all its lines far longer than edges.
+    random = np.random.default_rng(seed)
+    for _ in range(10):
+        width, depth, turn = random.uniform(0.15, 1.2), random.uniform(2, 6), random.uniform(0, 2 * np.pi)
+        low, high = 8 - depth - width, 5 + width / 2
+        block = np.array(
+            [
+                (0, 0),
+                (10, 0),
+                (10, 8),
+                (high, 8),
+                (high, low + width),
+                (high - width, low),
+                (high - width, 8),
+                (0, 8),
+            ]
+        )
+        block @= np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+        patch = gridmesh.cover_sketch(block, triangles=int(random.integers(80, 400)), bend=0.0)
+        rim = patch.vertices[patch.loops[0]]
+        within = np.array([encloses(block, vertex) for vertex in rim])
+        deep = distance_to_curve(rim[within], block) if within.any() else np.zeros(1)
+        assert deep.max() <= patch.report["outside"] + 0.015 * patch.edge_length
+
+
 def test_the_same_drawing_is_covered_by_the_same_bytes():
     outline = np.asarray(DRAWINGS[NAMES[0]]["points"], float)
     one, other = (gridmesh.cover_sketch(outline, triangles=400) for _ in range(2))

@@ -150,6 +150,9 @@ fn finished(
             return false;
         }
         let most = near().map(|at| left[k][at]).fold(enough, f64::max);
+        if followers[k].beyond_dents(edges, vertex - patch.loops[k].start as usize, &fine[k]) - slack > most {
+            return false;
+        }
         near().all(|at| {
             let beyond = followers[k].beyond(edges, at, fine[k][at]);
             let empty = deep.get(k).map_or(far, |deep| far.max(deep[at]));
@@ -227,11 +230,21 @@ fn widened<'p>(
 
 /// For each contour how far its points lie outside the patch, less the slack; 0 inside.
 fn needs(fine: &[Vec<DVec2>], patch: &Patch, followers: &[Followers], slack: f64) -> Vec<Vec<f64>> {
-    let of = |k: usize| {
-        let edges = LoopEdges::new(patch, k, &followers[k]);
-        fine[k].iter().enumerate().map(|(at, &point)| edges.outside(at, point, slack)).collect()
-    };
-    (0..fine.len()).map(of).collect()
+    (0..fine.len()).map(|k| needs_of(patch, k, &fine[k], &followers[k], slack)).collect()
+}
+
+/// How far the points of one contour lie outside, less the slack; 0 inside. Dents between two points count as the nearer one.
+fn needs_of(patch: &Patch, k: usize, contour: &[DVec2], follow: &Followers, slack: f64) -> Vec<f64> {
+    let (edges, loop_) = (LoopEdges::new(patch, k, follow), loop_of(patch, k));
+    let mut needs: Vec<f64> =
+        contour.iter().enumerate().map(|(at, &point)| edges.outside(at, point, slack)).collect();
+    for i in 0..loop_.len() {
+        if let Some(deep) = follow.beyond_dent(loop_, i, contour) {
+            let need = &mut needs[follow.point_at(i)];
+            *need = need.max(deep - slack);
+        }
+    }
+    needs
 }
 
 /// For each contour how far its points lie inside the patch; 0 or less outside.

@@ -66,9 +66,8 @@ pub(super) fn settled(
                     continue;
                 }
                 let near: Vec<usize> = follow.points_near(i).collect();
-                let fit =
-                    |patch: &Patch| Fit::new(loop_of(patch, k), (contour, &weights), follow, (&near, rim));
-                let now = fit(patch);
+                let fit = Fit { contour, weights: &weights, follow, near: &near, vertex: i, rim };
+                let now = fit.now(loop_of(patch, k));
                 if rim != Rim::Across && now.deepest <= WORTH * edge_length {
                     continue;
                 }
@@ -83,10 +82,7 @@ pub(super) fn settled(
                 {
                     let way = part * reach * DVec2::from_angle(TAU * turn as f64 / DIRECTIONS as f64);
                     patch.vertices[vertex] = here + way;
-                    let then = fit(patch);
-                    if then.between >= best.0 || then.farthest > most {
-                        continue;
-                    }
+                    let Some(between) = fit.between(loop_of(patch, k), best.0, most) else { continue };
                     let mut along = false;
                     if !own.allow(patch, &lengths) {
                         if rim == Rim::Across {
@@ -104,7 +100,7 @@ pub(super) fn settled(
                         }
                     }
                     if boundary.stays_simple(patch, vertex) {
-                        best = (then.between, way, along);
+                        best = (between, way, along);
                     }
                 }
                 let (_, way, along) = best;
@@ -122,8 +118,18 @@ pub(super) fn settled(
     Ok(())
 }
 
+/// The points of a contour near a vertex of its loop.
+struct Fit<'a> {
+    contour: &'a [DVec2],
+    weights: &'a [f64],
+    follow: &'a Followers,
+    near: &'a [usize],
+    vertex: usize,
+    rim: Rim,
+}
+
 /// How a loop lies to some points of its contour.
-struct Fit {
+struct Lie {
     /// The area between them; of a boundary around, what is inside.
     between: f64,
     deepest: f64,
@@ -131,26 +137,44 @@ struct Fit {
     farthest: f64,
 }
 
-impl Fit {
-    fn new(
-        loop_: &[DVec2],
-        (contour, weights): (&[DVec2], &[f64]),
-        follow: &Followers,
-        (near, rim): (&[usize], Rim),
-    ) -> Self {
-        let mut fit = Self { between: 0.0, deepest: 0.0, farthest: f64::NEG_INFINITY };
-        for &at in near {
-            let beyond = follow.beyond(loop_, at, contour[at]);
-            fit.deepest = fit.deepest.max(-beyond);
-            match rim {
-                Rim::Across => fit.between += weights[at] * beyond.abs(),
-                Rim::Around(slack) => {
-                    fit.between += weights[at] * (-beyond).max(0.0);
-                    fit.farthest = fit.farthest.max(beyond - slack);
-                }
+impl Fit<'_> {
+    fn now(&self, loop_: &[DVec2]) -> Lie {
+        let mut lie = Lie { between: 0.0, deepest: 0.0, farthest: self.dents(loop_) };
+        for &at in self.near {
+            let beyond = self.follow.beyond(loop_, at, self.contour[at]);
+            let (between, farthest) = self.counted(at, beyond);
+            lie.deepest = lie.deepest.max(-beyond);
+            lie.between += between;
+            lie.farthest = lie.farthest.max(farthest);
+        }
+        lie
+    }
+
+    /// The area between, if it is below `least` and no point is farther outside than `most`.
+    fn between(&self, loop_: &[DVec2], least: f64, most: f64) -> Option<f64> {
+        let mut sum = 0.0;
+        for &at in self.near {
+            let (between, farthest) = self.counted(at, self.follow.beyond(loop_, at, self.contour[at]));
+            sum += between;
+            if sum >= least || farthest > most {
+                return None;
             }
         }
-        fit
+        (self.dents(loop_) <= most).then_some(sum)
+    }
+
+    fn counted(&self, at: usize, beyond: f64) -> (f64, f64) {
+        match self.rim {
+            Rim::Across => (self.weights[at] * beyond.abs(), f64::NEG_INFINITY),
+            Rim::Around(slack) => (self.weights[at] * (-beyond).max(0.0), beyond - slack),
+        }
+    }
+
+    fn dents(&self, loop_: &[DVec2]) -> f64 {
+        match self.rim {
+            Rim::Across => f64::NEG_INFINITY,
+            Rim::Around(slack) => self.follow.beyond_dents(loop_, self.vertex, self.contour) - slack,
+        }
     }
 }
 
@@ -238,10 +262,9 @@ mod tests {
             let rim = Rim::Around(0.0);
             settled(&mut patch, std::slice::from_ref(&contour), &followers, rim, Progress::NONE).unwrap();
             let near: Vec<usize> = (0..contour.len()).collect();
-            let fit = |patch: &Patch| {
-                Fit::new(loop_of(patch, 0), (&contour, &weights(&contour)), &followers[0], (&near, rim))
-            };
-            let (then, now) = (fit(&before), fit(&patch));
+            let (contour, weights) = (contour.as_slice(), weights(&contour));
+            let fit = Fit { contour, weights: &weights, follow: &followers[0], near: &near, vertex: 0, rim };
+            let (then, now) = (fit.now(loop_of(&before, 0)), fit.now(loop_of(&patch, 0)));
             assert!(now.between < 0.9 * then.between, "{} {}", now.between, then.between);
             assert!(now.farthest <= then.farthest.max(ENOUGH * patch.lattice.edge_length));
             let lengths = Lengths::new(&before);

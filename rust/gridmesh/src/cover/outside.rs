@@ -19,6 +19,8 @@ const SOON: usize = 64;
 /// Which edge of a loop follows each point of its contour.
 #[derive(Clone, Debug)]
 pub(super) struct Followers {
+    /// Where each vertex of the loop lies on the contour: segment and share.
+    places: Vec<f64>,
     edge: Vec<Option<u32>>,
     /// By edge, the points that it follows.
     points: Vec<Vec<u32>>,
@@ -46,7 +48,7 @@ impl Followers {
                 points[*edge as usize].push(at as u32);
             }
         }
-        Self { edge, points }
+        Self { places, edge, points }
     }
 
     /// The edge that follows a point; none where what the contour encloses twice was merged.
@@ -64,32 +66,74 @@ impl Followers {
     /// How far a point of the contour is outside the edges of a loop that follow it; inside negative.
     pub(super) fn beyond(&self, points: &[DVec2], at: usize, point: DVec2) -> f64 {
         let n = points.len();
-        let Some(edge) = self.edge(at) else { return 0.0 };
-        let mut nearest = (f64::INFINITY, false);
-        for i in edge + n - BESIDE..=edge + n + BESIDE {
-            let (a, b) = (points[i % n], points[(i + 1) % n]);
-            let (share, squared) = nearest_on_segment(point, a, b);
-            if squared < nearest.0 {
-                // At an end both edges there decide: outside of either at a turn to the left, of both at one to the right.
-                let is_right = |a: DVec2, b: DVec2| (b - a).perp_dot(point - a) < 0.0;
-                let here = is_right(a, b);
-                let joint = |j: usize, turn: f64| {
-                    let there = is_right(points[j % n], points[(j + 1) % n]);
-                    if turn > 0.0 { here || there } else { here && there }
-                };
-                let along = |j: usize| points[(j + 1) % n] - points[j % n];
-                let outside = if share >= 1.0 {
-                    joint(i + 1, along(i).perp_dot(along(i + 1)))
-                } else if share <= 0.0 {
-                    joint(i + n - 1, along(i + n - 1).perp_dot(along(i)))
-                } else {
-                    here
-                };
-                nearest = (squared, outside);
-            }
-        }
-        if nearest.1 { nearest.0.sqrt() } else { -nearest.0.sqrt() }
+        self.edge(at).map_or(0.0, |edge| right_of(points, edge + n - BESIDE, 2 * BESIDE + 1, point))
     }
+
+    /// How far the contour reaches beyond vertex `i` of a loop, if the loop is dented there: between two points of the contour
+    /// edges go no deeper than at such a vertex.
+    pub(super) fn beyond_dent(&self, points: &[DVec2], i: usize, contour: &[DVec2]) -> Option<f64> {
+        let (n, count) = (points.len(), contour.len());
+        let (before, after) = (if i == 0 { n - 1 } else { i - 1 }, if i + 1 == n { 0 } else { i + 1 });
+        let (here, turn) = (points[i], (points[i] - points[before]).perp_dot(points[after] - points[i]));
+        let span = (self.places[after] - self.places[before]).rem_euclid(count as f64);
+        if turn >= 0.0 {
+            return None;
+        }
+        // Around loops of few edges the neighbours are as near to each other the other way.
+        let (first, segments) = if 2.0 * span > count as f64 {
+            (0, count)
+        } else {
+            let first = self.places[before];
+            (first as usize, (first + span).floor() as usize - first.floor() as usize + 1)
+        };
+        Some(-right_of(contour, first, segments, here))
+    }
+
+    /// How far the contour reaches beyond vertex `i` or one beside it where the loop is dented there.
+    pub(super) fn beyond_dents(&self, points: &[DVec2], i: usize, contour: &[DVec2]) -> f64 {
+        let n = points.len();
+        let of = |i: usize| self.beyond_dent(points, i % n, contour);
+        [i + n - 1, i, i + 1].into_iter().filter_map(of).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The point of the contour nearest to the place of vertex `i`.
+    pub(super) fn point_at(&self, i: usize) -> usize {
+        self.places[i].round() as usize % self.edge.len()
+    }
+}
+
+/// How far a point lies to the right of the nearest one of some edges of a closed line, from the edge `first` on; to the left negative.
+fn right_of(points: &[DVec2], first: usize, count: usize, point: DVec2) -> f64 {
+    let n = points.len();
+    let next = |i: usize| if i + 1 == n { 0 } else { i + 1 };
+    let mut i = first % n;
+    let mut nearest = (f64::INFINITY, 0.0, i);
+    for _ in 0..count {
+        let (share, squared) = nearest_on_segment(point, points[i], points[next(i)]);
+        if squared < nearest.0 {
+            nearest = (squared, share, i);
+        }
+        i = next(i);
+    }
+    let (squared, share, i) = nearest;
+    let along = |j: usize| points[next(j)] - points[j];
+    let is_right = |j: usize| along(j).perp_dot(point - points[j]) < 0.0;
+    // At an end both edges there decide: outside of either at a turn to the left, of both at one to the right.
+    let joint = |j: usize, k: usize| {
+        if along(j).perp_dot(along(k)) > 0.0 {
+            is_right(j) || is_right(k)
+        } else {
+            is_right(j) && is_right(k)
+        }
+    };
+    let is_outside = if share >= 1.0 {
+        joint(i, next(i))
+    } else if share <= 0.0 {
+        joint(if i == 0 { n - 1 } else { i - 1 }, i)
+    } else {
+        is_right(i)
+    };
+    if is_outside { squared.sqrt() } else { -squared.sqrt() }
 }
 
 /// Places of the vertices of a loop on the contour that they lie on, in order: segment and share.

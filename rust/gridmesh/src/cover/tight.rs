@@ -43,8 +43,8 @@ pub(super) fn pulled(
                 progress.report(0.0)?;
             }
             let near: Vec<usize> = follow.points_near(i).collect();
-            let fit = |patch: &Patch| Fit::new(loop_of(patch, k), contour, follow, &near);
-            let now = fit(patch);
+            let fit = Fit { contour, follow, near: &near, vertex: i };
+            let now = fit.depths(loop_of(patch, k));
             if now.deepest <= worth {
                 continue;
             }
@@ -56,14 +56,12 @@ pub(super) fn pulled(
             for at in near.iter().step_by(near.len().div_ceil(PLACES)) {
                 for part in PARTS {
                     patch.vertices[vertex] = before.lerp(contour[*at], part);
-                    let then = fit(patch);
-                    if then.squares < best.0
-                        && then.farthest - slack <= most
+                    if let Some(squares) = fit.squares(loop_of(patch, k), best.0, slack + most)
                         && lengths.sharpest(patch, vertex) <= thin
                         && lengths.lacking(patch, vertex) <= lacked
                         && boundary.stays_simple(patch, vertex)
                     {
-                        best = (then.squares, patch.vertices[vertex]);
+                        best = (squares, patch.vertices[vertex]);
                     }
                 }
             }
@@ -74,8 +72,16 @@ pub(super) fn pulled(
     Ok(())
 }
 
+/// The points of a contour near a vertex of its loop.
+struct Fit<'a> {
+    contour: &'a [DVec2],
+    follow: &'a Followers,
+    near: &'a [usize],
+    vertex: usize,
+}
+
 /// How a loop lies to some points of its contour.
-struct Fit {
+struct Depths {
     /// Sum of the squares of the depths.
     squares: f64,
     deepest: f64,
@@ -83,16 +89,31 @@ struct Fit {
     farthest: f64,
 }
 
-impl Fit {
-    fn new(loop_: &[DVec2], contour: &[DVec2], follow: &Followers, near: &[usize]) -> Self {
-        let mut fit = Self { squares: 0.0, deepest: 0.0, farthest: 0.0 };
-        for &at in near {
-            let beyond = follow.beyond(loop_, at, contour[at]);
+impl Fit<'_> {
+    fn depths(&self, loop_: &[DVec2]) -> Depths {
+        let dents = self.follow.beyond_dents(loop_, self.vertex, self.contour);
+        let mut depths = Depths { squares: 0.0, deepest: 0.0, farthest: dents.max(0.0) };
+        for &at in self.near {
+            let beyond = self.follow.beyond(loop_, at, self.contour[at]);
             let depth = (-beyond).max(0.0);
-            fit.squares += depth * depth;
-            fit.deepest = fit.deepest.max(depth);
-            fit.farthest = fit.farthest.max(beyond);
+            depths.squares += depth * depth;
+            depths.deepest = depths.deepest.max(depth);
+            depths.farthest = depths.farthest.max(beyond);
         }
-        fit
+        depths
+    }
+
+    /// The sum of squares, if it is below `least` and no point is farther outside than `most`.
+    fn squares(&self, loop_: &[DVec2], least: f64, most: f64) -> Option<f64> {
+        let mut squares = 0.0;
+        for &at in self.near {
+            let beyond = self.follow.beyond(loop_, at, self.contour[at]);
+            let depth = (-beyond).max(0.0);
+            squares += depth * depth;
+            if squares >= least || beyond > most {
+                return None;
+            }
+        }
+        (self.follow.beyond_dents(loop_, self.vertex, self.contour) <= most).then_some(squares)
     }
 }

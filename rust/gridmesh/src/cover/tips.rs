@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use crate::cover::boundary::Boundary;
-use crate::cover::outside::{Followers, LoopEdges, loop_of};
+use crate::cover::needs_of;
+use crate::cover::outside::{Followers, loop_of};
 use crate::cover::short::Lengths;
 use crate::geometry::segments::nearest_on_segment;
 use crate::patch::Patch;
@@ -28,7 +29,7 @@ pub(super) fn moved(patch: &mut Patch, fine: &[Vec<DVec2>], followers: &[Followe
     let mut boundary = Boundary::new(patch);
     let mut left = 0.0f64;
     for (k, contour) in fine.iter().enumerate() {
-        let mut need = needs(patch, k, contour, &followers[k], slack);
+        let mut need = needs_of(patch, k, contour, &followers[k], slack);
         let mut tried: Vec<bool> = need.iter().map(|&need| need <= worth).collect();
         for _ in 0..MOVES {
             let open = (0..need.len()).filter(|&i| !tried[i]);
@@ -52,16 +53,10 @@ pub(super) fn moved(patch: &mut Patch, fine: &[Vec<DVec2>], followers: &[Followe
                 patch.vertices[vertex] = before;
             }
         }
-        let need = needs(patch, k, contour, &followers[k], slack);
+        let need = needs_of(patch, k, contour, &followers[k], slack);
         left = need.iter().copied().fold(left, f64::max);
     }
     left
-}
-
-/// How far the points of a contour lie outside, less the slack.
-fn needs(patch: &Patch, k: usize, contour: &[DVec2], followers: &Followers, slack: f64) -> Vec<f64> {
-    let edges = LoopEdges::new(patch, k, followers);
-    contour.iter().enumerate().map(|(at, &point)| edges.outside(at, point, slack)).collect()
 }
 
 /// The needs after a move of a vertex, if their sum of squares is less by a tenth.
@@ -72,10 +67,13 @@ fn better(
     slack: f64,
     (need, vertex): (&[f64], usize),
 ) -> Option<Vec<f64>> {
-    let mut after = need.to_vec();
-    for at in followers.points_near(vertex - patch.loops[k].start as usize) {
-        after[at] = (followers.beyond(loop_of(patch, k), at, contour[at]) - slack).max(0.0);
+    let (mut after, loop_) = (need.to_vec(), loop_of(patch, k));
+    let own = vertex - patch.loops[k].start as usize;
+    for at in followers.points_near(own) {
+        after[at] = (followers.beyond(loop_, at, contour[at]) - slack).max(0.0);
     }
+    let at = followers.point_at(own);
+    after[at] = after[at].max(followers.beyond_dents(loop_, own, contour) - slack);
     let squares = |need: &[f64]| need.iter().map(|need| need * need).sum::<f64>();
     (squares(&after) < 0.9 * squares(need)).then_some(after)
 }
