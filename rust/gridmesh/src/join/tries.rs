@@ -15,8 +15,9 @@ const FLAT: f64 = 60.0;
 /// Irregular vertices that a tube or a fill may have, by vertex, before it is compared with others.
 const FEW: f64 = 0.04;
 
-/// The same before the strip itself is tried as well: nine joints of ten have fewer.
-const SEVERAL: f64 = 0.15;
+/// The same before the strip itself is tried as well. With 0.15 one irregular vertex in 150 is saved in 200 random joints, which take 6 %
+/// longer, and characters of a few parts nearly twice as long.
+const SEVERAL: f64 = 0.2;
 
 /// How a patch was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

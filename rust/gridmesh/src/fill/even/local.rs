@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 use rustc_hash::FxHashSet;
+use smallvec::SmallVec;
 
 use crate::geometry::topology::NONE;
 use crate::path::placement::ROW_HEIGHT;
@@ -40,8 +41,11 @@ pub(crate) struct Local {
     pub hard: BTreeSet<[u32; 2]>,
     /// Vertices inside that stay where they are.
     pub knots: BTreeSet<u32>,
-    at: Vec<Vec<u32>>,
+    at: Vec<Fan>,
 }
+
+/// Triangles or vertices at a vertex, hardly ever more than eight.
+type Fan = SmallVec<[u32; 8]>;
 
 /// Lower one first.
 pub(crate) fn edge(a: u32, b: u32) -> [u32; 2] {
@@ -58,7 +62,7 @@ pub(crate) fn quality([a, b, c]: [DVec3; 3]) -> f64 {
 impl Local {
     /// `border`: so many vertices come first that stay.
     pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>, sides: Vec<u32>, border: usize) -> Local {
-        let mut at = vec![vec![]; positions.len()];
+        let mut at = vec![Fan::new(); positions.len()];
         for (t, corners) in triangles.iter().enumerate() {
             corners.iter().for_each(|&v| at[v as usize].push(t as u32));
         }
@@ -82,26 +86,23 @@ impl Local {
     }
 
     /// The neighbours of a vertex, ascending.
-    pub fn neighbours(&self, v: u32) -> Vec<u32> {
+    pub fn neighbours(&self, v: u32) -> SmallVec<[u32; 16]> {
         let corners = self.fan(v).iter().flat_map(|&t| self.triangles[t as usize]);
-        let mut near = corners.filter(|&u| u != v).collect::<Vec<_>>();
+        let mut near = corners.filter(|&u| u != v).collect::<SmallVec<_>>();
         near.sort_unstable();
         near.dedup();
         near
     }
 
     /// The triangles at an edge.
-    pub fn beside(&self, [a, b]: [u32; 2]) -> Vec<u32> {
+    pub fn beside(&self, [a, b]: [u32; 2]) -> SmallVec<[u32; 2]> {
         self.fan(a).iter().copied().filter(|&t| self.triangles[t as usize].contains(&b)).collect()
     }
 
     /// All edges, ascending.
     pub fn edges(&self) -> Vec<[u32; 2]> {
-        let live = self.triangles.iter().filter(|t| **t != GONE);
-        let mut edges = live.flat_map(|t| [0, 1, 2].map(|k| edge(t[k], t[(k + 1) % 3]))).collect::<Vec<_>>();
-        edges.sort_unstable();
-        edges.dedup();
-        edges
+        let from = |v: u32| self.neighbours(v).into_iter().filter(move |&u| u > v).map(move |u| [v, u]);
+        (0..self.positions.len() as u32).flat_map(from).collect()
     }
 
     /// The length of an edge, in those wanted at its ends.
@@ -137,7 +138,7 @@ impl Local {
 
     fn detach(&mut self, t: u32) {
         for v in self.triangles[t as usize] {
-            self.at[v as usize].retain(|&u| u != t);
+            self.at[v as usize].retain(|u| *u != t);
         }
     }
 
@@ -152,7 +153,7 @@ impl Local {
         let m = self.positions.len() as u32;
         self.positions.push(0.5 * (self.positions[a as usize] + self.positions[b as usize]));
         self.sizes.push(0.5 * (self.sizes[a as usize] + self.sizes[b as usize]));
-        self.at.push(vec![]);
+        self.at.push(Fan::new());
         for t in self.beside(e) {
             let own = self.triangles[t as usize];
             let with = |from: u32| own.map(|v| if v == from { m } else { v });
@@ -227,7 +228,7 @@ impl Local {
             self.detach(t);
             self.triangles[t as usize] = GONE;
         }
-        for t in self.fan(a).to_vec() {
+        for t in self.at[a as usize].clone() {
             let own = self.triangles[t as usize].map(|v| if v == a { b } else { v });
             self.detach(t);
             self.attach(t, own);
