@@ -869,6 +869,11 @@ _LIBRARY = {
     "the cut would get about {} {}; at most {} are supported, use a larger edge length": (
         "der Schnitt bekäme rund {0} {1}; höchstens {2} werden unterstützt, eine größere Kantenlänge nehmen"
     ),
+    "the mesh ends along the stroke already: a slice thinner than {} would come off; draw the stroke farther from its "
+    "border, or ask for shorter edges": (
+        "das Mesh endet schon am Strich: eine Scheibe dünner als {0} fiele ab; den Strich weiter weg vom Rand zeichnen, "
+        "oder kürzere Kanten verlangen"
+    ),
     "the stroke does not divide the mesh: all of it lies on one side, continued ends included; draw across the model": (
         "der Strich teilt das Mesh nicht: alles liegt auf einer Seite, auch mit fortgesetzten Enden; quer über das "
         "Modell zeichnen"

@@ -46,6 +46,26 @@ class TestSeveralMeshes:
         assert f"'{flat.name}' is left as it was: " in told
         assert "has no thickness" in told
 
+    def test_a_cut_made_twice_is_told(self, capfd):
+        one = ball()
+        activate(one)
+        points = drawn(line(*BEHIND))
+        options = {"stroke": points, "direction": "Y", "source": "DRAWN"}
+        assert bpy.ops.object.gridmesh_cut(**options) == {"FINISHED"}
+        halves = mesh_objects()
+        before = [vertices(half.data) for half in halves]
+        activate(*halves)
+        with pytest.raises(RuntimeError, match="the mesh ends along the stroke already"):
+            bpy.ops.object.gridmesh_cut(**options)
+        assert len(mesh_objects()) == 2
+        assert all(np.array_equal(vertices(half.data), old) for half, old in zip(halves, before, strict=True))
+        # Beside another object that is cut they stay, and are named.
+        other = ball(3.0)
+        activate(other, *halves)
+        assert bpy.ops.object.gridmesh_cut(**{**options, "extend_ends": True}) == {"FINISHED"}
+        assert f"'{halves[0].name}' is left as it was: the mesh ends along" in capfd.readouterr().out
+        assert len(mesh_objects()) == 4
+
     def test_a_mesh_of_two_objects_is_cut_once(self, capfd):
         one = ball()
         twin = one.copy()

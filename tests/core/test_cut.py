@@ -398,6 +398,17 @@ def test_ends_go_as_far_as_what_the_stroke_crosses():
     assert refused.value.kind == "stroke_misses"
 
 
+def test_what_ends_along_the_stroke_is_not_cut_again():
+    options = {"direction": DOWN, "edge_length": 0.1}
+    stroke = np.array([[-1, 0.3, 0], [2, 0.6, 0]])
+    half = gridmesh.cut(CUBE, QUADS, stroke, keep="left", **options).pieces[0]
+    faces = (half.corners, half.offsets)
+    with pytest.raises(gridmesh.GridMeshError, match="the mesh ends along the stroke already") as refused:
+        gridmesh.cut(half.vertices, faces, stroke + [0, 1e-3, 0], **options)
+    assert refused.value.kind == "slice_too_thin"
+    assert len(gridmesh.cut(half.vertices, faces, stroke + [0, 0.02, 0], **options).pieces) == 2
+
+
 def test_a_half_is_capped_up_to_its_plane_of_symmetry():
     half = np.delete(QUADS, 0, axis=0)  # without its side at x = 0
     options = {"direction": DOWN, "edge_length": 0.2}

@@ -72,7 +72,7 @@ use crate::{arrays, reports};
 /// ------
 /// GridMeshError
 ///     If the mesh, the stroke or an option is not fit (see `GridMeshError.kind`), if the stroke misses the mesh
-///     ("stroke_misses"), or when cancelled.
+///     ("stroke_misses"), if it ends along the stroke already ("slice_too_thin"), or when cancelled.
 /// TypeError
 ///     If an argument has a type that is not allowed.
 ///

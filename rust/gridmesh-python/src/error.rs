@@ -29,7 +29,7 @@ create_exception!(
          \"index_out_of_range\", \"repeated_vertex\", \"figure_eight\", \"zero_length_edge\",\n    \
          \"self_touching\", \"faces_on_both_sides\", \"non_manifold\", \"shared_edge\",\n    \
          \"fill_intersects\", \"not_a_disk\"; of cuts\n    \
-         \"invalid_face\", \"stroke_too_short\", \"stroke_misses\", \"behind_eye\",\n    \
+         \"invalid_face\", \"stroke_too_short\", \"stroke_misses\", \"slice_too_thin\", \"behind_eye\",\n    \
          \"cut_failed\", \"still_joined\"; of pictures \"picture_size\",
     \
          \"picture_format\"; or \"internal\" (a bug in gridmesh: please report it).\n\

@@ -61,6 +61,10 @@ pub struct Cut {
 /// stroke, what is within a hundredth of it counts as straight. Where edges of this length leave a line without a cap, they become
 /// half as long, again and again, until they do not.
 ///
+/// Parts that end along an open stroke already, as at the cap of the same cut made before, are not cut again: those that lie on
+/// one side of it but for slices thinner than a twentieth of the `edge_length`, or without one than a thousandth of the edges
+/// that it crosses.
+///
 /// Caps lie on the swept surface (with [`Smooth::Flat`](crate::fill::Smooth)), both pieces get the same vertices and
 /// faces, the right one's wound the other way. Cut lines that are not closed, because the mesh is not, get no
 /// cap. Linear in the size of the mesh, all but one pass local to the cut; the same input gives the same output
@@ -69,9 +73,9 @@ pub struct Cut {
 /// # Errors
 /// [`Error::NotFinite`], [`Error::IndexOutOfRange`], [`Error::InvalidFace`], [`Error::InvalidOption`];
 /// [`Error::StrokeTooShort`] and [`Error::SelfIntersecting`] for strokes that sweep no surface,
-/// [`Error::BehindEye`], [`Error::StrokeMisses`] if nothing is divided, [`Error::StillJoined`] if what a stroke crosses
-/// without its ends continued does not come apart, [`Error::CutFailed`] where rounding leaves no
-/// consistent division, [`Error::CutTooLarge`] if an `edge_length` would make more than 20,000 edges along the cut or two million
+/// [`Error::BehindEye`], [`Error::StrokeMisses`] if nothing is divided, [`Error::SliceTooThin`] if nothing but slices
+/// would come off, [`Error::StillJoined`] if what a stroke crosses without its ends continued does not come apart,
+/// [`Error::CutFailed`] where rounding leaves no consistent division, [`Error::CutTooLarge`] if an `edge_length` would make more than 20,000 edges along the cut or two million
 /// triangles of caps, [`Error::Cancelled`]. Nothing is returned half cut.
 ///
 /// Source: Nealen et al. 2009, section V and figure 2. The paper takes the cut itself from FiberMesh.

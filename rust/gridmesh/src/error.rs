@@ -317,6 +317,15 @@ pub enum Error {
          across the model"
     )]
     StrokeMisses,
+    /// Nothing but slices that are too thin would come off by a cut.
+    #[error(
+        "the mesh ends along the stroke already: a slice thinner than {least:.6} would come off; draw the stroke farther \
+         from its border, or ask for shorter edges"
+    )]
+    SliceTooThin {
+        /// Least thickness of a slice.
+        least: f64,
+    },
     /// A cut would have more edges or triangles than is supported.
     #[error(
         "the cut would get about {number:.0} {what}; at most {limit:.0} are supported, use a larger edge length"

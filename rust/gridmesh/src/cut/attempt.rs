@@ -4,6 +4,7 @@ use rustc_hash::FxHashSet;
 
 use super::cutting::Cutting;
 use super::divide::cross::{self, Edges};
+use super::divide::ended;
 use super::divide::locate::{Locator, Met};
 use super::divide::node::Tolerance;
 use super::divide::parted::Parted;
@@ -56,7 +57,14 @@ impl<'a> Attempt<'a> {
         let mut edges = cross::cross(vertices, faces, sheet, &locator, &met);
         if !options.extend_ends && !sheet.closed {
             let reach = reach::reach(vertices, sheet, &met, &edges, progress)?;
-            retell(&reach.cut, (vertices, faces), &mut met, &mut edges, alone)?;
+            retell(&reach.cut, (vertices, faces), &mut met, &mut edges, alone, |_| false)?;
+        }
+        // A closed line may punch a hole that is small beside the edge length.
+        if !sheet.closed
+            && let Some(found) = ended::find(cutting, &locator, &met, &edges)?
+        {
+            let near = |v: usize| found.near[v];
+            retell(&found.cut, (vertices, faces), &mut met, &mut edges, alone, near)?;
         }
         Ok(Attempt { cutting, sheet, locator, met, edges })
     }

@@ -3,6 +3,7 @@
 pub(crate) mod chains;
 pub(crate) mod cross;
 pub(crate) mod divider;
+pub(crate) mod ended;
 pub(crate) mod locate;
 pub(crate) mod node;
 pub(crate) mod parted;

@@ -37,6 +37,7 @@ impl Error {
             Error::InvalidFace { .. } => "invalid_face",
             Error::StrokeTooShort { .. } => "stroke_too_short",
             Error::StrokeMisses => "stroke_misses",
+            Error::SliceTooThin { .. } => "slice_too_thin",
             Error::BehindEye { .. } => "behind_eye",
             Error::CutFailed { .. } => "cut_failed",
             Error::StillJoined { .. } => "still_joined",

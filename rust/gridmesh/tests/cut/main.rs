@@ -1,6 +1,7 @@
 //! Cuts of synthetic meshes keep their promises.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod again;
 mod hostile;
 mod models;
 mod quads;

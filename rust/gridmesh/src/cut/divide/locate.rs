@@ -187,6 +187,12 @@ impl<'a> Locator<'a> {
         depth * self.distance(self.sheet.seen[v as usize], reach / depth)
     }
 
+    /// The distance of every vertex from the swept surface, if it is less than `reach`; else more than that.
+    pub fn all_off(&self, vertices: &[DVec3], reach: f64) -> Vec<f64> {
+        let off = |v: usize| self.off(vertices[v], v as u32, reach);
+        (0..vertices.len()).into_par_iter().with_min_len(4096).map(off).collect()
+    }
+
     /// Faces near the line, and the sides of all vertices.
     pub fn find(&self, vertices: &[DVec3], faces: Polygons<'_>) -> Result<Met> {
         let seen = &self.sheet.seen;

@@ -19,8 +19,8 @@ pub(in crate::cut) enum Alone {
 
 /// Forgets the crossings that are not `cut`, counted along all edges, and tells the sides of all vertices anew.
 ///
-/// A part that is not cut is on the side of the line where its vertices are. If they are on both, or the line would cross
-/// what is cut elsewhere, too, `alone` tells.
+/// A part that is not cut is on the side of the line where its vertices are, but for those that are `near` the line. If they are on
+/// both, or the line would cross what is cut elsewhere, too, `alone` tells.
 ///
 /// # Errors
 /// [`Error::StillJoined`] if what is cut does not come apart.
@@ -30,6 +30,7 @@ pub(in crate::cut) fn retell(
     met: &mut Met,
     edges: &mut Edges,
     alone: &Alone,
+    near: impl Fn(usize) -> bool,
 ) -> Result<()> {
     // Which vertex is on which side where it is cut: the side of an edge's first vertex.
     let mut seeds: Vec<(u32, bool)> = vec![];
@@ -68,6 +69,7 @@ pub(in crate::cut) fn retell(
         let (root, odd) = sides.root(v as u32);
         match known[root as usize] {
             Some(side) => straight &= (side != odd) == met.left[v],
+            None if near(v) => {}
             None => seen[root as usize][usize::from(met.left[v])] = true,
         }
     }
