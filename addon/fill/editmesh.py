@@ -14,7 +14,8 @@ import numpy as np
 from ..bodies.outlines import LARGEST
 from ..data import attributes
 from ..data.mirrors import mirror_planes
-from . import borders, holes
+from ..native import native
+from . import holes
 from .holes import Found, OpenEdge, Problem
 from .patches import Filled, Snapshot
 
@@ -90,9 +91,10 @@ class EditMesh:
         found = holes.all_of(self.open_edges(), max_edges)
         planes, within = mirror_planes(self.ob)
         linear = np.array(self.ob.matrix_world.to_3x3(), float)
+        is_outer_border = native("is_outer_border").is_outer_border
         for hole in list(found.holes):
             points = np.array([self.bm.verts[vertex].co for vertex in hole.vertices], float) @ linear.T
-            if borders.is_outer(points, self._into_faces(hole) @ linear.T):
+            if is_outer_border(points, self._into_faces(hole) @ linear.T):
                 found.holes.remove(hole)
                 found.outer += 1
                 continue

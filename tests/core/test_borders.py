@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-
-from addon.fill.borders import is_outer
+from gridmesh import GridMeshError
+from gridmesh import is_outer_border as is_outer
 
 
 def ring(n=24, slope=0.0, *, hole=False, wide=1.0):
@@ -56,3 +56,13 @@ def test_what_has_no_plane_is_left_to_the_fill(points):
 def test_wires_have_no_sheet():
     points, faces = ring()
     assert not is_outer(points, 0 * faces)
+
+
+def test_other_shapes_are_refused():
+    points, faces = ring()
+    for wrong in (faces[1:], faces[:, :2], faces.ravel()):
+        with pytest.raises(GridMeshError, match=r"into .* allowed: ") as refused:
+            is_outer(points, wrong)
+        assert refused.value.kind == "invalid_shape"
+    with pytest.raises(TypeError):
+        is_outer(points, "none")

@@ -10,7 +10,7 @@ use pyo3::types::{PyList, PyTuple};
 use crate::error::{from_core, is_of_kind};
 use crate::filled::{Fill, WORDS};
 use crate::input::Argument;
-use crate::mesh::{Mesh, indices, loop_argument, pairs};
+use crate::mesh::{Mesh, as_positions, indices, loop_argument, pairs, read_positions};
 use crate::watch::Watch;
 
 /// Fill a hole with a grid patch whose boundary is the hole's, vertex for vertex.
@@ -120,6 +120,49 @@ fn loops_of(value: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<u32>>> {
         loops.push(indices(&loop_argument(&format!("loop {k}"), &item?))?);
     }
     Ok(loops)
+}
+
+/// Tell whether a loop is the outer border of a sheet that is flat there, and no hole in one and no end of a pipe: a patch would
+/// lie on the sheet.
+///
+/// Parameters
+/// ----------
+/// points : (n, 3) array of real numbers
+///     The loop's vertices in order, in the direction in which a patch is wound.
+/// into : (n, 3) array of real numbers
+///     From the edge between each vertex and the next one into its face, such as to the middle of that; of any length, zero where
+///     there is no face.
+///
+/// Returns
+/// -------
+/// bool
+///     True if the faces lead into what the loop encloses, at less than 26 degrees on average. False for what is not finite.
+///
+/// Raises
+/// ------
+/// GridMeshError
+///     If the arrays differ in length or have other shapes.
+/// TypeError
+///     If an argument has a type that is not allowed.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, gridmesh
+/// >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+/// >>> inside = np.array([0.5, 0.5, 0]) - square
+/// >>> gridmesh.is_outer_border(square, inside), gridmesh.is_outer_border(square, -inside)
+/// (True, False)
+#[pyfunction]
+pub fn is_outer_border(points: &Bound<'_, PyAny>, into: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let allowed = "an (n, 3) array of real numbers, as long as the other one";
+    let points = Argument { name: "points", value: points, allowed };
+    let into = Argument { name: "into", value: into, allowed };
+    let (at, ways) = (read_positions(&points)?, read_positions(&into)?);
+    let (at, ways) = (as_positions(&at)?, as_positions(&ways)?);
+    if at.len() != ways.len() {
+        return Err(into.wrong_shape(&format!("has {} rows, points has {}", ways.len(), at.len())));
+    }
+    Ok(gridmesh::fill::loops::outer::is_outer_border(&at, &ways))
 }
 
 /// Fill every hole of a mesh, or the given ones, in parallel.

@@ -66,6 +66,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<filled::Fill>()?;
     module.add_function(wrap_pyfunction!(fill::fill_hole, module)?)?;
     module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;
+    module.add_function(wrap_pyfunction!(fill::is_outer_border, module)?)?;
     module.add_function(wrap_pyfunction!(bridge::bridge, module)?)?;
     module.add_class::<regrid::Regrid>()?;
     module.add_function(wrap_pyfunction!(regrid::regrid, module)?)?;

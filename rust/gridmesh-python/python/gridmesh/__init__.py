@@ -4,8 +4,8 @@
 a flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. ``combine`` unites drawings or
 cuts one from another, ``thickness`` measures their limbs; ``trace_image`` finds
 the outlines in a picture, ``decode_image`` reads its file. ``fill_hole`` and ``fill_holes`` close holes of a
-mesh with patches that fit their boundaries vertex for vertex, ``bridge`` joins two of them
-by a tube, ``regrid`` replaces a region by one. ``cut``
+mesh with patches that fit their boundaries vertex for vertex, ``is_outer_border`` tells borders that are
+no holes, ``bridge`` joins two of them by a tube, ``regrid`` replaces a region by one. ``cut``
 divides a mesh along a stroke and caps it; ``cut_reach`` tells how far a stroke's ends go. ``join`` makes one
 closed mesh of several that overlap. ``harmonic``
 carries values on over a mesh, ``bone_weights`` makes a flat one follow bones.
@@ -35,6 +35,7 @@ from gridmesh._native import (
     flat,
     harmonic,
     inflate,
+    is_outer_border,
     join,
     map_sketches,
     mesh_sketch,
@@ -68,6 +69,7 @@ __all__ = [
     "flat",
     "harmonic",
     "inflate",
+    "is_outer_border",
     "join",
     "map_sketches",
     "mesh_sketch",

@@ -36,6 +36,7 @@ __all__ = [
     "flat",
     "harmonic",
     "inflate",
+    "is_outer_border",
     "join",
     "map_sketches",
     "mesh_sketch",
@@ -281,6 +282,7 @@ def fill_holes(
     cells: Literal["triangles", "quads"] = "triangles",
     progress: _Progress | None = None,
 ) -> list[Fill | GridMeshError]: ...
+def is_outer_border(points: npt.ArrayLike, into: npt.ArrayLike) -> bool: ...
 def bridge(
     vertices: npt.ArrayLike,
     triangles: npt.ArrayLike,

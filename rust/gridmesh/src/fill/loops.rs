@@ -3,4 +3,5 @@
 pub(crate) mod check;
 pub mod holes;
 pub(crate) mod mesh;
+pub mod outer;
 pub(crate) mod reserve;
