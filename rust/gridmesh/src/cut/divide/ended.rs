@@ -8,8 +8,8 @@ use crate::cut::cutting::Cutting;
 use crate::error::{Error, Result};
 use crate::geometry::disjoint::Disjoint;
 
-/// Vertices of a slice are nearer to the swept surface than the first, in edge lengths of those asked for; one for ten that are may be
-/// up to the second away: so far a cut goes through old vertices beside it.
+/// The vertices of a slice are nearer to the swept surface than `THIN`, in edge lengths as asked for, but for one in `FEW`, which may be
+/// up to `STRAY` away: a cut goes through old vertices that are so far beside it.
 const THIN: f64 = 0.05;
 const STRAY: f64 = 0.3;
 const FEW: usize = 10;
@@ -28,12 +28,14 @@ pub(in crate::cut) struct Ended {
     pub near: Vec<bool>,
 }
 
-/// Where the vertices of a part are, on the right of the line and on the left.
+/// Where the vertices of a part are; by side, on the right of the line first.
 #[derive(Clone, Default)]
 struct Sides {
-    /// How many of either side are those of slices, and how many of each near enough to be.
+    /// Vertices nearer than `THIN`, on both sides.
     thin: usize,
+    /// Those up to `STRAY` away.
     stray: [usize; 2],
+    /// Whether there are any farther away.
     beyond: [bool; 2],
 }
 
