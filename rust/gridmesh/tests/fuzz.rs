@@ -98,3 +98,12 @@ fn what_hangs_on_a_region_keeps_its_edges_open() {
 fn a_vertex_at_the_seam_of_a_tube_is_found() {
     targets::several(&[205, 17, 85, 31, 82, 66, 100, 3, 249, 27, 108, 238, 67, 82, 100, 88, 0, 40, 75]);
 }
+
+/// A mesh so small as the line is seen that cells as fine as it have no finite number.
+#[test]
+fn a_line_that_is_long_beyond_measure_beside_the_mesh_is_no_panic() {
+    targets::cut(&[
+        9, 193, 200, 200, 200, 136, 200, 200, 200, 136, 9, 106, 200, 161, 33, 200, 129, 200, 200, 136, 1,
+        136, 161, 255, 32, 255, 44, 200, 196,
+    ]);
+}

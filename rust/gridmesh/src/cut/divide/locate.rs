@@ -46,6 +46,11 @@ impl<'a> Locator<'a> {
         }
         let most = ((n_vertices.len() as f64).sqrt() * 1.5).clamp(16.0, 1500.0);
         let cell = across / most;
+        // A mesh that is seen as hardly a point: the line has no finite place in its cells.
+        let far = sheet.points.iter().map(|&p| (p - sheet.low).abs().max_element()).fold(across, f64::max);
+        if !(far / cell).is_finite() {
+            return Err(Error::StrokeMisses);
+        }
         let columns = (size.x / cell) as usize + 1;
         let rows = (size.y / cell) as usize + 1;
         let mut locator = Locator {
