@@ -75,8 +75,8 @@ pub struct Cut {
 /// [`Error::StrokeTooShort`] and [`Error::SelfIntersecting`] for strokes that sweep no surface,
 /// [`Error::BehindEye`], [`Error::StrokeMisses`] if nothing is divided, [`Error::SliceTooThin`] if nothing but slices
 /// would come off, [`Error::StillJoined`] if what a stroke crosses without its ends continued does not come apart,
-/// [`Error::CutFailed`] where rounding leaves no consistent division, [`Error::CutTooLarge`] if an `edge_length` would make more than 20,000 edges along the cut or two million
-/// triangles of caps, [`Error::Cancelled`]. Nothing is returned half cut.
+/// [`Error::CutFailed`] where rounding leaves no consistent division, [`Error::CutTooLarge`] if an `edge_length` would make
+/// more than 20,000 edges along the cut or two million triangles of caps, [`Error::Cancelled`]. Nothing is returned half cut.
 ///
 /// Source: Nealen et al. 2009, section V and figure 2. The paper takes the cut itself from FiberMesh.
 pub fn cut(

@@ -11,7 +11,7 @@ use super::caps::loops::Loops;
 use super::caps::{cap, loops};
 use super::cutting::Cutting;
 use super::divide::locate::Uncut;
-use super::divide::node::Tolerance;
+use super::divide::node::{THROUGH, Tolerance};
 use super::divide::parted::Parted;
 use super::report::Tally;
 use super::sheet::Sheet;
@@ -26,10 +26,6 @@ const TOLERANCES: [Tolerance; 3] = [
     Tolerance { vertex: 1e-6, node: 1e-8, length: 0.0 },
     Tolerance { vertex: 1e-9, node: 1e-11, length: 0.0 },
 ];
-
-/// With an edge length, the cut may be drawn through vertices that are nearer than this part of it, where triangles
-/// beside it would be thin otherwise.
-const THROUGH: f64 = 0.3;
 
 /// With an edge length, a line that touches itself in a vertex is moved aside by this part of it.
 const ASIDE: f64 = 0.02;

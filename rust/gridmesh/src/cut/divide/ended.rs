@@ -4,14 +4,14 @@ use glam::DVec3;
 
 use super::cross::Edges;
 use super::locate::{Locator, Met};
+use super::node::THROUGH;
 use crate::cut::cutting::Cutting;
 use crate::error::{Error, Result};
 use crate::geometry::disjoint::Disjoint;
 
 /// The vertices of a slice are nearer to the swept surface than `THIN`, in edge lengths as asked for, but for one in `FEW`, which may be
-/// up to `STRAY` away: a cut goes through old vertices that are so far beside it.
+/// as far away as old vertices that a cut goes through.
 const THIN: f64 = 0.05;
-const STRAY: f64 = 0.3;
 const FEW: usize = 10;
 
 /// The same without a length asked for, in lengths of the edges that are crossed.
@@ -33,7 +33,7 @@ pub(in crate::cut) struct Ended {
 struct Sides {
     /// Vertices nearer than `THIN`, on both sides.
     thin: usize,
-    /// Those up to `STRAY` away.
+    /// Those up to `THROUGH` away.
     stray: [usize; 2],
     /// Whether there are any farther away.
     beyond: [bool; 2],
@@ -64,7 +64,7 @@ pub(in crate::cut) fn find(
 ) -> Result<Option<Ended>> {
     let Cutting { vertices, faces, options } = cutting;
     let (thin, stray) = match options.edge_length {
-        Some(length) => (THIN * length, STRAY * length),
+        Some(length) => (THIN * length, THROUGH * length),
         None => [THIN_UNASKED * typical(vertices, edges); 2].into(),
     };
     let off = locator.all_off(vertices, stray);

@@ -22,6 +22,10 @@ impl Node {
     }
 }
 
+/// With an edge length, the cut may be drawn through vertices that are nearer than this part of it, where triangles
+/// beside it would be thin otherwise.
+pub(in crate::cut) const THROUGH: f64 = 0.3;
+
 /// What counts as one point, in edges.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::cut) struct Tolerance {
