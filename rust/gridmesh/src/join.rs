@@ -145,30 +145,32 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
     let mut from = 0.4;
     let allowed = stage.allowed(enclosed);
     let mut each = f64::INFINITY;
-    let (site, strips, mut closed) = loop {
+    let mut before = None;
+    let Closed { site, strips, mut patches } = loop {
         let to = 0.5 * (from + 0.9);
-        let (site, strips, closed) = stage.closed(&most, each, progress.part(from, to))?;
-        let scales = stage.narrowed(&most, allowed, &strips, &closed);
-        let done = each.is_finite() || options.blend == 0.0 || gained(&closed).abs() <= allowed;
+        let closed = stage.closed(&most, each, before, progress.part(from, to))?;
+        let scales = stage.narrowed(&most, allowed, &closed);
+        let done = each.is_finite() || options.blend == 0.0 || gained(&closed.patches).abs() <= allowed;
         if rounds > 0 && scales != most {
             most = scales;
             rounds -= 1;
         } else if done {
-            break (site, strips, closed);
+            break closed;
         } else {
             // No narrower blend changes the volume less: patches that do not change it that much at all.
-            each = share(allowed, &closed);
+            each = share(allowed, &closed.patches);
             rounds = 0;
         }
+        before = Some(closed);
         from = to;
     };
     clock.stage("patches");
     let sides = match options.border {
         Border::None => vec![],
-        _ => border(&site, &strips, &mut closed, progress.part(0.9, 0.9))?,
+        _ => border(&site, &strips, &mut patches, progress.part(0.9, 0.9))?,
     };
     clock.stage("border");
-    let patches = strips.into_iter().map(|strip| strip.rims).zip(closed).collect::<Vec<_>>();
+    let patches = strips.into_iter().map(|strip| strip.rims).zip(patches).collect::<Vec<_>>();
     let last = progress.part(0.9, 1.0);
     let mut made = Joined::new(&site, &patches, &sides, report, last)?;
     clock.stage("assemble");
@@ -189,6 +191,13 @@ fn border(
     Ok(each.collect::<Result<Vec<_>>>()?.concat())
 }
 
+/// Strips and what takes their place.
+struct Closed<'a> {
+    site: Site<'a>,
+    strips: Vec<Strip>,
+    patches: Vec<Patch>,
+}
+
 /// What the collars are made from.
 struct Stage<'a> {
     parts: &'a Parts,
@@ -199,7 +208,7 @@ struct Stage<'a> {
     options: &'a JoinOptions,
 }
 
-impl Stage<'_> {
+impl<'a> Stage<'a> {
     fn attempt(&self, scales: &[f64]) -> Result<(Outside, Vec<Strip>)> {
         let gone = self.curves.near(self.parts, self.left, self.options, scales);
         let outside = Outside::new(self.parts, self.left, gone);
@@ -219,15 +228,22 @@ impl Stage<'_> {
     }
 
     /// The strips and what takes their place, if the blend of each curve is at most so many times what is asked for, and each
-    /// patch but the exact one may change the volume by `allowed`.
+    /// patch but the exact one may change the volume by `allowed`. Those of before, if the same faces stay.
     fn closed(
         &self,
         most: &[f64],
         allowed: f64,
+        before: Option<Closed<'a>>,
         progress: Progress<'_>,
-    ) -> Result<(Site<'_>, Vec<Strip>, Vec<Patch>)> {
+    ) -> Result<Closed<'a>> {
         let &Stage { parts, union, seams, options, .. } = self;
         let (outside, strips) = self.collars(most, progress.part(0.0, 0.2))?;
+        if let Some(before) = before
+            && before.site.allowed == allowed
+            && before.site.outside.faces == outside.faces
+        {
+            return Ok(before);
+        }
         let (mut kept, mut polygons) = (vec![], vec![]);
         for (&t, &f) in parts.triangles.iter().zip(&parts.face_of) {
             if outside.faces[f as usize] {
@@ -238,11 +254,11 @@ impl Stage<'_> {
         let site = Site { parts, union, seams, outside, options, kept, polygons, allowed };
         let each = |strip: &Strip, progress: Progress<'_>| site.close(strip, progress);
         let closing = progress.part(0.2, 1.0);
-        let closed = match strips.as_slice() {
+        let patches = match strips.as_slice() {
             [strip] => vec![each(strip, closing)?],
             _ => in_parallel(&strips, |strip| strip.triangles.len(), closing, each)?,
         };
-        Ok((site, strips, closed))
+        Ok(Closed { site, strips, patches })
     }
 
     /// By how much all patches together may change the volume of the union, which is `enclosed`.
@@ -253,7 +269,8 @@ impl Stage<'_> {
 
     /// How much of the blend of each curve to take instead: less where a patch is no blend, or much of the volume that is gained
     /// more than `allowed`.
-    fn narrowed(&self, most: &[f64], allowed: f64, strips: &[Strip], patches: &[Patch]) -> Vec<f64> {
+    fn narrowed(&self, most: &[f64], allowed: f64, closed: &Closed<'_>) -> Vec<f64> {
+        let Closed { strips, patches, .. } = closed;
         let gained = gained(patches);
         let much = gained.abs() > allowed;
         let mut scales = most.to_vec();
