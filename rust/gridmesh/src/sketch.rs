@@ -41,8 +41,8 @@ pub use crate::sketch::kept::Kept;
 /// direction it runs. Time is linear in the number of triangles and points for ordinary drawings.
 ///
 /// # Errors
-/// [`Error::TooCoarse`] if no valid patch of about the size asked for was found, with the least number of
-/// triangles that works unless [`SketchOptions::least`] is off or the search for it would take too long;
+/// [`Error::TooCoarse`] if no valid patch of about the size asked for was found, with a number of triangles that works, the
+/// least one where that is found in time, unless [`SketchOptions::least`] is off or the search takes too long;
 /// [`Error::NoPatch`] if there is none at any size up to [`MAX_TRIANGLES`]; [`Error::Inverted`] without
 /// relaxation; and the errors of [`ClosedCurve::new`] and [`SketchOptions::check`].
 ///

@@ -12,7 +12,7 @@ use crate::progress::Progress;
 use crate::sketch::job::{Asked, Effort, Job};
 
 /// Work that the search may take, in triangles; an edge of the boundary counts as `EDGE` of them. A second or
-/// two, whatever the drawing. Where walls get in each other's way the states that searches take count, so many
+/// two, whatever the drawing, and as much for each leap. Where walls get in each other's way the states that searches take count, so many
 /// as a triangle: eight million at most, less than a second.
 const WORK: f64 = 8e5;
 const EDGE: f64 = 20.0;
@@ -23,6 +23,10 @@ const STATES: f64 = 10.0;
 /// more effort too. And beyond what the search took that worked, where a smaller number is looked for after it.
 const MOST: u64 = 200_000;
 const MOST_EACH: u64 = 200;
+
+/// Where that work is done and no number was found, so many larger ones are tried, so many steps on: no least number, but one that works.
+const LEAPS: usize = 2;
+const LEAP: i32 = 7;
 
 /// Sizes are tried in steps of this factor.
 const STEP: f64 = 1.1;
@@ -50,10 +54,17 @@ impl Job<'_> {
         let mut fails = self.last_hopeless(last, at);
         let (mut works, first, mut taken) = (None, fails, 0);
         let effort = |cells: usize| MOST + MOST_EACH * cells as u64;
+        let mut leaps = LEAPS;
         while works.is_none() && fails < last {
-            // Small steps first, for drawings that nearly fit; larger ones after them.
-            let step = (fails + 2 + (fails - first) / 2).min(last);
-            let ahead = at(step) as f64 + EDGE * self.boundary_edges(at(step));
+            // Small steps first, for drawings that nearly fit; larger ones after them, and leaps where no work is left for more.
+            let ahead_of = |step: i32| at(step) as f64 + EDGE * self.boundary_edges(at(step));
+            let mut step = (fails + 2 + (fails - first) / 2).min(last);
+            if work < ahead_of(step) && leaps > 0 {
+                step = step.max(fails + LEAP).min(last);
+                leaps -= 1;
+                work = WORK;
+            }
+            let ahead = ahead_of(step);
             if work < ahead {
                 return Ok(Error::TooCoarse {
                     triangles,
