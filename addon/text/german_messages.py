@@ -695,6 +695,8 @@ _FILLS = {
         "{0} offen gelassen, worin das Mesh schon liegt; zum Füllen einen Rand auswählen"
     ),
     "{} left open at the plane of a Mirror modifier": "{0} an der Ebene eines Spiegeln-Modifikators offen gelassen",
+    "{} left open across the plane of a Mirror modifier; apply the modifier to fill them whole": "{0} über die Ebene eines "
+    "Spiegeln-Modifikators hinweg offen gelassen; wende ihn an, um sie ganz zu füllen",
     "{} lost shape: the new faces are up to {} edges of the border off, which are too long for what lies within; select "
     "less, or subdivide first": (
         "{0} mit verlorener Form: die neuen Flächen liegen bis zu {1} Kanten des Randes daneben, die für das, was darin "
