@@ -275,6 +275,7 @@ _LIVE = {
     "its stroke is hidden, or lies inside another and is a hole there": (
         "sein Strich ist ausgeblendet, oder er liegt in einem anderen und ist dort ein Loch"
     ),
+    "the stroke has become too large for its lattice": "der Strich ist zu groß für sein Gitter geworden",
     "the stroke has left its plane": "der Strich hat seine Ebene verlassen",
     "the stroke is too thin for quads this coarse; use more quads or shorter edges, or set Faces to Triangles": (
         "der Strich ist zu dünn für so grobe Vierecke; mehr Vierecke oder kürzere Kanten nehmen, oder „Flächen“ auf "
@@ -463,9 +464,8 @@ _CUTS = {
     "{} bulge less than the mesh around them, or lie flat; rounder, they would break through the mesh": (
         "{0} sind weniger gewölbt als das Mesh ringsum, oder flach; runder stießen sie durch das Mesh"
     ),
-    "The line crosses no selected mesh    D: draw again    Esc: cancel": (
-        "Die Linie kreuzt kein ausgewähltes Mesh    D: neu zeichnen    Esc: abbrechen"
-    ),
+    "The line crosses no selected mesh": "Die Linie kreuzt kein ausgewähltes Mesh",
+    "{}    D: draw again    Esc: cancel": "{0}    D: neu zeichnen    Esc: abbrechen",
 }
 
 _BRIDGES = {
