@@ -30,7 +30,7 @@ _MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
 
 _DRAW = "Drag: draw the cut    Ctrl: straight line    Back to the start: closed cut    Esc: cancel"
 _CHOOSE = "Click: keep this side    Enter or B: keep both    D: draw again    Esc: cancel"
-_NOTHING = "The line crosses no selected mesh    D: draw again    Esc: cancel"
+_NOTHING = "The line crosses no selected mesh"
 _AGAIN = f"That was a click. {_DRAW}"
 
 _LINE, _AHEAD, _KEPT = (1.0, 0.75, 0.2, 1.0), (1.0, 0.75, 0.2, 0.35), (0.3, 0.75, 1.0, 0.45)
@@ -103,6 +103,15 @@ def _draw_band(near: np.ndarray, far: np.ndarray) -> None:
     batch = batch_for_shader(shader, "TRI_STRIP", {"pos": places, "color": colors})
     shader.bind()
     batch.draw(shader)
+
+
+def status(problems: list[api.NativeError | cutsweep.CutError] | None) -> str:
+    """Say what to do with a line. problems : why it cuts none of the meshes; None if it cuts one."""
+    if problems is None:
+        return _CHOOSE
+    others = [str(error) for error in problems if getattr(error, "kind", "") != "stroke_misses"]
+    said = others[0][:1].upper() + others[0][1:] if others else _NOTHING
+    return f"{said}    D: draw again    Esc: cancel"
 
 
 class DrawnCut:
@@ -195,26 +204,27 @@ class DrawnCut:
             context.workspace.status_text_set(told(_AGAIN, "interface"))
             return
         preview.line = drawnline.smoothed(points)
-        crosses = self._find_ends(context)
-        context.workspace.status_text_set(told(_CHOOSE if crosses else _NOTHING, "interface"))
+        context.workspace.status_text_set(told(status(self._find_ends(context)), "interface"))
 
-    def _find_ends(self, context: bpy.types.Context) -> bool:
-        """Find how far the ends of the line are continued, over all meshes; false if it crosses none."""
+    def _find_ends(self, context: bpy.types.Context) -> list[api.NativeError | cutsweep.CutError] | None:
+        """Find how far the ends of the line are continued, over all meshes; if none can be cut, return why."""
         preview = self._preview
         if self.extend_ends or np.array_equal(preview.line[0], preview.line[-1]):
-            return True
+            return None
         region, region_data = preview.region, preview.region.data
         points, view = np.array(self._world_points(context), float), View.of(region_data)
         sweep, _ = cutline.sweep_of("VIEW", points, view)
         before = [preview.line[0] - preview.line[1], preview.line[-1] - preview.line[-2]]
         ends, farthest, crosses = [preview.line[0], preview.line[-1]], [0.0, 0.0], False
+        problems = []
         for ob in self.targets(context):
             try:
                 target = Target(ob)
                 stroke, own = target.line(points, sweep, cyclic=False, close_gaps=0.0)
                 reach = cutting.reach(target.model, stroke, own) + target.origin
-            except (api.NativeError, cutsweep.CutError):
-                continue  # it is told, with the reason, once the cut is made
+            except (api.NativeError, cutsweep.CutError) as error:
+                problems.append(error)  # of some of several it is told once the cut is made
+                continue
             crosses = True
             for k, place in enumerate(reach):
                 seen = view3d_utils.location_3d_to_region_2d(region, region_data, Vector(place))
@@ -224,7 +234,7 @@ class DrawnCut:
                 if ahead > farthest[k]:
                     ends[k], farthest[k] = np.array(seen), ahead
         preview.ends = np.stack(ends)
-        return crosses
+        return None if crosses else problems
 
     def _choose(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         preview = self._preview

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..api import reason_of
 from ..bodies.outlines import Plane, area
 from ..native import native
 from . import parts
@@ -199,6 +200,7 @@ def _decided(trace: Trace, shapes: list[Shape], wanted: Wanted) -> Decision:
     if own is None or not len(own):
         raise DecisionError("the stroke leaves the plane; turn the view or choose another plane")
     own = closed(own)
+    _require_one(own)
     action = wanted.action
     taking = action in {"TRIM", "HOLE"} or (action == "AUTO" and wanted.subtract)
     met = _ranked([one for shape in shapes if (one := _met(trace, shape, taking)) is not None])
@@ -221,6 +223,16 @@ def _decided(trace: Trace, shapes: list[Shape], wanted: Wanted) -> Decision:
     if across and action != "NEW":
         return _extended(across[0], shapes)
     return Decision("NEW", trace.plane, [own], hint=_hidden(trace, own, shapes))
+
+
+def _require_one(stroke: np.ndarray) -> None:
+    """Refuse what falls into parts where it crosses itself. A line, which encloses nothing yet, may become something."""
+    gridmesh = native("combine")
+    try:
+        covered([stroke])
+    except gridmesh.GridMeshError as error:
+        if error.kind == "disconnected":
+            raise DecisionError(reason_of(error).replace("the outline", "the stroke")) from error
 
 
 def _require_free(shape: Shape) -> None:

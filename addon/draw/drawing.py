@@ -289,6 +289,7 @@ def _changed(
     flat = [frames.moved(ring, to_layer) for ring in rings]
     outlined.write(layer_of(source, name).current_frame().drawing, gone, flat, widths)
     live.stroke, live.count = kept, kept + len(rings)
+    engine.replaced(ob)
     context.view_layer.update()
     engine.remake(ob)
     adopt(ob, orphans)

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ..bodies.outlines import Plane
+from ..ui.wrapping import lines
 from .decision import Decision
 from .gesture import Gesture
 from .trace import Mirror, Trace
@@ -21,6 +22,8 @@ COLORS = {
     "PART": (0.75, 0.45, 1.0),
     "": (0.6, 0.6, 0.6),
 }
+_CLOSED = 20
+"""A sidebar that is closed is at most so many pixels wide."""
 _LINE, _AXIS = (1.0, 0.55, 0.1, 1.0), (1.0, 1.0, 1.0, 0.45)
 
 Grid = tuple[np.ndarray, np.ndarray]
@@ -115,14 +118,18 @@ class Preview:
             return
         scale = bpy.context.preferences.system.ui_scale
         light = tuple(0.35 + 0.65 * value for value in self._color)
-        rows = [(self._word, 14.0 * scale, light), (self._hint, 11.0 * scale, (1.0, 0.85, 0.5))]
-        rows = [row for row in rows if row[0]]
-        width = 0.0
-        for text, size, _ in rows:
-            blf.size(0, size)
-            width = max(width, blf.dimensions(0, text)[0])
         margin = 6 * scale
-        left = min(self._mouse[0] + 18 * scale, self._region.width - width - 2 * margin)
+        room = free_width(self._area, self._region) - 4 * margin
+        rows, width = [], 0.0
+        for text, size, color in (
+            (self._word, 14.0 * scale, light),
+            (self._hint, 11.0 * scale, (1.0, 0.85, 0.5)),
+        ):
+            blf.size(0, size)
+            for line in lines(text, room, lambda part: blf.dimensions(0, part)[0]):
+                rows.append((line, size, color))
+                width = max(width, blf.dimensions(0, line)[0])
+        left = max(2 * margin, min(self._mouse[0] + 18 * scale, room + 2 * margin - width))
         top = self._mouse[1] + 28 * scale
         height = sum(1.5 * size for _, size, _ in rows)
         _box(left - margin, top - height - margin / 2, left + width + margin, top + margin / 2)
@@ -132,6 +139,15 @@ class Preview:
             blf.color(0, *color, 1.0)
             blf.position(0, left, top + 0.45 * size, 0)
             blf.draw(0, text)
+
+
+def free_width(area: bpy.types.Area, region: bpy.types.Region) -> int:
+    """Pixels of a view from its left edge to where the sidebar lies over it."""
+    middle = region.x + region.width // 2
+    sides = [
+        side.x for side in area.regions if side.type == "UI" and side.width > _CLOSED and side.x > middle
+    ]
+    return min([region.width, *(side - region.x for side in sides)])
 
 
 def _box(left: float, bottom: float, right: float, top: float) -> None:

@@ -107,6 +107,7 @@ def _simplified(context: bpy.types.Context, drawn: shapes.Drawn, tolerance: floa
     rewritten = [frames.moved(ring, to_layer) for ring in rings]
     outlined.write(layer.current_frame().drawing, gone, rewritten, widths)
     live.stroke, live.count = len(stay), len(stay) + len(rings)
+    engine.replaced(ob)
     context.view_layer.update()
     engine.remake(ob)
     return sum(len(stroke.points) for stroke in strokes), sum(len(ring) for ring in rings)

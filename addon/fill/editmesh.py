@@ -86,7 +86,8 @@ class EditMesh:
     def all_holes(self, max_edges: int) -> Found:
         """Find all holes of at most so many edges (0: any number), but those that a Mirror modifier closes.
 
-        The outer borders of flat sheets are none.
+        Those that it continues are left open, too: a patch would run along its plane. The outer borders of flat sheets
+        are none.
         """
         found = holes.all_of(self.open_edges(), max_edges)
         planes, within = mirror_planes(self.ob)
@@ -99,9 +100,13 @@ class EditMesh:
                 found.outer += 1
                 continue
             near = max(within, _FLAT * float(np.ptp(points, axis=0).max()))
-            if any((np.abs((points - point) @ normal) <= near).all() for point, normal in planes):
+            at_planes = [np.abs((points - point) @ normal) <= near for point, normal in planes]
+            if any(at_plane.all() for at_plane in at_planes):
                 found.holes.remove(hole)
                 found.mirrored += 1
+            elif any((at_plane & np.roll(at_plane, -1)).any() for at_plane in at_planes):
+                found.holes.remove(hole)
+                found.across += 1
         return found
 
     def _into_faces(self, hole: holes.Hole) -> np.ndarray:

@@ -112,6 +112,7 @@ def left_open(jobs: list[Job], max_edges: int) -> list[str]:
     larger = sum(job.found.larger for job in jobs)
     hidden = sum(job.found.hidden for job in jobs)
     mirrored = sum(job.found.mirrored for job in jobs)
+    across = sum(job.found.across for job in jobs)
     outer = sum(job.found.outer for job in jobs)
     left = []
     if larger:
@@ -120,6 +121,10 @@ def left_open(jobs: list[Job], max_edges: int) -> list[str]:
         left.append(f"{counted(hidden, 'hidden hole')} left open")
     if mirrored:
         left.append(f"{counted(mirrored, 'hole')} left open at the plane of a Mirror modifier")
+    if across:
+        left.append(
+            f"{counted(across, 'hole')} left open across the plane of a Mirror modifier; apply the modifier to fill them whole"
+        )
     if outer:
         left.append(
             f"{counted(outer, 'outer border')} left open, inside which the mesh lies already; select a border to fill it"

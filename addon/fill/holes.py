@@ -53,6 +53,8 @@ class Found:
     hidden: int = 0
     mirrored: int = 0
     """At the plane of a Mirror modifier, where the other half goes on."""
+    across: int = 0
+    """With edges at such a plane and others, whose mirror image is the other half of the hole."""
     outer: int = 0
     """Outer borders of flat sheets, on which a patch would lie."""
     _known: set[frozenset[int]] = field(default_factory=set)

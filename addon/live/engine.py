@@ -144,6 +144,11 @@ def refresh() -> int:
     return sum(follow(ob, depsgraph, full=True) for ob in bodies())
 
 
+def replaced(ob: bpy.types.Object) -> None:
+    """Make a body in full when it is looked at next: it has another outline, of which nothing was dragged."""
+    _states.pop(family.writer(ob).session_uid, None)
+
+
 def remake(ob: bpy.types.Object) -> bool:
     """Make a body in full because somebody asked, whether it follows or not, and whether there is a window or not.
 
@@ -320,7 +325,7 @@ def _solved(live: Any, sketch: Sketch, lattice: Lattice | None) -> tuple[Body, L
         try:
             return solve(sketch, sketch_options, body_options, lattice=lattice, pen=pen, pen_detail=detail)
         except LeftError:
-            pass  # it was turned or bent: there is nothing to keep
+            pass  # it was turned, bent or made far larger: there is nothing to keep
     return solve(sketch, sketch_options, body_options, pen=pen, pen_detail=detail)
 
 

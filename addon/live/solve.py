@@ -7,13 +7,14 @@ numpy only, no bpy.
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..api import Body, faces_of, native, reason_of, smooths_rim
-from ..bodies.outlines import Plane, Sketch, project
+from ..bodies.outlines import Plane, Sketch, area, project
 
 ALGORITHM = 4
 """Raised when the same stroke and options give another body. A body made by another one is left alone until asked."""
@@ -21,13 +22,16 @@ ALGORITHM = 4
 TILTED = 0.9999
 """Planes whose normals have a smaller cosine are two."""
 
+GROWN = 4.0
+"""A lattice is kept while a drawing grows to so many times its area, and its mesh to as many faces."""
+
 
 class SolveError(Exception):
     """A stroke has no body. The message says why."""
 
 
 class LeftError(SolveError):
-    """A stroke has left the plane of the lattice that it was to keep."""
+    """A stroke has left the plane of the lattice that it was to keep, or has become too large for it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +43,8 @@ class Lattice:
     angle: float
     origin: np.ndarray
     """(2,) in the plane."""
+    area: float = math.inf
+    """Area of the drawing that it was searched for."""
     patch: Any = None
     """What was meshed on it last: it knows how the lattice bends. None after a file was opened: then it is straight."""
 
@@ -68,7 +74,11 @@ def solve(
     gridmesh = native("mesh_sketch", "inflate", "flat")
     # Only flat corners have a single quad.
     options = {**sketch_options, "open_corners": body_options is None}
+    if lattice is not None and area(sketch.outline) > GROWN * lattice.area:
+        raise LeftError("the stroke has become too large for its lattice")
+    covered = area(sketch.outline)
     if lattice is not None and options.get("mirror") is None:
+        covered = lattice.area
         sketch = moved(sketch, lattice.plane)
         for name in ("triangles", "edge_length", "angle", "quads"):
             options.pop(name, None)
@@ -98,7 +108,7 @@ def solve(
         report={**patch.report, **surface.report},
         smooth_rim=smooths_rim(body_options),
     )
-    return body, Lattice(sketch.plane, patch.edge_length, patch.angle, np.array(patch.origin), patch)
+    return body, Lattice(sketch.plane, patch.edge_length, patch.angle, np.array(patch.origin), covered, patch)
 
 
 _last: list[Any] = []

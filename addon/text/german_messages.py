@@ -275,6 +275,7 @@ _LIVE = {
     "its stroke is hidden, or lies inside another and is a hole there": (
         "sein Strich ist ausgeblendet, oder er liegt in einem anderen und ist dort ein Loch"
     ),
+    "the stroke has become too large for its lattice": "der Strich ist zu groß für sein Gitter geworden",
     "the stroke has left its plane": "der Strich hat seine Ebene verlassen",
     "the stroke is too thin for quads this coarse; use more quads or shorter edges, or set Faces to Triangles": (
         "der Strich ist zu dünn für so grobe Vierecke; mehr Vierecke oder kürzere Kanten nehmen, oder „Flächen“ auf "
@@ -463,9 +464,8 @@ _CUTS = {
     "{} bulge less than the mesh around them, or lie flat; rounder, they would break through the mesh": (
         "{0} sind weniger gewölbt als das Mesh ringsum, oder flach; runder stießen sie durch das Mesh"
     ),
-    "The line crosses no selected mesh    D: draw again    Esc: cancel": (
-        "Die Linie kreuzt kein ausgewähltes Mesh    D: neu zeichnen    Esc: abbrechen"
-    ),
+    "The line crosses no selected mesh": "Die Linie kreuzt kein ausgewähltes Mesh",
+    "{}    D: draw again    Esc: cancel": "{0}    D: neu zeichnen    Esc: abbrechen",
 }
 
 _BRIDGES = {
@@ -695,6 +695,8 @@ _FILLS = {
         "{0} offen gelassen, worin das Mesh schon liegt; zum Füllen einen Rand auswählen"
     ),
     "{} left open at the plane of a Mirror modifier": "{0} an der Ebene eines Spiegeln-Modifikators offen gelassen",
+    "{} left open across the plane of a Mirror modifier; apply the modifier to fill them whole": "{0} über die Ebene eines "
+    "Spiegeln-Modifikators hinweg offen gelassen; wende ihn an, um sie ganz zu füllen",
     "{} lost shape: the new faces are up to {} edges of the border off, which are too long for what lies within; select "
     "less, or subdivide first": (
         "{0} mit verlorener Form: die neuen Flächen liegen bis zu {1} Kanten des Randes daneben, die für das, was darin "

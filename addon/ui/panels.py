@@ -16,6 +16,7 @@ from ..cut.operator import OBJECT_OT_gridmesh_cut
 from ..data import meshes
 from ..fill.operator import MESH_OT_gridmesh_fill
 from ..join.operator import OBJECT_OT_gridmesh_join
+from ..pictures.images import shows_picture
 from ..pictures.operator import OBJECT_OT_gridmesh_from_image, OBJECT_OT_gridmesh_update_image
 from ..pictures.weights_operator import OBJECT_OT_gridmesh_bone_weights
 from ..regrid.operator import MESH_OT_gridmesh_regrid
@@ -86,7 +87,7 @@ class VIEW3D_PT_gridmesh(bpy.types.Panel):  # noqa: N801
             column.operator(OBJECT_OT_gridmesh_update_image.bl_idname, icon="FILE_REFRESH")
         if OBJECT_OT_gridmesh_bone_weights.poll(context):
             column.operator(OBJECT_OT_gridmesh_bone_weights.bl_idname, icon="BONE_DATA")
-        if not drawings and not bodies:
+        if not (drawings or bodies or any(map(shows_picture, strokes.selected(context)))):
             self.layout.label(text="Select a drawing or a curve", icon="INFO")
 
 

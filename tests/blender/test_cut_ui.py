@@ -3,10 +3,16 @@
 import types
 
 import bpy
+import numpy as np
+import pytest
 from cuts import stroke_object
 from drawings import activate
 from test_ui import Layout
 
+from addon.cut import cutting, draw_operator
+from addon.cut.cutobject import Target
+from addon.cut.cutsweep import CutError, Sweep
+from addon.text import telling
 from addon.ui import panels as ui
 
 
@@ -36,3 +42,29 @@ def test_menu_entries():
     activate(bpy.data.objects["Cube"], bpy.data.objects["Curve"])
     ui._cut_entry(menu, bpy.context)
     assert len(menu.layout.drawn) == 3
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ([(-3, -2, 0), (3, -2, 0)], "Click: keep this side"),
+        ([(-3, -2, 5), (3, -2, 5)], "The line crosses no selected mesh    D: draw again"),
+        ([(-1, -2, -1), (1, -2, 1), (-1, -2, 1), (1, -2, -1)], "The stroke meets itself"),
+    ],
+)
+def test_a_drawn_line_that_cuts_nothing_is_said_why(line, said):
+    bpy.ops.mesh.primitive_cube_add()
+    target, problems = Target(bpy.context.object), None
+    try:
+        own, sweep = target.line(
+            np.array(line, float), Sweep(np.array([0, 1, 0.0])), cyclic=False, close_gaps=0.0
+        )
+        cutting.reach(target.model, own, sweep)
+    except CutError as error:
+        problems = [error]
+    told = draw_operator.status(problems)
+    assert told.startswith(said)
+    assert "Esc: cancel" in told
+    german = telling.translate(told, "de_DE")
+    assert german.endswith("Esc: abbrechen")
+    assert not {"line", "stroke", "mesh", "again"} & set(german.split())

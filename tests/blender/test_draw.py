@@ -1,5 +1,7 @@
 """Drawing bodies: what the operator makes of a stroke. The gestures themselves are tried in a window."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ from drawings import bean, check_body, circle, fingerprint, world_vertices
 from mathutils import Matrix
 
 from addon.data import frames
+from addon.draw import preview
 from addon.draw.gesture import Gesture, pack, unpack
 from addon.live import engine
 
@@ -264,3 +267,19 @@ def test_a_stroke_as_text():
     assert np.array_equal(again[1], pressure)
     assert draw(bean()) == {"FINISHED"}
     assert bpy.ops.object.gridmesh_draw("EXEC_DEFAULT") == {"CANCELLED"}
+
+
+@pytest.mark.parametrize(
+    ("sidebar", "free"),
+    [
+        (None, 1000),
+        ((1099, 1), 1000),  # closed
+        ((820, 280), 720),  # over the view
+        ((1100, 280), 1000),  # beside it
+        ((100, 280), 1000),  # on the left
+    ],
+)
+def test_words_at_the_mouse_are_not_written_below_the_sidebar(sidebar, free):
+    view = SimpleNamespace(type="WINDOW", x=100, width=1000)
+    side = [SimpleNamespace(type="UI", x=sidebar[0], width=sidebar[1])] if sidebar else []
+    assert preview.free_width(SimpleNamespace(regions=[view, *side]), view) == free

@@ -51,6 +51,24 @@ def disk():
     return body
 
 
+def test_a_small_body_is_extended_far_in_one_go(monkeypatch):
+    assert draw(circle(60, 0.1)) == {"FINISHED"}
+    engine.settle()
+    solved = []
+    solve = engine.solve
+
+    def listened(*sketch, **options):
+        body, lattice = solve(*sketch, **options)
+        solved.append(len(body.faces))
+        return body, lattice
+
+    monkeypatch.setattr(engine, "solve", listened)
+    assert draw(circle(60, 2, (1.95, 0), start=np.pi)) == {"FINISHED"}
+    (body,) = engine.bodies()
+    check_body(body)
+    assert solved == [len(body.data.polygons)], "meshed more than once"
+
+
 def repeat(**changed):
     """Change options in the redo panel: what is there is undone, and the operator runs again with the rest as it was."""
     last = bpy.context.window_manager.operators[-1]

@@ -284,6 +284,26 @@ def test_what_a_mirror_closes_is_left_open(capfd):
     assert vertices(ob.data)[:, 0].min() > -1e-6
 
 
+def test_a_hole_across_the_plane_of_a_mirror_is_left_open(capfd):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16)
+    ob = bpy.context.object
+    without_faces(ob, lambda centre: 0 < centre.x < 0.9 and np.hypot(centre.x, centre.z) + centre.y > 0)
+    ob.modifiers.new("Mirror", "MIRROR")
+    edit(ob)
+    assert fill(holes="ALL") is None
+    leave()
+    told = capfd.readouterr().out
+    assert "Filled 1 hole" in told  # the one beside the plane
+    assert "1 hole left open across the plane of a Mirror modifier; apply the modifier" in told
+    assert vertices(ob.data)[:, 0].min() > -1e-6
+    bpy.ops.object.modifier_apply(modifier="Mirror")
+    assert len(rim(edit(ob))) > 0
+    fill(holes="ALL")
+    assert not rim(bmesh.from_edit_mesh(ob.data))
+    leave()
+    assert abs(vertices(ob.data)[:, 0].min() + vertices(ob.data)[:, 0].max()) < 1e-5
+
+
 def test_several_meshes_at_once(capfd):
     first, second, idle = cylinder(12), cylinder(9, location=(4, 0, 0)), grid(3)
     befores = Before(first), Before(second), Before(idle)

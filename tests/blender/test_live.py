@@ -92,6 +92,23 @@ def turns(body):
     return np.bincount(front.ravel())[np.unique(edges[uses == 1])].tolist()
 
 
+@pytest.mark.parametrize("cells", ["TRIANGLES", "QUADS"])
+def test_a_drawing_that_is_scaled_up_gets_no_mass_of_faces_meanwhile(cells, drawn):
+    drawing, body = drawn
+    body.gridmesh_live.cells = cells
+    bpy.context.view_layer.update()
+    engine.settle()
+    before, height = len(body.data.polygons), np.ptp(vertices(body.data)[:, 1])
+    for factor in (1.5, 3, 6, 12, 24):
+        redraw(drawing, bean() * factor)
+        assert np.ptp(vertices(body.data)[:, 1]) == pytest.approx(factor * height, rel=0.05), (
+            "it does not follow"
+        )
+        assert len(body.data.polygons) < 6 * before
+    engine.settle()
+    assert len(body.data.polygons) == pytest.approx(before, rel=0.15)
+
+
 def test_the_mesh_does_not_pop(drawn):
     drawing, body = drawn
     body.gridmesh_live.triangles = 2000

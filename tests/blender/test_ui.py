@@ -96,6 +96,16 @@ def test_panel_with_a_drawing_and_with_a_body():
     assert "object.gridmesh_from_strokes" in panel()
 
 
+def test_panel_with_a_picture_asks_for_no_drawing():
+    ob = bpy.data.objects.new("Reference", None)
+    ob.empty_display_type = "IMAGE"
+    ob.data = bpy.data.images.new("Reference", 8, 8)
+    bpy.context.scene.collection.objects.link(ob)
+    activate(ob)
+    assert "object.gridmesh_from_image" in panel()
+    assert "Select a drawing or a curve" not in panel()
+
+
 def test_panel_in_edit_mode():
     edit(cylinder())
     own = ["mesh.gridmesh_fill"] * 2 + ["mesh.gridmesh_bridge", "mesh.gridmesh_regrid"]
