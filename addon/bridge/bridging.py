@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Loops of a mesh being edited, found and joined: what the operator does.
 
-Two are joined by a tube, three or more by one patch that has them all as its boundary.
+Two are joined by a tube, three or more by one patch that has them all as its boundary, or two by two.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from ..api import Progress
 from ..fill import patches
 from ..fill.editmesh import Added, EditMesh, MeshError, Patch
 from ..fill.holes import Hole, Problem
-from ..fill.patches import Snapshot
+from ..fill.patches import Filled, Snapshot
 from ..text.messages import counted
 
 _PAIR = 2
@@ -29,13 +29,10 @@ class Job:
     problems: list[Problem] = field(default_factory=list)
     snapshot: Snapshot | None = None
     patches: list[Patch] = field(default_factory=list)
-    report: dict = field(default_factory=dict)
+    reports: list[dict] = field(default_factory=list)
     added: Added = field(default_factory=Added)
-
-    @property
-    def is_tube(self) -> bool:
-        """Whether two loops are joined, which has rows and a twist; a patch with more loops has neither."""
-        return len(self.loops) == _PAIR
+    is_tube: bool = False
+    """Whether loops are joined two by two, which has rows and a twist; a patch with more loops has neither."""
 
     def find(self) -> None:
         """Find the loops that the selection means, or say why they cannot be joined."""
@@ -88,26 +85,59 @@ class Job:
         return None
 
     def bridge(
-        self, smooth: str, rows: int, twist: float, progress: Progress, *, cells: str = "triangles"
+        self,
+        smooth: str,
+        rows: int,
+        twist: float,
+        progress: Progress,
+        *,
+        cells: str = "triangles",
+        connect: str = "auto",
     ) -> None:
-        """Make the patch, without touching the mesh.
+        """Make the patches, without touching the mesh.
 
-        rows : 0 for as many as suit; these and twist count for two loops. cells : "triangles" or "quads".
+        rows : 0 for as many as suit; these and twist count for tubes. cells : "triangles" or "quads". connect : of three loops or
+        more, "one" patch, "pairs", or "auto": pairs where loops look away from each other.
         """
         if self.problems or self.snapshot is None:
             return
         at = self.snapshot
         loops = [hole.vertices for hole in self.loops]
         options = {"smooth": smooth, "cells": cells}
+        more = len(loops) > _PAIR
+        paired = more and (connect == "pairs" or (connect == "auto" and patches.look_apart(at, loops)))
+        self.is_tube = paired or not more
         if self.is_tube:
-            made = patches.bridge(at, *loops, progress, rows=rows or None, twist=twist, **options)
+            options |= {"rows": rows or None, "twist": twist}
+        if paired:
+            self._keep_pairs(loops, patches.bridge_pairs(at, loops, progress, **options))
+        elif more:
+            self._keep(loops, patches.fill_loops(at, loops, progress, **options))
         else:
-            made = patches.fill_loops(at, loops, progress, **options)
+            self._keep(loops, patches.bridge(at, *loops, progress, **options))
+
+    def _keep(self, loops: Sequence[Sequence[int]], made: Filled | str) -> None:
+        """Keep a patch between some loops, or the reason why there is none."""
         if isinstance(made, str):
             self.problems.append(Problem(made, tuple(vertex for loop in loops for vertex in loop)))
             return
-        self.report = made.report
-        self.patches.append(Patch.of(made, loops, at))
+        self.reports.append(made.report)
+        self.patches.append(Patch.of(made, loops, self.snapshot))
+
+    def _keep_pairs(
+        self, loops: Sequence[Sequence[int]], made: list[tuple[int, int, Filled | str]] | str
+    ) -> None:
+        """Keep the tubes between pairs of loops, and the reasons why others have none."""
+        if isinstance(made, str):
+            self._keep(loops, made)
+            return
+        for one, other, tube in made:
+            self._keep([loops[one], loops[other]], tube)
+        if len(loops) % _PAIR:
+            over = set(range(len(loops))).difference(*((one, other) for one, other, _ in made)).pop()
+            self.problems.append(
+                Problem("1 loop is left over; pairs want an even number", tuple(loops[over]))
+            )
 
     def name(self, problem: Problem, *, several: bool) -> str:
         """Message of a problem, with the object's name where there are several."""
@@ -117,32 +147,39 @@ class Job:
     def warnings(self) -> list[str]:
         """What the patch tells about itself that a user should look at."""
         warnings = []
-        if self.report["self_intersections"]:
+        if self._sum("self_intersections"):
             warnings.append(
                 "The tube meets the mesh or itself; check the shape, or choose less smoothness"
                 if self.is_tube
                 else "The patch meets the mesh or itself; check the shape and which way the faces at the loops look"
             )
-        if self.report["winding_conflicts"]:
-            faces = counted(self.report["winding_conflicts"], "face")
+        if conflicts := self._sum("winding_conflicts"):
+            faces = counted(conflicts, "face")
             warnings.append(
                 f"{faces} at the loops look the other way than the tube; recalculate the normals"
                 if self.is_tube
                 else f"{faces} at the loops look the other way than the patch; recalculate the normals"
             )
-        if self.report["grid"] == "graded":
+        if any(report["grid"] == "graded" for report in self.reports):
             warnings.append(
                 "No regular lattice suits these numbers of edges; choose other rows or subdivide a loop"
             )
         return warnings
 
+    def _sum(self, name: str) -> int:
+        return sum(report[name] for report in self.reports)
+
 
 def summary(jobs: Sequence[Job], made: str, milliseconds: float) -> str:
     """Say in numbers what was joined. made : the faces that it took."""
-    irregular = counted(sum(job.report["irregular"] for job in jobs), "irregular vertex")
+    reports = [report for job in jobs for report in job.reports]
+    irregular = counted(sum(report["irregular"] for report in reports), "irregular vertex")
     if all(job.is_tube for job in jobs):
-        rows = counted(max(job.report["rows"] for job in jobs), "row")
-        return f"Joined by {rows}: {made}, {irregular}, {milliseconds:.0f} ms"
+        rows = counted(max(report["rows"] for report in reports), "row")
+        if all(len(job.loops) == _PAIR for job in jobs):
+            return f"Joined by {rows}: {made}, {irregular}, {milliseconds:.0f} ms"
+        pairs = counted(len(reports), "pair of loops")
+        return f"Joined {pairs} by {rows}: {made}, {irregular}, {milliseconds:.0f} ms"
     loops = counted(sum(len(job.loops) for job in jobs), "loop")
     return f"Joined {loops}: {made}, {irregular}, {milliseconds:.0f} ms"
 

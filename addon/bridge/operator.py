@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`mesh.gridmesh_bridge`: two loops of the mesh being edited are joined by a tube, or more by one patch."""
+"""`mesh.gridmesh_bridge`: two loops of the mesh being edited are joined by a tube, more by one patch or two by two."""
 
 from __future__ import annotations
 
@@ -27,6 +27,21 @@ class MESH_OT_gridmesh_bridge(PatchFaces, bpy.types.Operator):  # noqa: N801
     bl_label = "Grid Bridge"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
 
+    connect: EnumProperty(
+        name="Loops",
+        description="How three loops or more are joined",
+        items=[
+            (
+                "AUTO",
+                "Automatic",
+                "By one patch; where two look away from each other, as both ends of a pipe do, in pairs",
+            ),
+            ("ONE", "One Patch", "All by one patch"),
+            ("PAIRS", "Pairs", "Two by two, by tubes: the nearest that face each other first"),
+        ],
+        default="AUTO",
+        options={"SKIP_SAVE"},
+    )
     rows: IntProperty(
         name="Rows",
         description="Rows of faces between two loops; 0 for as many as the lengths of the edges ask for",
@@ -79,7 +94,8 @@ class MESH_OT_gridmesh_bridge(PatchFaces, bpy.types.Operator):  # noqa: N801
                 for index, job in enumerate(jobs):
                     job.find()
                     part = pointer.part(index / len(jobs), (index + 1) / len(jobs))
-                    job.bridge(self.smooth.lower(), self.rows, self.twist, part, cells=self.cells.lower())
+                    chosen = {"cells": self.cells.lower(), "connect": self.connect.lower()}
+                    job.bridge(self.smooth.lower(), self.rows, self.twist, part, **chosen)
         except api.CancelledError:
             self.report({"WARNING"}, told("Cancelled; nothing was joined"))
             return {"CANCELLED"}
@@ -127,6 +143,7 @@ class MESH_OT_gridmesh_bridge(PatchFaces, bpy.types.Operator):  # noqa: N801
         layout = self.draw_result()
         layout.prop(self, "cells")
         layout.prop(self, "smooth")
+        layout.prop(self, "connect")
         tube = layout.column()
         tube.active = self.has_tube
         tube.prop(self, "rows")

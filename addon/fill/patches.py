@@ -15,6 +15,9 @@ from ..native import native
 NO_PATCH = "no triangles between these loops make one patch; subdivide the smallest, or join fewer at once"
 """Said of three loops or more."""
 
+MEETS = "a tube between two of the loops would meet the mesh or itself; select these two alone to join them all the same"
+"""Said of one of several pairs of loops."""
+
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
@@ -139,6 +142,44 @@ def bridge(
     return _made(native("bridge").bridge, at, ends, progress, options)
 
 
+def look_apart(at: Snapshot, loops: Sequence[Sequence[int]]) -> bool:
+    """Whether two of some loops look away from each other, as both ends of a pipe: one patch between all would meet itself.
+
+    False where a loop cannot be joined at all.
+    """
+    gridmesh = native("look_apart")
+    try:
+        return gridmesh.look_apart(at.positions, at.triangles, [np.asarray(it, np.int32) for it in loops])
+    except gridmesh.GridMeshError:
+        return False
+
+
+def bridge_pairs(
+    at: Snapshot, loops: Sequence[Sequence[int]], progress: Progress | None = None, **options: Any
+) -> list[tuple[int, int, Filled | str]] | str:
+    """Join loops of a mesh two by two, the nearest first: the places of both and the tube or the reason why there is none.
+
+    options : `smooth`, `rows`, `twist` and `cells` of `gridmesh.bridge_pairs`. A tube that would meet the mesh or another is refused.
+    Raises NativeError without the module, and CancelledError if `progress` or Ctrl-C asked to stop.
+    """
+    gridmesh = native("bridge_pairs")
+    indices = [np.asarray(loop, np.int32) for loop in loops]
+    try:
+        with cancelling(gridmesh):
+            pairs = gridmesh.bridge_pairs(
+                at.positions,
+                at.triangles,
+                indices,
+                polygons=at.polygons,
+                strict=True,
+                progress=progress,
+                **options,
+            )
+            return [(one, other, _filled(gridmesh, tube, at, progress)) for one, other, tube in pairs]
+    except gridmesh.GridMeshError as error:
+        return str(error)
+
+
 def fill_loops(
     at: Snapshot, loops: Sequence[Sequence[int]], progress: Progress | None = None, **options: Any
 ) -> Filled | str:
@@ -178,7 +219,7 @@ def _made(
 
 def _filled(gridmesh: Any, fill: Any, at: Snapshot, progress: Progress | None) -> Filled | str:
     if isinstance(fill, gridmesh.GridMeshError):
-        return str(fill)
+        return MEETS if fill.kind == "fill_intersects" else str(fill)
 
     def go_on(_: float) -> object:
         # The fill itself has reported the whole.

@@ -475,6 +475,13 @@ _BRIDGES = {
     ),
     "Joined {}: {}, {}, {} ms": "{0} verbunden: {1}, {2}, {3} ms",
     "Joined by {}: {}, {}, {} ms": "Verbunden durch {0}: {1}, {2}, {3} ms",
+    "Joined {} by {}: {}, {}, {} ms": "{0} verbunden durch {1}: {2}, {3}, {4} ms",
+    "1 loop is left over; pairs want an even number": "1 Schleife bleibt übrig; Paare brauchen eine gerade Anzahl",
+    "a tube between two of the loops would meet the mesh or itself; select these two alone to join them all the same": (
+        "eine Röhre zwischen zwei der Schleifen träfe das Mesh oder sich selbst; nur diese zwei auswählen, um sie trotzdem zu verbinden"
+    ),
+    "{} pair of loops": "{0} Schleifenpaar",
+    "{} pairs of loops": "{0} Schleifenpaare",
     "No regular lattice suits these numbers of edges; choose other rows or subdivide a loop": (
         "Kein regelmäßiges Gitter passt zu diesen Anzahlen von Kanten; andere Reihen wählen oder eine Schleife unterteilen"
     ),

@@ -6,7 +6,13 @@ from collections.abc import Iterable
 _NAMED = 3
 """A message names this many things; the others are counted."""
 
-_PLURALS = {"body": "bodies", "irregular vertex": "irregular vertices", "patch": "patches", "mesh": "meshes"}
+_PLURALS = {
+    "body": "bodies",
+    "irregular vertex": "irregular vertices",
+    "patch": "patches",
+    "mesh": "meshes",
+    "pair of loops": "pairs of loops",
+}
 
 
 def counted(number: int, what: str) -> str:

@@ -597,6 +597,17 @@ GERMAN = {
         "Kanten sie auch haben"
     ),
     "Rows": "Reihen",
+    "Loops": "Schleifen",
+    "How three loops or more are joined": "Wie drei oder mehr Schleifen verbunden werden",
+    "By one patch; where two look away from each other, as both ends of a pipe do, in pairs": (
+        "Durch einen Flicken; wo zwei voneinander weg schauen, wie die beiden Enden eines Rohrs, paarweise"
+    ),
+    "One Patch": "Ein Flicken",
+    "All by one patch": "Alle durch einen Flicken",
+    "Pairs": "Paare",
+    "Two by two, by tubes: the nearest that face each other first": (
+        "Je zwei durch Röhren: die nächsten, die einander zugewandt sind, zuerst"
+    ),
     "Rows of faces between two loops; 0 for as many as the lengths of the edges ask for": (
         "Reihen von Flächen zwischen zwei Schleifen; 0 für so viele, wie zu den Längen der Kanten passen"
     ),

@@ -10,6 +10,7 @@ import pytest
 from drawings import activate, fingerprint, vertices
 from holes import Before, cylinder, edit, faces_of, grid, leave, rim, select, without_faces
 from mathutils import Vector
+from mathutils.bvhtree import BVHTree
 
 from addon.fill import patches
 
@@ -560,7 +561,7 @@ def test_three_loops_without_a_patch_are_told_and_stay_selected(monkeypatch):
     ob, loops = trousers()
     before = vertices(ob.data).tobytes(), faces_of(ob.data)
     choose(ob, loops)
-    module = SimpleNamespace(GridMeshError=Refused, fill_hole=refuse)
+    module = SimpleNamespace(GridMeshError=Refused, fill_hole=refuse, look_apart=lambda *_: False)
     monkeypatch.setattr(patches, "native", lambda *_: module)
     with pytest.raises(RuntimeError, match="No triangles between these loops make one patch; subdivide"):
         bpy.ops.mesh.gridmesh_bridge()
@@ -569,3 +570,102 @@ def test_three_loops_without_a_patch_are_told_and_stay_selected(monkeypatch):
         edge.index for edge in ob.data.edges if any(set(edge.vertices) <= set(loop) for loop in loops)
     }
     assert (vertices(ob.data).tobytes(), faces_of(ob.data)) == before
+
+
+# --------------------------------------------------------------------------------------------- pairs of loops
+
+
+def whole_pipes(*them):
+    """Open pipes along z in one mesh, each of (edges around, radius, middle, length), and both loops of each."""
+    for n, radius, middle, length in them:
+        cylinder(n, radius=radius, depth=length, location=middle)
+    made = list(bpy.context.scene.objects)[-len(them) :]
+    for ob in made:
+        ob.select_set(True)
+    bpy.context.view_layer.objects.active = made[0]
+    if len(made) > 1:
+        bpy.ops.object.join()
+    return made[0]
+
+
+BESIDE = ((24, 1.0, (-1.6, 0, 0), 2.0), (32, 1.2, (1.6, 0, 0), 2.2))
+INSIDE = ((24, 1.0, (0, 0, 0), 2.0), (32, 1.6, (0, 0, 0), 2.0))
+BEHIND = ((24, 1.0, (0, 0, -2), 2.0), (32, 1.2, (0, 0, 2), 2.0))
+
+
+@pytest.mark.parametrize("cells", ["TRIANGLES", "QUADS"])
+@pytest.mark.parametrize(("pipes_of", "left"), [(BESIDE, 0), (INSIDE, 0), (BEHIND, 56)])
+def test_all_ends_of_two_pipes_are_joined_in_pairs(pipes_of, left, cells, capfd):
+    ob = whole_pipes(*pipes_of)
+    before, n_faces = vertices(ob.data), len(ob.data.polygons)
+    choose_rims(ob)
+    bridge(cells=cells)
+    leave()
+    assert np.array_equal(vertices(ob.data)[: len(before)], before)
+    assert is_closed_but_for(ob, left)
+    sides = Counter(e for face in faces_of(ob.data) for e in zip(face, face[1:] + face[:1], strict=True))
+    told = capfd.readouterr().out
+    # Both pipes look outward: joined to one wall, one of them looks the other way.
+    turned = pipes_of is INSIDE
+    assert max(sides.values()) == 1 + turned
+    assert ("look the other way than the tube; recalculate" in told) == turned
+    assert f"Joined {'1 pair' if left else '2 pairs'} of loops by " in told
+    assert ("A tube between two of the loops would meet the mesh or itself" in told) == (left > 0)
+    assert len(ob.data.polygons) > n_faces
+    assert meetings(ob, n_faces) == 0
+
+
+def choose_rims(ob):
+    bm = edit(ob)
+    select(ob, rim(bm))
+
+
+def meetings(ob, first):
+    """Pairs of faces that meet without a vertex in common, one of them new."""
+    bm = bmesh.new()
+    bm.from_mesh(ob.data)
+    bm.faces.ensure_lookup_table()
+    tree = BVHTree.FromBMesh(bm)
+    corners = [{v.index for v in face.verts} for face in bm.faces]
+    found = {tuple(sorted(pair)) for pair in tree.overlap(tree)}
+    bm.free()
+    return sum(b >= first and not corners[a] & corners[b] for a, b in found)
+
+
+def test_how_loops_are_joined_can_be_chosen(capfd):
+    ob, loops = star((20, 20, 20, 20))
+    choose(ob, loops)
+    bridge(connect="PAIRS", rows=5)
+    leave()
+    assert "Rows and Twist" not in (told := capfd.readouterr().out)
+    assert "Joined 2 pairs of loops by 5 rows" in told
+    assert is_closed_but_for(ob, 80)
+    ob = whole_pipes(*BESIDE)
+    choose_rims(ob)
+    bridge(connect="ONE")
+    leave()
+    assert "Joined 4 loops: " in capfd.readouterr().out
+    assert is_closed_but_for(ob, 0)
+
+
+def test_a_loop_without_a_partner_is_told(capfd):
+    ob, loops = trousers()
+    choose(ob, loops)
+    bridge(connect="PAIRS")
+    leave()
+    assert "1 loop is left over" in capfd.readouterr().out
+
+
+def test_a_shape_key_goes_on_in_all_pairs():
+    ob = whole_pipes(*INSIDE)
+    ob.shape_key_add(name="Basis")
+    key = ob.shape_key_add(name="Up")
+    for point in key.data:
+        point.co.z += 1.0
+    n = len(ob.data.vertices)
+    choose_rims(ob)
+    bridge()
+    leave()
+    assert len(ob.data.vertices) > n + 20
+    basis, moved = (np.array([p.co for p in block.data]) for block in ob.data.shape_keys.key_blocks)
+    assert np.allclose(moved - basis, [0, 0, 1], atol=1e-5)

@@ -35,6 +35,8 @@ NOT_SHOWN = {
     "{} numbers are no table of three columns",  # an error of scripts
     "irregular vertex",  # nouns, told with their numbers
     "irregular vertices",
+    "pair of loops",
+    "pairs of loops",
 }
 
 # Literals of the library that are no part of an error: debugging, and points in brackets.

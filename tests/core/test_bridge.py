@@ -349,3 +349,66 @@ def test_progress_never_falls():
     gridmesh.bridge(case.vertices, case.triangles, *case.loops, progress=lambda f: seen.append(f) or True)
     assert seen == sorted(seen)
     assert seen[-1] == 1.0
+
+
+# ----------------------------------------------------------------------------------------------------- pairs
+
+
+def pipes_apart(*moved):
+    """Pipes as `pipe` makes them but whole, moved apart: vertices, triangles, and both rims of each."""
+    points, faces, loops = [], [], []
+    for by in moved:
+        first = sum(map(len, points))
+        rings = np.vstack([circle(16, z=z) for z in (-1.0, 0.0, 1.0)])
+        i, j = np.arange(16), (np.arange(16) + 1) % 16
+        faces += [np.r_[np.c_[i, j, i + 16], np.c_[j, j + 16, i + 16]] + 16 * k + first for k in (0, 1)]
+        points.append(rings + by)
+        loops += [first + i, first + 32 + i]
+    return np.concatenate(points), np.concatenate(faces), loops
+
+
+@pytest.mark.parametrize("cells", ["triangles", "quads"])
+@pytest.mark.parametrize("apart", [2.2, 3.0, 8.0, 30.0])
+def test_both_ends_of_pipes_beside_each_other_are_joined_by_bends(apart, cells):
+    vertices, triangles, loops = pipes_apart([0, 0, 0], [apart, 0, 0])
+    assert gridmesh.look_apart(vertices, triangles, loops)
+    assert not gridmesh.look_apart(vertices, triangles, loops[1::2])
+    pairs = gridmesh.bridge_pairs(vertices, triangles, loops, cells=cells)
+    assert sorted((a, b) for a, b, _ in pairs) == [(0, 2), (1, 3)]
+    for a, b, fill in pairs:
+        case = Case(vertices, triangles, (loops[a], loops[b]), "tangent")
+        assert not faults(case, fill)
+        assert fill.report["self_intersections"] == fill.report["folds"] == 0
+        # Out of the plane of the rims by as much as half a circle asks for.
+        height = np.abs(fill.vertices[:, 2]).max() - 1
+        assert 0.3 * apart < height < 0.6 * apart + 1
+
+
+def test_a_pair_that_would_run_through_the_pipes_is_refused_if_strict():
+    vertices, triangles, loops = pipes_apart([0, 0, 0], [0, 0, 4])
+    pairs = gridmesh.bridge_pairs(vertices, triangles, loops, strict=True)
+    assert [(a, b) for a, b, _ in pairs] == [(1, 2), (0, 3)]
+    assert isinstance(pairs[0][2], gridmesh.Fill)
+    assert pairs[1][2].kind == "fill_intersects"
+
+
+@pytest.mark.parametrize(
+    ("change", "kind"),
+    [
+        ({"loops": [[0, 1, 2], [2, 3, 4]]}, "figure_eight"),
+        ({"loops": [[0, 1, 2], [3, 4, 99]]}, "index_out_of_range"),
+        ({"loops": [[0, 1, 2], [3, 4]]}, "too_few_points"),
+        ({"rows": 0}, "invalid_option"),
+        ({"progress": lambda fraction: fraction < 0.3}, "cancelled"),
+    ],
+)
+def test_pairs_of_loops_that_are_not_fit_are_refused(change, kind):
+    arguments = {"loops": [np.arange(12), 12 + np.arange(12)]} | change
+    vertices, loops = np.vstack([circle(12), circle(12, z=1.0)]), arguments.pop("loops")
+    with pytest.raises(gridmesh.GridMeshError) as caught:
+        gridmesh.bridge_pairs(vertices, NO_FACES, loops, **arguments)
+    assert caught.value.kind == kind
+    if "loops" in change:
+        with pytest.raises(gridmesh.GridMeshError) as caught:
+            gridmesh.look_apart(vertices, NO_FACES, loops)
+        assert caught.value.kind == kind

@@ -107,6 +107,19 @@ def test_edges_longer_than_a_hole_still_close_it(x, y, radius, n):
         assert len(open_edges(piece)) == 0
 
 
+@pytest.mark.parametrize("radius", [0.1, 0.3])
+@pytest.mark.parametrize("edge_length", [None, 0.1])
+def test_a_face_with_a_corner_next_to_an_axis_is_divided(radius, edge_length):
+    """The triangulation of its parts refuses coordinates below 1e-43."""
+    vertices, faces = torus()
+    done = gridmesh.cut(
+        vertices, faces, circle(2.0, 0.0, radius), direction=DOWN, keep="right", edge_length=edge_length
+    )
+    (piece,) = done.pieces
+    assert len(piece.cap_loops) == 2
+    assert not len(open_edges(piece))
+
+
 def test_faces_on_which_rebuilt_triangles_come_to_lie_are_rebuilt_too():
     """Otherwise the triangles that lie there are dropped, and the piece has a hole."""
     rng = np.random.default_rng(532)

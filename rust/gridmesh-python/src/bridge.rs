@@ -1,9 +1,11 @@
-//! `bridge`.
+//! `bridge`, `bridge_pairs` and `look_apart`.
 
 use gridmesh::fill::BridgeOptions;
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 
-use crate::fill::{options, shape};
+use crate::error::from_core;
+use crate::fill::{options, read_loops, shape};
 use crate::filled::Fill;
 use crate::input::Argument;
 use crate::mesh::{Mesh, indices, loop_argument};
@@ -92,6 +94,132 @@ pub fn bridge(
     let mesh = Mesh::read(vertices, triangles)?;
     let one = indices(&loop_argument("loop", r#loop))?;
     let two = indices(&loop_argument("other", other))?;
+    let options = bridge_options(smooth, rows, twist, strict, polygons, cells)?;
+    let (positions, faces) = (mesh.positions()?.into_owned(), mesh.faces()?.into_owned());
+    let fill = Watch::new(progress)?
+        .run(py, |progress| gridmesh::fill::bridge(&positions, &faces, &one, &two, &options, progress))?;
+    Fill::new(py, fill)
+}
+
+/// Join loops of a mesh two by two, each pair by a tube as `bridge` makes it.
+///
+/// Parameters
+/// ----------
+/// vertices, triangles
+///     The mesh, as `fill_hole` takes it.
+/// loops : iterable of (k,) arrays of int
+///     Loops as `fill_hole` takes them, with no vertex in common. Those that are nearest and face each other best come first; of an
+///     odd number one is left over.
+/// smooth, rows, twist, strict, polygons, cells, progress
+///     As in `bridge`.
+///
+/// Returns
+/// -------
+/// list of (int, int, Fill or GridMeshError)
+///     For each pair the places of its two loops and what joins them; a tube that cannot be made gives its error and does not stop
+///     the others. What tubes meet is counted among the earlier ones too. The faces of every tube number its new vertices from n on.
+///
+/// Raises
+/// ------
+/// GridMeshError
+///     If a loop, the mesh near it or an option is not fit, or when cancelled.
+/// TypeError
+///     If an argument has a type that is not allowed.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, gridmesh
+/// >>> ring = lambda n, r, z: [(r * np.cos(t), r * np.sin(t), z) for t in np.arange(n) * 2 * np.pi / n]
+/// >>> rings = np.array(ring(24, 1, 0) + ring(36, 1, 1) + ring(24, 1, 5) + ring(36, 1, 6))
+/// >>> loops = np.split(np.arange(120), [24, 60, 84])
+/// >>> [(a, b) for a, b, _ in gridmesh.bridge_pairs(rings, np.zeros((0, 3), int), loops)]
+/// [(0, 1), (2, 3)]
+#[pyfunction]
+#[pyo3(
+    signature = (vertices, triangles, loops, *, smooth = None, rows = None, twist = None, strict = None, polygons = None, cells = None, progress = None),
+    text_signature = "(vertices, triangles, loops, *, smooth='tangent', rows=None, twist=0.0, strict=False, polygons=None, cells='triangles', progress=None)"
+)]
+#[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
+pub fn bridge_pairs(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    triangles: &Bound<'_, PyAny>,
+    loops: &Bound<'_, PyAny>,
+    smooth: Option<&Bound<'_, PyAny>>,
+    rows: Option<&Bound<'_, PyAny>>,
+    twist: Option<&Bound<'_, PyAny>>,
+    strict: Option<&Bound<'_, PyAny>>,
+    polygons: Option<&Bound<'_, PyAny>>,
+    cells: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Py<PyList>> {
+    let mesh = Mesh::read(vertices, triangles)?;
+    let loops = read_loops(loops)?;
+    let options = bridge_options(smooth, rows, twist, strict, polygons, cells)?;
+    let (positions, faces) = (mesh.positions()?.into_owned(), mesh.faces()?.into_owned());
+    let pairs = Watch::new(progress)?
+        .run(py, |progress| gridmesh::fill::bridge_pairs(&positions, &faces, &loops, &options, progress))?;
+    let items = PyList::empty(py);
+    for pair in pairs {
+        let [a, b] = pair.loops;
+        match pair.tube {
+            Ok(tube) => items.append((a, b, Fill::new(py, tube)?))?,
+            Err(err) => items.append((a, b, from_core(py, &err).into_value(py)))?,
+        }
+    }
+    Ok(items.unbind())
+}
+
+/// Tell whether two of some loops look away from each other, as both ends of a pipe do: one patch between all of them would have to
+/// turn round and meet itself, where tubes between pairs of them need not (`bridge_pairs`).
+///
+/// Parameters
+/// ----------
+/// vertices, triangles
+///     The mesh, as `fill_hole` takes it.
+/// loops : iterable of (k,) arrays of int
+///     Loops as `fill_hole` takes them, with no vertex in common.
+///
+/// Returns
+/// -------
+/// bool
+///     Loops without faces and holes in flat sheets look nowhere.
+///
+/// Raises
+/// ------
+/// GridMeshError
+///     If a loop or the mesh near it is not fit.
+/// TypeError
+///     If an argument has a type that is not allowed.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, gridmesh
+/// >>> ring = lambda n, r, z: [(r * np.cos(t), r * np.sin(t), z) for t in np.arange(n) * 2 * np.pi / n]
+/// >>> k = np.arange(24)
+/// >>> wall = np.r_[np.c_[k, (k + 1) % 24, k + 24], np.c_[(k + 1) % 24, (k + 1) % 24 + 24, k + 24]]
+/// >>> gridmesh.look_apart(np.array(ring(24, 1, 0) + ring(24, 1, 3)), wall, [k, k + 24])
+/// True
+#[pyfunction]
+pub fn look_apart(
+    vertices: &Bound<'_, PyAny>,
+    triangles: &Bound<'_, PyAny>,
+    loops: &Bound<'_, PyAny>,
+) -> PyResult<bool> {
+    let mesh = Mesh::read(vertices, triangles)?;
+    let loops = read_loops(loops)?;
+    let apart = gridmesh::fill::look_apart(&mesh.positions()?, &mesh.faces()?, &loops);
+    apart.map_err(|err| from_core(vertices.py(), &err))
+}
+
+fn bridge_options(
+    smooth: Option<&Bound<'_, PyAny>>,
+    rows: Option<&Bound<'_, PyAny>>,
+    twist: Option<&Bound<'_, PyAny>>,
+    strict: Option<&Bound<'_, PyAny>>,
+    polygons: Option<&Bound<'_, PyAny>>,
+    cells: Option<&Bound<'_, PyAny>>,
+) -> PyResult<BridgeOptions> {
     let rest = options(smooth, strict, polygons)?;
     let mut options = BridgeOptions {
         smooth: rest.smooth,
@@ -107,8 +235,5 @@ pub fn bridge(
     if let Some(value) = twist {
         options.twist = Argument { name: "twist", value, allowed: "a finite angle in radians" }.float()?;
     }
-    let (positions, faces) = (mesh.positions()?.into_owned(), mesh.faces()?.into_owned());
-    let fill = Watch::new(progress)?
-        .run(py, |progress| gridmesh::fill::bridge(&positions, &faces, &one, &two, &options, progress))?;
-    Fill::new(py, fill)
+    Ok(options)
 }

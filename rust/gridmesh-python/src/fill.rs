@@ -115,6 +115,11 @@ fn loops_of(value: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<u32>>> {
     if !is_list || !value.get_item(0).is_ok_and(|first| first.len().is_ok()) {
         return Ok(vec![indices(&loop_argument("loop", value))?]);
     }
+    read_loops(value)
+}
+
+/// Reads several loops.
+pub(crate) fn read_loops(value: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<u32>>> {
     let mut loops = Vec::new();
     for (k, item) in value.try_iter()?.enumerate() {
         loops.push(indices(&loop_argument(&format!("loop {k}"), &item?))?);

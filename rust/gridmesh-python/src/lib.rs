@@ -68,6 +68,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fill::fill_holes, module)?)?;
     module.add_function(wrap_pyfunction!(fill::is_outer_border, module)?)?;
     module.add_function(wrap_pyfunction!(bridge::bridge, module)?)?;
+    module.add_function(wrap_pyfunction!(bridge::bridge_pairs, module)?)?;
+    module.add_function(wrap_pyfunction!(bridge::look_apart, module)?)?;
     module.add_class::<regrid::Regrid>()?;
     module.add_function(wrap_pyfunction!(regrid::regrid, module)?)?;
     module.add_class::<cut::Cut>()?;

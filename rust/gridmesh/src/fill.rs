@@ -28,7 +28,7 @@ pub use self::regrid::{Regrid, regrid};
 pub use self::report::{FillReport, Grid};
 use self::several::fill_several;
 use crate::error::{Error, Result};
-pub use crate::fill::bridge::{BridgeOptions, bridge};
+pub use crate::fill::bridge::{BridgeOptions, Pair, bridge, bridge_pairs, look_apart};
 use crate::fill::filled::NO_ITEM;
 pub use crate::fill::filled::{Bridged, Fill};
 use crate::fill::job::Job;

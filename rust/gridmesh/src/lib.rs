@@ -27,7 +27,7 @@
 //! * [`inflate`], [`stitch`], [`flat`]: the patch as a round body, a pillow, a sheet.
 //! * [`fill_hole`], [`fill_holes`], [`regrid`]: patches whose boundary is that of a hole, vertex for vertex, smooth to
 //!   the surface around it.
-//! * [`bridge()`]: a tube between two loops, with every vertex of both.
+//! * [`bridge()`], [`bridge_pairs`]: a tube between two loops, with every vertex of both; more loops joined two by two.
 //! * [`cut()`]: a mesh divided along a swept stroke, the pieces closed by such patches.
 //! * [`join()`]: closed meshes united, blended by such patches where they meet.
 //!
@@ -67,7 +67,9 @@ pub use body::stitch::{flat, stitch};
 pub use body::surface::Surface;
 pub use cut::{Cut, CutOptions, cut};
 pub use error::Error;
-pub use fill::{BridgeOptions, Fill, FillOptions, Smooth, bridge, fill_hole, fill_holes, regrid};
+pub use fill::{
+    BridgeOptions, Fill, FillOptions, Smooth, bridge, bridge_pairs, fill_hole, fill_holes, regrid,
+};
 pub use join::{JoinOptions, Joined, join};
 pub use options::SketchOptions;
 pub use patch::Patch;

@@ -5,7 +5,8 @@ a flat one, ``flat`` a sheet; ``map_sketches`` does many drawings in parallel. `
 cuts one from another, ``thickness`` measures their limbs; ``trace_image`` finds
 the outlines in a picture, ``decode_image`` reads its file. ``fill_hole`` and ``fill_holes`` close holes of a
 mesh with patches that fit their boundaries vertex for vertex, ``is_outer_border`` tells borders that are
-no holes, ``bridge`` joins two of them by a tube, ``regrid`` replaces a region by one. ``cut``
+no holes, ``bridge`` joins two of them by a tube, ``bridge_pairs`` more two by two, as where they
+``look_apart``, ``regrid`` replaces a region by one. ``cut``
 divides a mesh along a stroke and caps it; ``cut_reach`` tells how far a stroke's ends go. ``join`` makes one
 closed mesh of several that overlap. ``harmonic``
 carries values on over a mesh, ``bone_weights`` makes a flat one follow bones.
@@ -25,6 +26,7 @@ from gridmesh._native import (
     __version__,
     bone_weights,
     bridge,
+    bridge_pairs,
     combine,
     cover_sketch,
     cut,
@@ -37,6 +39,7 @@ from gridmesh._native import (
     inflate,
     is_outer_border,
     join,
+    look_apart,
     map_sketches,
     mesh_sketch,
     regrid,
@@ -59,6 +62,7 @@ __all__ = [
     "__version__",
     "bone_weights",
     "bridge",
+    "bridge_pairs",
     "combine",
     "cover_sketch",
     "cut",
@@ -71,6 +75,7 @@ __all__ = [
     "inflate",
     "is_outer_border",
     "join",
+    "look_apart",
     "map_sketches",
     "mesh_sketch",
     "regrid",

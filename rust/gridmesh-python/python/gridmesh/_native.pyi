@@ -26,6 +26,7 @@ __all__ = [
     "_surface",
     "bone_weights",
     "bridge",
+    "bridge_pairs",
     "combine",
     "cover_sketch",
     "cut",
@@ -38,6 +39,7 @@ __all__ = [
     "inflate",
     "is_outer_border",
     "join",
+    "look_apart",
     "map_sketches",
     "mesh_sketch",
     "regrid",
@@ -297,6 +299,20 @@ def bridge(
     cells: Literal["triangles", "quads"] = "triangles",
     progress: _Progress | None = None,
 ) -> Fill: ...
+def bridge_pairs(
+    vertices: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    loops: Iterable[npt.ArrayLike],
+    *,
+    smooth: Literal["flat", "tangent", "curvature"] = "tangent",
+    rows: int | None = None,
+    twist: float = 0.0,
+    strict: bool = False,
+    polygons: npt.ArrayLike | None = None,
+    cells: Literal["triangles", "quads"] = "triangles",
+    progress: _Progress | None = None,
+) -> list[tuple[int, int, Fill | GridMeshError]]: ...
+def look_apart(vertices: npt.ArrayLike, triangles: npt.ArrayLike, loops: Iterable[npt.ArrayLike]) -> bool: ...
 def regrid(
     vertices: npt.ArrayLike,
     triangles: npt.ArrayLike,

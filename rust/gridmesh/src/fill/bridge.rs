@@ -9,6 +9,7 @@ pub(in crate::fill) mod align;
 mod choose;
 mod loft;
 mod options;
+mod pairs;
 mod refit;
 mod rings;
 mod route;
@@ -30,6 +31,7 @@ use crate::fill::parallel::steady;
 use crate::progress::Progress;
 
 pub use self::options::BridgeOptions;
+pub use self::pairs::{Pair, bridge_pairs, look_apart};
 use self::span::Span;
 
 /// Joins two loops of a mesh by a tube.
@@ -70,6 +72,17 @@ fn bridged(
     progress: Progress<'_>,
 ) -> Result<Fill> {
     progress.report(0.0)?;
+    let rest = rest_of(options, triangles)?;
+    let fill = tube(vertices, triangles, given, options, &rest, progress.part(0.0, 0.8))?;
+    let mut fills = [Ok(fill)];
+    Job { vertices, triangles, options: &rest }.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
+    let [fill] = fills;
+    progress.report(1.0)?;
+    fill
+}
+
+/// What a tube has in common with a fill, after a look at all options.
+fn rest_of(options: &BridgeOptions, triangles: &[[u32; 3]]) -> Result<FillOptions> {
     if options.rows == Some(0) {
         let allowed = "a whole number above 0, or nothing";
         return Err(Error::InvalidOption { name: "rows", value: "0".into(), allowed });
@@ -86,6 +99,18 @@ fn bridged(
         ..FillOptions::default()
     };
     rest.check(triangles)?;
+    Ok(rest)
+}
+
+/// A tube that does not know yet what it meets.
+fn tube(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    given: [&[u32]; 2],
+    options: &BridgeOptions,
+    rest: &FillOptions,
+    progress: Progress<'_>,
+) -> Result<Fill> {
     let seeds = given.concat();
     let rim =
         Rim::new(vertices.len(), triangles, &seeds, if options.smooth == Smooth::Curvature { 2 } else { 1 })?;
@@ -98,12 +123,7 @@ fn bridged(
     if let Some(&vertex) = given[1].iter().find(|v| both.contains(v)) {
         return Err(Error::FigureEight { vertex });
     }
-    progress.report(0.1)?;
+    progress.report(0.12)?;
     let span = Span::new(vertices, &rim, checked, options);
-    let fill = span.fill(&rest, progress.part(0.1, 0.8))?;
-    let mut fills = [Ok(fill)];
-    Job { vertices, triangles, options: &rest }.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
-    let [fill] = fills;
-    progress.report(1.0)?;
-    fill
+    span.fill(rest, progress.part(0.12, 1.0))
 }

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 use spade::handles::FixedVertexHandle;
-use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
 
 use crate::cut::divide::locate::Met;
 use crate::cut::divide::node::{Node, Tolerance};
@@ -197,7 +197,9 @@ impl Divided {
         let mut number: Vec<u32> = vec![];
         let mut handles = FxHashMap::default();
         for (node, p) in points {
-            let handle = mesh.insert(Point2::new(p.x, p.y)).map_err(|_| "a face has no area")?;
+            // A corner on the axis may be off it by 1e-48, which is refused.
+            let place = mitigate_underflow(Point2::new(p.x, p.y));
+            let handle = mesh.insert(place).map_err(|_| "a face has no area")?;
             if handle.index() < number.len() {
                 return Err("two points of the cut coincide");
             }

@@ -44,7 +44,8 @@ impl Ring {
         Ring::new(self.points.iter().rev().copied().collect())
     }
 
-    fn samples(&self) -> Vec<DVec3> {
+    /// Places at equal distances along it, from its centre.
+    pub(super) fn samples(&self) -> Vec<DVec3> {
         let n = self.points.len();
         let at = |k: usize| {
             let share = k as f64 / SAMPLES as f64;

@@ -5,8 +5,12 @@ use glam::DVec3;
 use super::align::Ring;
 
 /// Where a curve leaves its loop it bends within this many mean radii of the loop, so that a tube between
-/// parallel sheets does not close in its middle.
+/// parallel sheets does not close in its middle. Between ends of pipes that look the same way there is no such limit: the bend
+/// between them would have no room in it.
 const REACH: f64 = 2.0;
+
+/// A loop is the end of a pipe if the surface goes on from its vertices in directions whose mean is longer than this.
+const ALIKE: f64 = 0.8;
 
 /// A closed curve through the vertices of a loop, with the slope of the surface along it.
 #[derive(Clone, Debug)]
@@ -123,12 +127,16 @@ impl Loft {
             Rail::new(edge.around.to_vec(), edge.ring.points.clone(), none)
         };
         let (a, b) = (straight(lower), straight(upper));
+        let [from, to] = [lower, upper].map(|edge| ahead(edge.onward));
+        let turns = from.length().min(to.length()) > ALIKE && from.dot(to) > 0.0;
+        let reach = if turns { f64::INFINITY } else { REACH };
         let slopes = |own: &Edge<'_>, other: &Edge<'_>, there: &Rail, sign: f64| {
             let facing = straight_onward(other, there);
+            let most = reach * own.ring.length / std::f64::consts::TAU;
             let slope = |k: usize| {
                 let point = own.ring.points[k];
                 let (far, back) = facing(own.around[k]);
-                let slope = slope(point, own.onward[k], far, back, own.ring.length / std::f64::consts::TAU);
+                let slope = slope(point, own.onward[k], far, back, most);
                 slope * if own.onward[k] == DVec3::ZERO { sign } else { sign * pull }
             };
             (0..own.around.len()).map(slope).collect::<Vec<_>>()
@@ -195,8 +203,14 @@ fn straight_onward(edge: &Edge<'_>, rail: &Rail) -> impl Fn(f64) -> (DVec3, DVec
     }
 }
 
-/// How a curve leaves `from` in the direction `onward` for `to`, which it reaches against `back`.
-fn slope(from: DVec3, onward: DVec3, to: DVec3, back: DVec3, radius: f64) -> DVec3 {
+/// The mean of the directions in which the surface goes on from the vertices of a loop: of length 1 at the end of a pipe, zero at a
+/// hole in a sheet.
+pub(super) fn ahead(onward: &[DVec3]) -> DVec3 {
+    onward.iter().sum::<DVec3>() / onward.len() as f64
+}
+
+/// How a curve leaves `from` in the direction `onward` for `to`, which it reaches against `back`; it goes aside by at most `most`.
+fn slope(from: DVec3, onward: DVec3, to: DVec3, back: DVec3, most: f64) -> DVec3 {
     let chord = to - from;
     if onward == DVec3::ZERO {
         return chord;
@@ -207,7 +221,6 @@ fn slope(from: DVec3, onward: DVec3, to: DVec3, back: DVec3, radius: f64) -> DVe
     let angle = libm::acos(onward.dot(back).clamp(-1.0, 1.0)).clamp(1e-3, 2.8);
     let slope = onward * (length * 2.0 * libm::tan(0.25 * angle) / libm::sin(0.5 * angle));
     let aside = slope.reject_from_normalized(chord.try_normalize().unwrap_or(onward));
-    let most = REACH * radius;
     if aside.length() > most { slope * (most / aside.length()) } else { slope }
 }
 
@@ -238,6 +251,17 @@ mod tests {
             assert!((spot.point.z - 5.0 * 0.37).abs() < 1e-6);
         }
         assert!((loft.length(0.2) - 5.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn pipes_beside_each_other_are_joined_by_a_bend_with_room_in_it() {
+        let ((a, s), (b, _)) = (ring(60, 1.0, 0.0), ring(60, 1.0, 0.0));
+        let far = b.points.iter().map(|p| DVec3::new(12.0 - p.x, p.y, p.z)).collect();
+        let (b, up) = (Ring::new(far), vec![DVec3::Z; 60]);
+        let edge = |ring| Edge { ring, around: &s, onward: &up };
+        let loft = Loft::new(&edge(&a), &edge(&b), 1.0);
+        let middle = [0.0, 0.5].map(|around| loft.at(around, 0.5).point.z);
+        assert!(middle[0] > 2.0 && middle[1] > middle[0] + 1.0, "{middle:?}");
     }
 
     #[test]

@@ -169,24 +169,10 @@ impl<'a> Span<'a> {
 
     /// See [`onward`], for both loops.
     fn onward(&self) -> [Vec<DVec3>; 2] {
-        let of = |k: usize| {
-            let loop_ = &self.loops[k].vertices;
-            let apex = |k: usize| {
-                let (a, b) = (self.rim.local(loop_[k])?, self.rim.local(loop_[(k + 1) % loop_.len()])?);
-                let fan = self.rim.around(a).iter().map(|&t| self.rim.triangles[t as usize]);
-                let triangle = fan.into_iter().find(|t| t.contains(&b))?;
-                let v = triangle.into_iter().find(|&v| v != a && v != b)?;
-                Some(self.vertices[self.rim.ids[v as usize] as usize])
-            };
-            let apexes = (0..loop_.len()).map(apex).collect::<Vec<_>>();
-            let points = loop_.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
-            if self.options.smooth == Smooth::Flat {
-                vec![DVec3::ZERO; points.len()]
-            } else {
-                onward(&points, &apexes)
-            }
-        };
-        [of(0), of(1)]
+        [0, 1].map(|k| match self.options.smooth {
+            Smooth::Flat => vec![DVec3::ZERO; self.loops[k].vertices.len()],
+            _ => onward_of(&self.loops[k].vertices, self.rim, self.vertices),
+        })
     }
 
     fn placed(
@@ -294,6 +280,20 @@ impl<'a> Span<'a> {
         let given = |l: &Checked| if l.reversed { reversed(&l.vertices) } else { l.vertices.clone() };
         Fill::of(self.loops.iter().flat_map(given).collect(), shape, report)
     }
+}
+
+/// See [`onward`], for a loop of a mesh.
+pub(super) fn onward_of(loop_: &[u32], rim: &Rim, vertices: &[DVec3]) -> Vec<DVec3> {
+    let apex = |k: usize| {
+        let (a, b) = (rim.local(loop_[k])?, rim.local(loop_[(k + 1) % loop_.len()])?);
+        let fan = rim.around(a).iter().map(|&t| rim.triangles[t as usize]);
+        let triangle = fan.into_iter().find(|t| t.contains(&b))?;
+        let v = triangle.into_iter().find(|&v| v != a && v != b)?;
+        Some(vertices[rim.ids[v as usize] as usize])
+    };
+    let apexes = (0..loop_.len()).map(apex).collect::<Vec<_>>();
+    let points = loop_.iter().map(|&v| vertices[v as usize]).collect::<Vec<_>>();
+    onward(&points, &apexes)
 }
 
 /// The two loops run to the right, the lower one first.

@@ -5,7 +5,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
-use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
 
 use super::flips::improve_valences;
 use super::settle::{Rings, even_out, untangle};
@@ -111,7 +111,8 @@ pub(in crate::fill) fn triangulate(
         if i % ASK_EVERY == 0 {
             progress.report(0.0)?;
         }
-        let handle = mesh.insert(Point2::new(p.x, p.y)).map_err(|e| failed(e.to_string()))?;
+        let place = mitigate_underflow(Point2::new(p.x, p.y));
+        let handle = mesh.insert(place).map_err(|e| failed(e.to_string()))?;
         if handle.index() == number.len() {
             number.push(i as u32);
         } else if i < n {
