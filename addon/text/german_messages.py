@@ -1022,6 +1022,10 @@ _LIBRARY_PARTS = {
     "two faces at an edge are wound against each other": "zwei Flächen an einer Kante laufen gegeneinander",
     "an edge joins more than two faces": "eine Kante verbindet mehr als zwei Flächen",
     "faces meet in one vertex only": "Flächen treffen sich nur in einem Punkt",
+    "a piece of it is inside out, and its normals are to be flipped,": (
+        "ein Stück ist umgestülpt, seine Normalen sind umzukehren,"
+    ),
+    "its faces lie on each other and enclose nothing": "seine Flächen liegen aufeinander und umschließen nichts",
     "what was taken away there has no border of whole edges": "was dort weggenommen wurde, hat keinen Rand aus ganzen Kanten",
     "the Boolean operation on them broke down": "die boolesche Operation auf ihnen ist gescheitert",
     "the Boolean operation on them has no result": "die boolesche Operation auf ihnen hat kein Ergebnis",

@@ -127,7 +127,8 @@ def test_hostile_meshes_and_bones():
     for bones in ([[[0, 0], [0, 0]]], [[[0, 0], [0, 0]], [[9, 9], [9, 8]]]):
         is_partition(gridmesh.bone_weights(flat, triangles, bones))
         is_partition(gridmesh.bone_weights(points, triangles, bones))
-    assert gridmesh.bone_weights(np.zeros((0, 2)), np.zeros((0, 3), int), one).shape == (0, 1)
+    for bones in (one, TWO):
+        assert gridmesh.bone_weights(np.zeros((0, 2)), np.zeros((0, 3), int), bones).shape == (0, len(bones))
 
 
 def test_where_the_ends_of_a_chain_pull_the_bone_between_does_too():

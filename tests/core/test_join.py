@@ -558,3 +558,39 @@ def test_the_campaign_measures_what_it_says():
     assert least_angle(np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0]]], float)) == pytest.approx(45)
     assert faults([(vertices + 1, triangles)], made) == ["vertices of part 0 have moved"]
     assert Case([(vertices, triangles)]).join().report["components"] == 1
+
+
+def box(low, size):
+    """A cube, and its faces."""
+    corners = np.array([[k >> 2, k >> 1 & 1, k & 1] for k in range(8)])
+    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    return low + corners * size, np.array(quads)
+
+
+@pytest.mark.parametrize("whole", [False, True], ids=["outward", "turned"])
+@pytest.mark.parametrize(
+    ("low", "inward", "fine"),
+    [(3.0, False, True), (3.0, True, False), (0.2, True, True)],
+    ids=["beside", "beside_inside_out", "cavity"],
+)
+def test_a_piece_that_is_inside_out_is_refused_and_a_cavity_stays(low, inward, fine, whole):
+    (points, faces), (more, others) = box(0, 1), box(low, 0.5)
+    pieces = np.concatenate([faces, (others[:, ::-1] if inward else others) + 8])
+    part = np.concatenate([points, more]), pieces[:, ::-1] if whole else pieces
+    apart = box(9, 1)
+    if fine:
+        expected = 2 + (-1 if inward else 1) / 8
+        assert gridmesh.join([part, apart]).report["volume"] == pytest.approx(expected)
+        return
+    with pytest.raises(gridmesh.GridMeshError, match="a piece of it is inside out") as caught:
+        gridmesh.join([apart, part])
+    assert caught.value.kind == "not_closed"
+
+
+@pytest.mark.parametrize("low", [0.2, 9.0])
+def test_a_part_that_encloses_nothing_is_refused_and_a_thin_one_is_not(low):
+    flat, thin = box(low, [0.5, 0.5, 0]), box(low, [0.5, 0.5, 1e-6])
+    with pytest.raises(gridmesh.GridMeshError, match="enclose nothing") as caught:
+        gridmesh.join([box(0, 1), flat])
+    assert caught.value.kind == "not_closed"
+    assert gridmesh.join([box(0, 1), thin]).report["watertight"]

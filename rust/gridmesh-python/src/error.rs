@@ -22,17 +22,16 @@ create_exception!(
      Attributes\n\
      ----------\n\
      kind : str\n    \
-         A stable word for programs: \"not_finite\", \"too_few_points\", \"zero_area\",\n    \
-         \"self_intersecting\", \"hole_misplaced\", \"not_symmetric\", \"invalid_option\", \"invalid_shape\",\n    \
+         A stable word for programs: \"not_finite\", \"extreme_size\", \"too_few_points\", \"zero_area\",\n    \
+         \"self_intersecting\", \"disconnected\", \"hole_misplaced\", \"not_symmetric\", \"invalid_option\", \"invalid_shape\",\n    \
          \"invalid_type\" (only inside the list of `map_sketches`; elsewhere a TypeError is raised),\n    \
          \"too_coarse\", \"too_large\", \"no_patch\", \"inverted\", \"solver\", \"cancelled\"; of fills\n    \
-         \"index_out_of_range\", \"repeated_vertex\", \"figure_eight\", \"zero_length_edge\",\n    \
+         \"index_out_of_range\", \"repeated_vertex\", \"figure_eight\", \"branching\", \"open_chain\", \"zero_length_edge\",\n    \
          \"self_touching\", \"faces_on_both_sides\", \"non_manifold\", \"shared_edge\",\n    \
          \"fill_intersects\", \"not_a_disk\"; of cuts\n    \
          \"invalid_face\", \"stroke_too_short\", \"stroke_misses\", \"slice_too_thin\", \"behind_eye\",\n    \
-         \"cut_failed\", \"still_joined\"; of pictures \"picture_size\",
-    \
-         \"picture_format\"; or \"internal\" (a bug in gridmesh: please report it).\n\
+         \"cut_failed\", \"still_joined\"; of joins \"not_closed\", \"join_failed\", \"join_intersects\";\n    \
+         of pictures \"picture_size\", \"picture_format\"; or \"internal\" (a bug in gridmesh: please report it).\n\
      least : int or None\n    \
          Of \"too_coarse\": the least number of triangles, or of quads, that works, where it is known."
 );

@@ -20,6 +20,7 @@ use crate::{arrays, reports};
 /// parts : sequence of pairs (vertices, faces), or of Surface or Joined
 ///     Closed meshes, in any units: positions (n, 3), and triangles (m, 3), quads (m, 4), or a pair (corners, offsets) for faces
 ///     with any number of corners, as in `cut`. Not modified. One given inside out is turned.
+///     Pieces of one part that overlap each other stay so: give each as a part of its own.
 /// blend : float
 ///     So many edge lengths to each side of the lines where surfaces meet, along the surface, are taken away and closed
 ///     by one patch, smooth to both sides. 0 keeps the lines as creases, with even edges along them. 0 to 1000. Fewer
@@ -45,8 +46,8 @@ use crate::{arrays, reports};
 /// Raises
 /// ------
 /// GridMeshError
-///     If a part is no mesh, or not closed ("not_closed"), if parts meet in a way that leaves no room for a patch
-///     ("join_failed", the message says where), if joints meet something and `strict` is set ("join_intersects"), or
+///     If a part is no mesh, or not closed, or encloses nothing, or a piece of it is inside out ("not_closed"), if parts
+///     meet in a way that leaves no room for a patch ("join_failed", the message says where), if joints meet something and `strict` is set ("join_intersects"), or
 ///     when cancelled.
 /// TypeError
 ///     If an argument has a type that is not allowed.

@@ -39,8 +39,8 @@ use crate::{arrays, error};
 /// --------
 /// >>> import gridmesh
 /// >>> bar = [[0, 0], [10, 0], [10, 1], [0, 1]]
-/// >>> gridmesh.thickness(bar)[0, 2].round(2)
-/// np.float64(1.0)
+/// >>> round(float(gridmesh.thickness(bar)[0, 2]), 2)
+/// 1.0
 #[pyfunction]
 #[pyo3(signature = (outline, holes = None), text_signature = "(outline, holes=())")]
 pub fn thickness(

@@ -12,6 +12,7 @@ mod collar;
 mod options;
 mod parts;
 mod patch;
+mod pieces;
 mod rims;
 mod site;
 mod strips;

@@ -104,7 +104,8 @@ fn divide_with(
 }
 
 /// Divided with the longest shorter edge length that leaves no line without a cap, if there is one: a line of few long edges
-/// may run around a closed sheet otherwise than it should, or not at all.
+/// may run around a closed sheet otherwise than it should, or not at all. Lines that the exact cut leaves without a cap, too, as
+/// around a hole in an open mesh, get none with any edge length.
 fn finer(
     cutting: Cutting<'_>,
     sheet: &Sheet,
@@ -113,24 +114,33 @@ fn finer(
     progress: Progress<'_>,
 ) -> Result<Option<(Sheet, Parted, Loops)>> {
     let mut options = cutting.options.clone();
-    for halving in 0..=HALVINGS {
-        options.edge_length = options.edge_length.filter(|_| halving < HALVINGS).map(|length| 0.5 * length);
-        let coarse =
-            options.edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
+    let mut divided = |edge_length: Option<f64>| {
+        options.edge_length = edge_length;
+        let coarse = edge_length.map(|length| Tolerance { length: THROUGH * length, ..TOLERANCES[0] });
         let cutting = Cutting { options: &options, ..cutting };
         let (sheet, parted) = match part(cutting, sheet, coarse, alone, tally, progress) {
             Err(Error::Cancelled) => return Err(Error::Cancelled),
             // Too many edges, or no consistent division.
-            Err(_) => continue,
+            Err(_) => return Ok(None),
             Ok(done) => done,
         };
         let loops = loops::trace(cutting.faces, &parted, &sheet);
         tally.report.repeated += 1;
-        if cap::uncapped(cutting, &parted, &sheet, &loops) == 0 {
-            return Ok(Some((sheet, parted, loops)));
+        let capped = cap::uncapped(cutting, &parted, &sheet, &loops) == 0;
+        Ok(Some((capped, (sheet, parted, loops))))
+    };
+    let exact = divided(None)?;
+    if matches!(exact, Some((false, _))) {
+        return Ok(None);
+    }
+    let mut edge_length = cutting.options.edge_length;
+    for _ in 0..HALVINGS {
+        edge_length = edge_length.map(|length| 0.5 * length);
+        if let Some((true, done)) = divided(edge_length)? {
+            return Ok(Some(done));
         }
     }
-    Ok(None)
+    Ok(exact.map(|(_, done)| done))
 }
 
 /// Divides the faces, evenly along the cut with an edge length.

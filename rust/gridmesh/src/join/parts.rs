@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::pieces::fault;
 use crate::cut::Polygons;
 use crate::cut::input::{check_mesh, triangles};
 use crate::error::{Error, Result};
@@ -111,6 +112,10 @@ impl Parts {
             }
         }
         self.check_closed(number)?;
+        if let Some((v, reason)) = fault(&self.vertices, &self.triangles[triangle as usize..], vertex) {
+            let at = self.vertices[v as usize].into();
+            return Err(Error::NotClosed { part: number, reason, vertex: v - vertex, at });
+        }
         self.first.push([
             self.vertices.len() as u32,
             self.offsets.len() as u32 - 1,

@@ -30,7 +30,7 @@ pub(super) fn ease(
     eased: &mut [f64],
 ) -> bool {
     let most = MOST / reach.min(1.0);
-    let bones = weights.len() / vertices.len().max(1);
+    let bones = (weights.len() / vertices.len().max(1)).max(1);
     let mut lost = vec![0.0; triangles.len()];
     for joint in joints {
         let share = |of: &[usize]| -> Vec<f64> {
