@@ -1025,6 +1025,9 @@ _LIBRARY_PARTS = {
     "a piece of it is inside out, and its normals are to be flipped,": (
         "ein Stück ist umgestülpt, seine Normalen sind umzukehren,"
     ),
+    "pieces of one part may overlap each other, and are to be parts of their own (Mesh > Separate > By Loose Parts)": (
+        "Stücke eines Teils überlappen einander vielleicht und sollten eigene Teile sein (Mesh > Trennen > Nach losen Teilen)"
+    ),
     "its faces lie on each other and enclose nothing": "seine Flächen liegen aufeinander und umschließen nichts",
     "what was taken away there has no border of whole edges": "was dort weggenommen wurde, hat keinen Rand aus ganzen Kanten",
     "the Boolean operation on them broke down": "die boolesche Operation auf ihnen ist gescheitert",

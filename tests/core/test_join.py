@@ -594,3 +594,13 @@ def test_a_part_that_encloses_nothing_is_refused_and_a_thin_one_is_not(low):
         gridmesh.join([box(0, 1), flat])
     assert caught.value.kind == "not_closed"
     assert gridmesh.join([box(0, 1), thin]).report["watertight"]
+
+
+def test_overlapping_pieces_of_one_part_are_told_where_that_keeps_it_from_being_joined():
+    (points, faces), (more, others) = ball(), ball((1, 0, 0))
+    part = np.concatenate([points, more]), np.concatenate([faces, others + len(points)])
+    across = ball((0.5, 1, 0))
+    with pytest.raises(gridmesh.GridMeshError, match="pieces of one part may overlap") as caught:
+        gridmesh.join([part, across])
+    assert caught.value.kind == "join_failed"
+    assert gridmesh.join([(points, faces), (more, others), across]).report["components"] == 1

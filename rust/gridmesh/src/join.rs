@@ -48,6 +48,9 @@ const NARROWED: usize = 3;
 const TIGHT: f64 = 0.5;
 const SLIM: f64 = 0.7;
 
+/// Where a part is what Blender's *Join* makes of overlapping meshes.
+const OVERLAP: &str = "pieces of one part may overlap each other, and are to be parts of their own (Mesh > Separate > By Loose Parts)";
+
 /// Joins closed meshes: one closed mesh of what is in any of them.
 ///
 /// Where two surfaces meet, all faces within `blend` edge lengths of the line, to both sides along the surface, make room for one
@@ -131,14 +134,21 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
     let mut clock = Clock::new();
     let parts = Parts::new(given)?;
     clock.stage("check");
-    let union = Union::new(&parts, progress.part(0.05, 0.4))?;
+    united(&parts, options, clock, progress).map_err(|error| match error {
+        Error::JoinFailed { at, .. } if parts.overlap() => Error::JoinFailed { reason: OVERLAP, at },
+        other => other,
+    })
+}
+
+fn united(parts: &Parts, options: &JoinOptions, mut clock: Clock, progress: Progress<'_>) -> Result<Joined> {
+    let union = Union::new(parts, progress.part(0.05, 0.4))?;
     clock.stage("union");
-    let seams = union.seams(&parts);
-    let left = Left::new(&parts, &union, &seams);
-    let curves = Curves::new(&parts, &union, &seams);
+    let seams = union.seams(parts);
+    let left = Left::new(parts, &union, &seams);
+    let curves = Curves::new(parts, &union, &seams);
     let mut report = JoinReport { turned: parts.turned, curves: curves.count, ..JoinReport::default() };
-    (report.alone, report.swallowed) = apart(&parts, &union, &seams);
-    let stage = Stage { parts: &parts, union: &union, left: &left, curves: &curves, seams: &seams, options };
+    (report.alone, report.swallowed) = apart(parts, &union, &seams);
+    let stage = Stage { parts, union: &union, left: &left, curves: &curves, seams: &seams, options };
     clock.stage("lines");
     let mut most = vec![1.0; curves.count];
     let enclosed = volume(&union.vertices, &union.triangles);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::pieces::fault;
+use super::pieces::{fault, overlap};
 use crate::cut::Polygons;
 use crate::cut::input::{check_mesh, triangles};
 use crate::error::{Error, Result};
@@ -202,6 +202,15 @@ impl Parts {
     /// The number of parts.
     pub fn len(&self) -> usize {
         self.first.len() - 1
+    }
+
+    /// Whether pieces of one part may overlap each other, which the exact union takes for granted that they do not.
+    pub fn overlap(&self) -> bool {
+        self.first.windows(2).any(|ends| {
+            let [v, t] = [0, 2].map(|k| ends[0][k]..ends[1][k]);
+            let own = &self.triangles[t.start as usize..t.end as usize];
+            overlap(&self.vertices[..v.end as usize], own, v.start)
+        })
     }
 
     /// The part of a triangle.

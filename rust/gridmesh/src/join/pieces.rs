@@ -19,6 +19,16 @@ struct Piece {
     volume: f64,
 }
 
+/// Whether the boxes of two pieces overlap that enclose a volume each: the pieces themselves may do so too.
+pub(super) fn overlap(vertices: &[DVec3], triangles: &[[u32; 3]], first: u32) -> bool {
+    let mut outer = pieces(vertices, triangles, first);
+    outer.retain(|piece| piece.volume > 0.0);
+    outer
+        .iter()
+        .enumerate()
+        .any(|(k, a)| outer[k + 1..].iter().any(|b| a.low.cmple(b.high).all() && b.low.cmple(a.high).all()))
+}
+
 /// What keeps a closed part that encloses a volume above 0 in all from being joined, and a vertex there. Vertices of the part begin at `first`.
 pub(super) fn fault(vertices: &[DVec3], triangles: &[[u32; 3]], first: u32) -> Option<(u32, &'static str)> {
     let pieces = pieces(vertices, triangles, first);
