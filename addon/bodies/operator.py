@@ -11,6 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from .. import api
 from ..data import defaults, frames, meshes
+from ..join import layering
 from ..join.layering import JoinsBodies
 from ..live import engine
 from ..text import entries
@@ -20,7 +21,7 @@ from ..ui.patching import ResultShown
 from ..ui.progress import Pointer
 from ..ui.properties import CurveOption, SketchOptions
 from ..ui.waiting import Waiting
-from . import outlines, profilecurve, strokes
+from . import hidden, outlines, profilecurve, strokes
 from .density import measure
 
 LONG = 50_000
@@ -179,6 +180,7 @@ class OBJECT_OT_gridmesh_from_strokes(  # noqa: N801
         whole = self.join(context, bodies, made, warnings)
         if whole is None:
             self.result = self._summary(bodies, perf_counter() - started)
+            warnings += self._hidden(context, bodies, made)
         else:
             self.result = whole.result(perf_counter() - started)
         self.report({"INFO"}, told(self.result))
@@ -239,6 +241,21 @@ class OBJECT_OT_gridmesh_from_strokes(  # noqa: N801
         if self.use == "CLOSED":
             return [stroke for stroke in found if outlines.closable(stroke, self.close_gaps)]
         return found
+
+    def _hidden(
+        self, context: bpy.types.Context, bodies: list[api.Body], made: list[bpy.types.Object]
+    ) -> list[str]:
+        """Tell of bodies that cannot be seen, and what lets them be; sheets hide nothing."""
+        pairs = hidden.pairs(made) if self.shape == "BODY" else []
+        if not pairs:
+            return []
+        ranks = [layering.rank_of(context, body) for body in bodies]
+        above = any(ranks[inner] > ranks[outer] for inner, outer in pairs)
+        keys = [body.sketch.stroke.key[:2] for body in bodies]
+        same = any(keys[inner] == keys[outer] for inner, outer in pairs)
+        return [
+            hidden.warning(len(pairs), layers=above and not self.joins, holes=same and not self.use_holes)
+        ]
 
     def _refuse(self, *reasons: str) -> set[str]:
         """Report why nothing was made, and leave the scene alone."""

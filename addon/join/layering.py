@@ -100,7 +100,7 @@ def stack(
     context.view_layer.update()
     axes = bodies[0].sketch.plane.axes
     flat = [abs(body.sketch.plane.axes[2] @ axes[2]) > _PARALLEL for body in bodies]
-    ranks = [_rank(context, body) for body in bodies]
+    ranks = [rank_of(context, body) for body in bodies]
     below: list[tuple[np.ndarray, np.ndarray]] = []
     for rank in sorted(set(ranks)):
         tree = _tree(below)
@@ -118,7 +118,7 @@ def stack(
     context.view_layer.update()
 
 
-def _rank(context: bpy.types.Context, body: api.Body) -> int:
+def rank_of(context: bpy.types.Context, body: api.Body) -> int:
     """Number of the layer of a body's stroke, from below; 0 where there are no layers."""
     stroke = body.sketch.stroke
     source = context.view_layer.objects.get(stroke.source)

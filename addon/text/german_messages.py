@@ -207,6 +207,28 @@ _STROKES = {
         "'{0}' wurde von Hand geändert und bleibt, wie es ist; löschen, im Panel „Lebender Körper“ auf „Neu aus "
         "dem Umriss“ drücken oder „Vorhandene aktualisieren“ ausschalten"
     ),
+    "1 body lies hidden inside another; move it forward": (
+        "1 Körper liegt verborgen in einem anderen; ihn nach vorn schieben"
+    ),
+    "1 body lies hidden inside another; move it forward, or turn on Holes to make a hole of it": (
+        "1 Körper liegt verborgen in einem anderen; ihn nach vorn schieben oder „Löcher“ einschalten, um ein Loch "
+        "daraus zu machen"
+    ),
+    "1 body lies hidden inside another; turn on Join Overlapping Strokes, which lets upper layers stand out": (
+        "1 Körper liegt verborgen in einem anderen; „Überlappende Striche zusammenführen“ einschalten, das obere "
+        "Ebenen hervortreten lässt"
+    ),
+    "{} bodies lie hidden inside others; move them forward": (
+        "{0} Körper liegen verborgen in anderen; sie nach vorn schieben"
+    ),
+    "{} bodies lie hidden inside others; move them forward, or turn on Holes to make holes of them": (
+        "{0} Körper liegen verborgen in anderen; sie nach vorn schieben oder „Löcher“ einschalten, um Löcher "
+        "daraus zu machen"
+    ),
+    "{} bodies lie hidden inside others; turn on Join Overlapping Strokes, which lets upper layers stand out": (
+        "{0} Körper liegen verborgen in anderen; „Überlappende Striche zusammenführen“ einschalten, das obere "
+        "Ebenen hervortreten lässt"
+    ),
     "1 body was there already and was updated; turn off Update Existing to make another": (
         "1 Körper war schon da und wurde aktualisiert; „Vorhandene aktualisieren“ ausschalten, um einen weiteren "
         "zu machen"

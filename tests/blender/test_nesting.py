@@ -20,6 +20,7 @@ from drawings import (
     run,
     run_one,
 )
+from mathutils import Vector
 
 
 def drawn(name, size=4.0):
@@ -115,6 +116,63 @@ def test_holes_that_cross_each_other_are_refused_by_name():
 def test_splines_of_a_curve():
     curve([circle(radius=2), at(circle(radius=0.5), 1, 0, 0), at(circle(radius=0.5), -1, 0, 0)])
     check_body(run_one(), genus=2)
+
+
+class TestHidden:
+    """Bodies inside others, which cannot be seen."""
+
+    def face(self):
+        """A face with eyes and a mouth on a layer above, the mouth over the rim."""
+        eyes = [at(circle(radius=0.3), -0.8, 0.5, 0), at(circle(radius=0.3), 0.8, 0.5, 0)]
+        ob = grease_pencil([circle(radius=2)], layer="Face")
+        return grease_pencil([*eyes, at(circle(radius=0.5), 0, -2, 0)], layer="Above", ob=ob)
+
+    def test_on_a_layer_above_joining_is_named_and_helps(self, capfd):
+        self.face()
+        made = run()
+        out = capfd.readouterr().out
+        assert "2 bodies lie hidden inside others; turn on Join Overlapping Strokes" in out
+        for body in made:
+            bpy.data.objects.remove(body)
+        activate(bpy.data.objects["Drawing"])
+        (whole,) = run(use_join=True)
+        assert "hidden inside" not in capfd.readouterr().out
+        check_body(whole)
+
+    def test_without_holes_they_are_named(self, capfd):
+        grease_pencil([circle(radius=2), at(circle(radius=0.3), 0.4, 0.2, 0)])
+        run(use_holes=False)
+        out = capfd.readouterr().out
+        assert "1 body lies hidden inside another; move it forward, or turn on Holes" in out
+
+    def test_other_objects(self, capfd):
+        one = grease_pencil([circle(radius=2)], name="One")
+        two = grease_pencil([circle(radius=0.5)], name="Two")
+        activate(one, two)
+        run()
+        out = capfd.readouterr().out
+        assert "1 body lies hidden inside another; move it forward" in out
+        assert "turn on" not in out
+
+    @pytest.mark.parametrize("options", [{"shape": "SHEET"}, {}])
+    def test_flat_ones_and_holes_are_not(self, capfd, options):
+        if options:
+            self.face()
+        else:
+            grease_pencil([circle(radius=2), circle(radius=1), circle(radius=0.5)])
+        run(**options)
+        assert "hidden inside" not in capfd.readouterr().out
+
+    def test_moved_forward_they_are_not(self, capfd):
+        self.face()
+        eyes = run()[1:3]
+        assert "hidden inside" in capfd.readouterr().out
+        for eye in eyes:
+            eye.location += eye.matrix_world.to_3x3() @ Vector((0, 0, 2))
+        bpy.context.view_layer.update()
+        activate(bpy.data.objects["Drawing"])
+        run()
+        assert "hidden inside" not in capfd.readouterr().out
 
 
 class TestUpdate:
