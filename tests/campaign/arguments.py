@@ -38,6 +38,7 @@ def calls():
     vertices, faces = grid()
     corners, sides = cube()
     loop = [30, 31, 32, 41, 50, 49, 48, 39]
+    border = [*range(9), *range(17, 81, 9), *range(79, 71, -1), *range(63, 0, -9)]
     patch = gridmesh.mesh_sketch(SQUARE, triangles=60)
     fill = gridmesh.fill_hole(vertices, faces, loop)
     made = {
@@ -128,6 +129,32 @@ def calls():
             "cells": None,
             "progress": None,
         },
+        "bridge": {
+            "vertices": vertices,
+            "triangles": faces,
+            "loop": loop,
+            "other": border,
+            "smooth": "tangent",
+            "rows": 2,
+            "twist": 0.1,
+            "strict": False,
+            "polygons": None,
+            "cells": "quads",
+            "progress": None,
+        },
+        "bridge_pairs": {
+            "vertices": vertices,
+            "triangles": faces,
+            "loops": (loop, border),
+            "smooth": "flat",
+            "rows": None,
+            "twist": 0.0,
+            "strict": True,
+            "polygons": None,
+            "cells": "triangles",
+            "progress": None,
+        },
+        "look_apart": {"vertices": vertices, "triangles": faces, "loops": (loop, border)},
         "regrid": {
             "vertices": vertices,
             "triangles": faces,

@@ -2,8 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use glam::DVec3;
 use gridmesh::cut::Polygons;
-use gridmesh::fill::{BridgeOptions, Fill, FillOptions, bridge, fill_hole, fill_loops};
+use gridmesh::fill::{
+    BridgeOptions, Fill, FillOptions, Pair, bridge, bridge_pairs, fill_hole, fill_loops, look_apart,
+};
 use gridmesh::geometry::metrics::check_mesh;
 use gridmesh::join::{JoinOptions, Part, join as joined};
 use gridmesh::options::{CellShape, Density};
@@ -106,13 +109,17 @@ pub fn several(data: &[u8]) {
     found.truncate(2 + case.below(4));
     let edges = found.iter().map(Vec::len).sum();
     let smooth = case.smooth();
-    if let ([one, other], true) = (&found[..], case.chance()) {
+    if case.chance() {
         let options = BridgeOptions {
             smooth,
             rows: case.chance().then(|| case.below(12)),
             twist: case.share(),
             cells: cells(&mut case),
             ..BridgeOptions::default()
+        };
+        let [one, other] = &found[..] else {
+            in_pairs(&vertices, &triangles, &found, &options);
+            return;
         };
         let made = bounded(|progress| bridge(&vertices, &triangles, one, other, &options, progress));
         if let Some(fill) = made {
@@ -123,6 +130,20 @@ pub fn several(data: &[u8]) {
     let options = FillOptions { smooth, cells: cells(&mut case), ..FillOptions::default() };
     if let Some(fill) = bounded(|progress| fill_loops(&vertices, &triangles, &found, &options, progress)) {
         filled(&fill, found.len(), edges);
+    }
+}
+
+/// Tubes between pairs of loops.
+fn in_pairs(vertices: &[DVec3], triangles: &[[u32; 3]], loops: &[Vec<u32>], options: &BridgeOptions) {
+    let apart = look_apart(vertices, triangles, loops);
+    let pairs = bounded(|progress| bridge_pairs(vertices, triangles, loops, options, progress));
+    let Some(pairs) = pairs else { return };
+    assert!(apart.is_ok(), "loops that are joined are no loops");
+    assert_eq!(pairs.len(), loops.len() / 2);
+    for Pair { loops: [one, other], tube } in pairs {
+        if let Ok(fill) = tube {
+            filled(&fill, 2, loops[one].len() + loops[other].len());
+        }
     }
 }
 

@@ -19,20 +19,16 @@ mod squares;
 mod tube;
 
 use glam::DVec3;
-use rustc_hash::FxHashSet;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::fill::filled::Fill;
-use crate::fill::job::{Job, SOUND_RINGS};
-use crate::fill::loops::check::{check_loop, check_near};
-use crate::fill::loops::mesh::Rim;
-use crate::fill::options::{FillOptions, Smooth};
+use crate::fill::job::Job;
 use crate::fill::parallel::steady;
 use crate::progress::Progress;
 
 pub use self::options::BridgeOptions;
 pub use self::pairs::{Pair, bridge_pairs, look_apart};
-use self::span::Span;
+use self::span::tube;
 
 /// Joins two loops of a mesh by a tube.
 ///
@@ -48,8 +44,8 @@ use self::span::Span;
 /// The same input gives the same output for any number of threads.
 ///
 /// # Errors
-/// Those of [`fill_hole`](super::fill_hole); [`Error::FigureEight`] for a vertex of both loops,
-/// [`Error::InvalidOption`] for no rows or a twist that is not finite, [`Error::TooLarge`] beyond 20 million triangles.
+/// Those of [`fill_hole`](super::fill_hole); [`Error::FigureEight`](crate::Error::FigureEight) for a vertex of both loops,
+/// [`Error::InvalidOption`](crate::Error::InvalidOption) for no rows or a twist that is not finite, [`Error::TooLarge`](crate::Error::TooLarge) beyond 20 million triangles.
 ///
 /// Source: lattices on cones as in Thurston, *Shapes of polyhedra and triangulations of the sphere*, 1998; the
 /// exact counts as in Nealen et al. 2009, section V.
@@ -72,58 +68,11 @@ fn bridged(
     progress: Progress<'_>,
 ) -> Result<Fill> {
     progress.report(0.0)?;
-    let rest = rest_of(options, triangles)?;
+    let rest = options.rest(triangles)?;
     let fill = tube(vertices, triangles, given, options, &rest, progress.part(0.0, 0.8))?;
     let mut fills = [Ok(fill)];
     Job { vertices, triangles, options: &rest }.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
     let [fill] = fills;
     progress.report(1.0)?;
     fill
-}
-
-/// What a tube has in common with a fill, after a look at all options.
-fn rest_of(options: &BridgeOptions, triangles: &[[u32; 3]]) -> Result<FillOptions> {
-    if options.rows == Some(0) {
-        let allowed = "a whole number above 0, or nothing";
-        return Err(Error::InvalidOption { name: "rows", value: "0".into(), allowed });
-    }
-    if !options.twist.is_finite() {
-        let allowed = "a finite angle in radians";
-        return Err(Error::InvalidOption { name: "twist", value: options.twist.to_string(), allowed });
-    }
-    let rest = FillOptions {
-        cells: options.cells,
-        smooth: options.smooth,
-        strict: options.strict,
-        polygons: options.polygons.clone(),
-        ..FillOptions::default()
-    };
-    rest.check(triangles)?;
-    Ok(rest)
-}
-
-/// A tube that does not know yet what it meets.
-fn tube(
-    vertices: &[DVec3],
-    triangles: &[[u32; 3]],
-    given: [&[u32]; 2],
-    options: &BridgeOptions,
-    rest: &FillOptions,
-    progress: Progress<'_>,
-) -> Result<Fill> {
-    let seeds = given.concat();
-    let rim =
-        Rim::new(vertices.len(), triangles, &seeds, if options.smooth == Smooth::Curvature { 2 } else { 1 })?;
-    let checked = [check_loop(given[0], vertices, &rim)?, check_loop(given[1], vertices, &rim)?];
-    if vertices.iter().any(|p| !p.is_finite()) {
-        let wide = Rim::new(vertices.len(), triangles, &seeds, SOUND_RINGS)?;
-        given.iter().try_for_each(|loop_| check_near(loop_, vertices, &wide))?;
-    }
-    let both: FxHashSet<u32> = given[0].iter().copied().collect();
-    if let Some(&vertex) = given[1].iter().find(|v| both.contains(v)) {
-        return Err(Error::FigureEight { vertex });
-    }
-    progress.report(0.12)?;
-    let span = Span::new(vertices, &rim, checked, options);
-    span.fill(rest, progress.part(0.12, 1.0))
 }

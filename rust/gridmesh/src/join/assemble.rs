@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::options::JoinReport;
-use super::parts::{Parts, volume};
+use super::parts::Parts;
+use super::pieces::volume;
 use super::rims::Outside;
 use super::site::Site;
 use super::tries::{Kind, Patch};

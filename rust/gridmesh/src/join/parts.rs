@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::pieces::{fault, overlap};
+use super::pieces::{fault, overlap, volume};
 use crate::cut::Polygons;
 use crate::cut::input::{check_mesh, triangles};
 use crate::error::{Error, Result};
@@ -244,18 +244,6 @@ fn check_part(number: usize, part: &Part<'_>) -> Result<()> {
         return Err(Error::TooFewPoints { what: format!("part {number}"), distinct: 0 });
     }
     Ok(())
-}
-
-/// The volume that triangles enclose.
-pub(super) fn volume(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
-    let Some(&[first, ..]) = triangles.first() else { return 0.0 };
-    // Near the mesh, whose place in space is not to cost digits.
-    let origin = vertices[first as usize];
-    let six = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|v| vertices[v as usize] - origin);
-        a.dot(b.cross(c))
-    };
-    triangles.iter().map(six).sum::<f64>() / 6.0
 }
 
 #[cfg(test)]

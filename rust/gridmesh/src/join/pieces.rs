@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::parts::volume;
 use crate::geometry::disjoint::Disjoint;
 
 /// A part with less volume than this, relative to its area, encloses nothing.
@@ -94,4 +93,16 @@ fn turns(vertices: &[DVec3], triangles: &[[u32; 3]], at: DVec3) -> f64 {
         libm::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
     };
     triangles.iter().map(angle).sum::<f64>() / (2.0 * PI)
+}
+
+/// The volume that triangles enclose.
+pub(super) fn volume(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+    let Some(&[first, ..]) = triangles.first() else { return 0.0 };
+    // Near the mesh, whose place in space is not to cost digits.
+    let origin = vertices[first as usize];
+    let six = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| vertices[v as usize] - origin);
+        a.dot(b.cross(c))
+    };
+    triangles.iter().map(six).sum::<f64>() / 6.0
 }

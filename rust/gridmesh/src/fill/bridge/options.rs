@@ -1,6 +1,7 @@
 //! What can be chosen about a bridge.
 
-use crate::fill::options::Smooth;
+use crate::error::{Error, Result};
+use crate::fill::options::{FillOptions, Smooth};
 use crate::options::CellShape;
 
 /// What can be chosen about a bridge.
@@ -19,4 +20,27 @@ pub struct BridgeOptions {
     pub strict: bool,
     /// See [`FillOptions::polygons`](crate::fill::FillOptions::polygons).
     pub polygons: Vec<u32>,
+}
+
+impl BridgeOptions {
+    /// What a tube has in common with a fill, after a look at all options.
+    pub(super) fn rest(&self, triangles: &[[u32; 3]]) -> Result<FillOptions> {
+        if self.rows == Some(0) {
+            let allowed = "a whole number above 0, or nothing";
+            return Err(Error::InvalidOption { name: "rows", value: "0".into(), allowed });
+        }
+        if !self.twist.is_finite() {
+            let allowed = "a finite angle in radians";
+            return Err(Error::InvalidOption { name: "twist", value: self.twist.to_string(), allowed });
+        }
+        let rest = FillOptions {
+            cells: self.cells,
+            smooth: self.smooth,
+            strict: self.strict,
+            polygons: self.polygons.clone(),
+            ..FillOptions::default()
+        };
+        rest.check(triangles)?;
+        Ok(rest)
+    }
 }

@@ -6,8 +6,7 @@ use rustc_hash::FxHashSet;
 use super::align::Ring;
 use super::loft::ahead;
 use super::options::BridgeOptions;
-use super::span::onward_of;
-use super::{rest_of, tube};
+use super::span::{onward_of, tube};
 use crate::error::{Error, Result};
 use crate::fill::filled::Fill;
 use crate::fill::job::Job;
@@ -67,7 +66,7 @@ pub fn bridge_pairs(
 ) -> Result<Vec<Pair>> {
     steady(progress, |progress| {
         progress.report(0.0)?;
-        let rest = rest_of(options, triangles)?;
+        let rest = options.rest(triangles)?;
         let pairs = paired(&ends(vertices, triangles, loops)?);
         let mut tubes = Vec::with_capacity(pairs.len());
         for (k, pair) in pairs.iter().enumerate() {

@@ -11,8 +11,9 @@ use super::refit::{edge, reversed, work_positions};
 use super::settle::settle;
 use crate::error::{Error, Result};
 use crate::fill::filled::{Bridged, Fill, Shape};
+use crate::fill::job::SOUND_RINGS;
 use crate::fill::layout::unroll::Unrolling;
-use crate::fill::loops::check::Checked;
+use crate::fill::loops::check::{Checked, check_loop, check_near};
 use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::{edges, wanted};
 use crate::fill::options::{FillOptions, Smooth};
@@ -28,6 +29,32 @@ const PULLS: [f64; 3] = [0.6, 0.35, 0.15];
 
 /// A lattice whose least angle is below this, in radians, is compared with rings of any lengths.
 const THIN: f64 = 0.2;
+
+/// A tube that does not know yet what it meets.
+pub(super) fn tube(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    given: [&[u32]; 2],
+    options: &BridgeOptions,
+    rest: &FillOptions,
+    progress: Progress<'_>,
+) -> Result<Fill> {
+    let seeds = given.concat();
+    let rim =
+        Rim::new(vertices.len(), triangles, &seeds, if options.smooth == Smooth::Curvature { 2 } else { 1 })?;
+    let checked = [check_loop(given[0], vertices, &rim)?, check_loop(given[1], vertices, &rim)?];
+    if vertices.iter().any(|p| !p.is_finite()) {
+        let wide = Rim::new(vertices.len(), triangles, &seeds, SOUND_RINGS)?;
+        given.iter().try_for_each(|loop_| check_near(loop_, vertices, &wide))?;
+    }
+    let both: FxHashSet<u32> = given[0].iter().copied().collect();
+    if let Some(&vertex) = given[1].iter().find(|v| both.contains(v)) {
+        return Err(Error::FigureEight { vertex });
+    }
+    progress.report(0.12)?;
+    let span = Span::new(vertices, &rim, checked, options);
+    span.fill(rest, progress.part(0.12, 1.0))
+}
 
 /// Two loops, put the way round that suits both.
 pub(super) struct Span<'a> {
