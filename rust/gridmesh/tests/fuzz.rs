@@ -62,6 +62,12 @@ fn bent_lattices_keep_their_promises() {
     run(targets::bent, 300);
 }
 
+/// Some filled the memory: around a vertex of their first surface, which repeated an edge, no walk ended.
+#[test]
+fn several_loops_whose_first_surface_repeats_an_edge_are_refused() {
+    targets::several(&bytes(8923));
+}
+
 #[test]
 fn fills_of_several_loops_keep_their_promises() {
     run(targets::several, 1500);

@@ -53,7 +53,13 @@ pub(super) fn triangulated(
     draft.insert_skipped(loops);
     draft.split_repeated(taken);
     let named = |t: &[u32; 3]| t.map(|id| draft.names[id as usize]);
-    let triangles = draft.triangles.iter().map(named).collect();
+    let triangles = draft.triangles.iter().map(named).collect::<Vec<_>>();
+    let mut seen = FxHashSet::default();
+    let mut sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    // Triangles on both sides of a loop that lies on another one; around their vertices there is no way.
+    if !sides.all(|side| seen.insert(side)) {
+        return Err(refused("no triangles between the loops are sound"));
+    }
     Ok((draft.positions, triangles))
 }
 
