@@ -141,7 +141,7 @@ def warnings_of(reports: list[dict]) -> list[str]:
         warnings.append(
             f"{patches} meets the mesh or itself; check the shape"
             if crossed == 1
-            else f"{patches} meet the mesh or itself; check the shape"
+            else f"{patches} meet the mesh or themselves; check the shape"
         )
     conflicts = sum(report.get("winding_conflicts", 0) for report in reports)
     if conflicts:

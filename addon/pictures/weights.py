@@ -58,7 +58,9 @@ def for_bones(
     _, sizes, axes = np.linalg.svd(places - middle, full_matrices=False)
     away = np.abs((places - middle) @ axes[2])
     if sizes[1] <= 1e-9 * sizes[0] or away.max() > FLAT * np.ptp((places - middle) @ axes[0]):
-        raise WeightError("it is not flat; Blender's automatic weights are for bodies")
+        raise WeightError(
+            "it is not flat; select the body and then the armature, and choose Object > Parent > With Automatic Weights"
+        )
     across = axes[:2].T
     try:
         with cancelling(gridmesh):

@@ -695,7 +695,7 @@ _FILLS = {
     "{} made by a simpler method, since the smooth one failed": (
         "{0} nach einem einfacheren Verfahren gemacht, da das glatte versagte"
     ),
-    "{} meet the mesh or itself; check the shape": "{0} schneiden das Mesh oder sich selbst; die Form prüfen",
+    "{} meet the mesh or themselves; check the shape": "{0} schneiden das Mesh oder sich selbst; die Form prüfen",
     "{} meets the mesh or itself; check the shape": (
         "{0} schneidet das Mesh oder sich selbst; die Form prüfen"
     ),
@@ -1169,8 +1169,8 @@ _LIBRARY_PARTS = {
     "Select flat meshes, and then an armature": "Flache Meshes auswählen und dann eine Armature",
     "Cancelled; nothing was changed": "Abgebrochen; nichts wurde geändert",
     "the armature has no bones that deform": "die Armature hat keine Knochen, die verformen",
-    "it is not flat; Blender's automatic weights are for bodies": (
-        "es ist nicht flach; für Körper gibt es Blenders automatische Gewichte"
+    "it is not flat; select the body and then the armature, and choose Object > Parent > With Automatic Weights": (
+        "es ist nicht flach; den Körper und dann die Armature auswählen und Objekt > Parent > Mit automatischer Wichtung wählen"
     ),
     "it has no faces": "es hat keine Flächen",
     "{}: weights for {}": "{0}: Gewichte für {1}",
