@@ -232,7 +232,7 @@ def _require_one(stroke: np.ndarray) -> None:
         covered([stroke])
     except gridmesh.GridMeshError as error:
         if error.kind == "disconnected":
-            raise DecisionError(reason_of(error).replace("the outline", "the stroke")) from error
+            raise DecisionError(reason_of(error)) from error
 
 
 def _require_free(shape: Shape) -> None:

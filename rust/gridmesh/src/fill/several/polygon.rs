@@ -56,7 +56,7 @@ pub(super) fn triangulated(
     let triangles = draft.triangles.iter().map(named).collect::<Vec<_>>();
     let mut seen = FxHashSet::default();
     let mut sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    // Triangles on both sides of a loop that lies on another one; around their vertices there is no way.
+    // Triangles that run along an edge the same way are no surface: walks around its vertices need not end.
     if !sides.all(|side| seen.insert(side)) {
         return Err(refused("no triangles between the loops are sound"));
     }
