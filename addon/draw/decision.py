@@ -17,7 +17,7 @@ from ..bodies.outlines import Plane, area
 from ..native import native
 from . import parts
 from .regions import Part, covered, inside, relation, united
-from .trace import Mirror, Trace, closed
+from .trace import Mirror, Trace, closed, of_stroke
 
 __all__ = ["Decision", "DecisionError", "Part", "Shape", "Wanted", "decide", "inside", "relation", "united"]
 
@@ -232,7 +232,7 @@ def _require_one(stroke: np.ndarray) -> None:
         covered([stroke])
     except gridmesh.GridMeshError as error:
         if error.kind == "disconnected":
-            raise DecisionError(reason_of(error)) from error
+            raise DecisionError(of_stroke(reason_of(error))) from error
 
 
 def _require_free(shape: Shape) -> None:

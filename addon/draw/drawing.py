@@ -25,6 +25,7 @@ from .gesture import FEWEST
 from .joining import absorb, adopt, indices, same_layer
 from .memory import Memory
 from .pencil import layer_of, renumber
+from .trace import of_stroke
 
 NOTHING = "the stroke encloses nothing"
 
@@ -108,11 +109,7 @@ def _refused(error: Any, sketch_options: dict[str, Any] | None = None) -> DrawEr
     """Say of a stroke what the library says of an outline."""
     if error.kind == "zero_area":
         return DrawError(NOTHING)
-    return DrawError(_of_stroke(api.reason_of(error, sketch_options)))
-
-
-def _of_stroke(text: str) -> str:
-    return text.replace("the other outline", "the stroke").replace("the outline", "the stroke")
+    return DrawError(of_stroke(api.reason_of(error, sketch_options)))
 
 
 def _ink(memory: Memory, decision: Decision, own: Plane) -> _Ink:
@@ -207,7 +204,7 @@ def _new(
             context, [plane.local(ring)[:, :2] for ring in rings], widths, plane.matrix, options
         )
     except (OutlineError, StrokeError) as error:
-        raise DrawError(_of_stroke(str(error))) from error
+        raise DrawError(of_stroke(str(error))) from error
     finally:
         options.mirror = mirror
     return body
@@ -245,7 +242,7 @@ def _make(
     )
     failures += refused
     if failures or not bodies:
-        raise DrawError(_of_stroke(failures[0].reason) if failures else NOTHING)
+        raise DrawError(of_stroke(failures[0].reason) if failures else NOTHING)
     made: list[bpy.types.Object] = []
     meshes.place(
         context, bodies, update=False, collection="SOURCE", crease_angle=options.corner_angle, made=made
@@ -321,7 +318,7 @@ def _split(
             like=ob,
         )
     except OutlineError as error:
-        raise DrawError(_of_stroke(str(error))) from error
+        raise DrawError(of_stroke(str(error))) from error
     _lay_like(context, body, ob, middle)
     return body
 

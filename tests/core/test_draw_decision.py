@@ -94,7 +94,9 @@ def test_what_does_nothing_is_said(stroke, wanted, said):
 def test_a_stroke_that_falls_apart_where_it_crosses_itself_is_said_to_do_nothing(wanted, centre):
     t = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     eight = np.stack([np.sin(t), np.sin(2 * t)], axis=1) + centre
-    with pytest.raises(DecisionError, match="encloses 2 parts that meet only where it crosses itself"):
+    with pytest.raises(
+        DecisionError, match="the stroke encloses 2 parts that meet only where it crosses itself"
+    ):
         one(seen(eight), [body()], **wanted)
     line = np.stack([t, 0 * t], axis=1) + (6, 0)
     assert one(seen(line), [body()]).action == "NEW"
