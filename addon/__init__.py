@@ -62,7 +62,7 @@ def _classes() -> tuple[type, ...]:
     from .live import refine
     from .live import ui as live_ui
     from .overlay import ui as overlay
-    from .pictures import dropping, weights_operator
+    from .pictures import dropping, updating, weights_operator
     from .pictures import operator as pictures
     from .regrid import operator as regrid
     from .ui import panels as ui
@@ -76,6 +76,7 @@ def _classes() -> tuple[type, ...]:
         *following.classes,
         *join.classes,
         *pictures.classes,
+        *updating.classes,
         *weights_operator.classes,
         *dropping.classes,
         *overlay.classes,

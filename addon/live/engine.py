@@ -26,6 +26,7 @@ from . import applied, family, linework
 from .family import bodies
 from .reading import LostError, sketch_of
 from .solve import ALGORITHM, Lattice, LeftError, SolveError, digest, solve
+from .writing import write
 
 PAUSE = 0.35
 """Seconds without a change after which a change has ended."""
@@ -339,34 +340,6 @@ def _stored(live: Any) -> Lattice | None:
     values = np.array(live.plane, float)
     plane = Plane(values[:3], values[3:].reshape(3, 3))
     return Lattice(plane, live.lattice[0], live.lattice[1], np.array(live.lattice[2:]))
-
-
-def write(ob: bpy.types.Object, body: Body, crease_angle: float, *, marks: bool) -> None:
-    """Give an object another mesh of the same name; all that belongs to vertices stays where the faces do.
-
-    body : with vertices in the object's space. marks : whether creases are marked anew where the faces stay;
-    while dragging they wait.
-    """
-    mesh = ob.data
-    faces = np.ascontiguousarray(body.faces, np.int32)
-    counts = len(mesh.vertices), len(mesh.loops), len(mesh.polygons)
-    if counts != (len(body.vertices), faces.size, len(faces)):
-        meshes.refresh(ob, body, crease_angle)
-        return
-    corners = written.corners_of(mesh)
-    if not np.array_equal(corners, faces.ravel()):
-        meshes.refresh(ob, body, crease_angle)
-        return
-    points = np.ascontiguousarray(body.vertices, np.float32).ravel()
-    mesh.vertices.foreach_set("co", points)
-    layer = mesh.uv_layers.get(meshes.UV_MAP)
-    if layer is not None:
-        layer.uv.foreach_set("vector", np.ascontiguousarray(body.uv, np.float32).ravel())
-    if marks:
-        meshes.mark_creases(mesh, body, crease_angle)
-    mesh.update()
-    mesh.gridmesh_made = written.fingerprint(points, corners, len(mesh.polygons))
-    written.keep(mesh.gridmesh_made, points)
 
 
 def _tell(live: Any, problem: str) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`object.gridmesh_from_image`: pictures become sprites or bodies; `object.gridmesh_update_image`: made anew."""
+"""`object.gridmesh_from_image`: pictures become sprites or bodies."""
 
 from __future__ import annotations
 
@@ -21,7 +21,6 @@ from bpy.props import (
 from ..api import CancelledError
 from ..bodies.strokes import selected
 from ..data import defaults
-from ..data.meshes import obstacle_of_mesh
 from ..data.placing import Transaction, home
 from ..native import NativeError
 from ..text.messages import counted, listed
@@ -201,7 +200,7 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
             self.report({"WARNING"}, told(warning))
         return {"FINISHED"}
 
-    def draw(self, _context: bpy.types.Context) -> None:
+    def draw(self, context: bpy.types.Context) -> None:
         """Draw the redo panel."""
         layout = self.layout
         layout.use_property_split = True
@@ -222,7 +221,10 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
         column.prop(self, "use_holes")
         column = layout.column()
         column.prop(self, "lit")
-        column.prop(self, "hide_source")
+        if not self._paths():
+            column.prop(self, "hide_source")
+        if _is_gray(context):
+            column.label(text="This view is gray; Material Preview shows the picture", icon="INFO")
 
     corner_angle = placing.CREASE
     """What the profile asks for; the corners of pictures are found in them."""
@@ -290,62 +292,6 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
         return objects
 
 
-class OBJECT_OT_gridmesh_update_image(bpy.types.Operator):  # noqa: N801
-    """Read the pictures of the selected sprites and bodies again, and make their meshes anew"""  # noqa: D400
-
-    bl_idname = "object.gridmesh_update_image"
-    bl_label = "Update from Picture"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Ask for something made from a picture."""
-        if context.mode == "OBJECT" and _made(context):
-            return True
-        cls.poll_message_set(told("Select a sprite or a body made from a picture", "tooltips"))
-        return False
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Make all anew that can be, and only then change them."""
-        done: list[tuple[bpy.types.Object, Cutout, bpy.types.Image]] = []
-        failures: list[str] = []
-        try:
-            with Pointer(context) as pointer:
-                for ob in _made(context):
-                    try:
-                        done.append((ob, *_anew(ob, pointer)))
-                    except PictureError as error:
-                        failures.append(f"'{ob.name}': {error}")
-        except NativeError as error:
-            self.report({"ERROR"}, told(str(error)))
-            return {"CANCELLED"}
-        except CancelledError:
-            self.report({"WARNING"}, told("Cancelled; nothing was made"))
-            return {"CANCELLED"}
-        for ob, cutout, image in done:
-            placing.update(ob, cutout, image)
-        if not done:
-            self.report({"ERROR"}, told(listed(failures)))
-            return {"CANCELLED"}
-        self.report({"INFO"}, told(f"{counted(len(done), 'mesh')} updated"))
-        for failure in failures:
-            self.report({"WARNING"}, told(failure))
-        return {"FINISHED"}
-
-
-def _anew(ob: bpy.types.Object, pointer: Pointer) -> tuple[Cutout, bpy.types.Image]:
-    reason = obstacle_of_mesh(ob)
-    image = placing.picture_of(ob)
-    if reason:
-        raise PictureError(reason)
-    if image is None:
-        raise PictureError("its material has no picture any more; make it anew from the picture")
-    if image.source == "FILE" and not image.is_dirty and image.packed_file is None:
-        image.reload()
-    _, options = placing.recall(ob)
-    return cut_out(images.pixels(image), options, pointer), image
-
-
 def _side_by_side(
     paths: list[str], at: np.ndarray, transaction: Transaction, failures: list[str]
 ) -> list[images.Picture]:
@@ -384,8 +330,12 @@ def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
     return [ob for ob in selected(context) if images.shows_picture(ob) and not placing.made_from_picture(ob)]
 
 
-def _made(context: bpy.types.Context) -> list[bpy.types.Object]:
-    return [ob for ob in selected(context) if placing.made_from_picture(ob)]
+def _is_gray(context: bpy.types.Context) -> bool:
+    """Tell whether the view shows no pictures on faces."""
+    shading = getattr(context.space_data, "shading", None)
+    return shading is not None and (
+        shading.type == "WIREFRAME" or (shading.type == "SOLID" and shading.color_type != "TEXTURE")
+    )
 
 
 def _select(context: bpy.types.Context, objects: list[bpy.types.Object]) -> None:
@@ -412,4 +362,4 @@ def _left_out(made: list[tuple[images.Picture, Options, bool, Cutout]]) -> list[
     return told_of
 
 
-classes = (OBJECT_OT_gridmesh_from_image, OBJECT_OT_gridmesh_update_image)
+classes = (OBJECT_OT_gridmesh_from_image,)

@@ -17,7 +17,8 @@ from ..data import meshes
 from ..fill.operator import MESH_OT_gridmesh_fill
 from ..join.operator import OBJECT_OT_gridmesh_join
 from ..pictures.images import shows_picture
-from ..pictures.operator import OBJECT_OT_gridmesh_from_image, OBJECT_OT_gridmesh_update_image
+from ..pictures.operator import OBJECT_OT_gridmesh_from_image
+from ..pictures.updating import OBJECT_OT_gridmesh_update_image
 from ..pictures.weights_operator import OBJECT_OT_gridmesh_bone_weights
 from ..regrid.operator import MESH_OT_gridmesh_regrid
 from . import preset_files
