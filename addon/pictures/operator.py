@@ -215,7 +215,7 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
         column.prop(self, "use_threshold")
         if self.use_threshold:
             column.prop(self, "threshold")
-        column.prop(self, "margin" if self.body_options() is None else "body_margin")
+        column.prop(self, "margin" if self.shape == "SHEET" else "body_margin")
         column.prop(self, "smooth")
         column.prop(self, "min_area")
         column.prop(self, "use_holes")
@@ -224,7 +224,7 @@ class OBJECT_OT_gridmesh_from_image(ShapeOptions, bpy.types.Operator):  # noqa: 
         if not self._paths():
             column.prop(self, "hide_source")
         if _is_gray(context):
-            column.label(text="This view is gray; Material Preview shows the picture", icon="INFO")
+            column.label(text="See it in Material Preview", icon="INFO")
 
     corner_angle = placing.CREASE
     """What the profile asks for; the corners of pictures are found in them."""

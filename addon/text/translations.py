@@ -55,7 +55,7 @@ GERMAN = {
         "Die Schwelle angeben, statt auf Papier der, die die Pixel am besten trennt, und sonst 0,5, oder weniger bei Schein und Schatten flacher Meshes"
     ),
     "Hide Picture": "Bild verbergen",
-    "This view is gray; Material Preview shows the picture": "Diese Ansicht ist grau; die Materialvorschau zeigt das Bild",
+    "See it in Material Preview": "In der Materialvorschau zu sehen",
     "Hide the object that shows the picture, which is in the same place": (
         "Das Objekt verbergen, das das Bild zeigt und an derselben Stelle ist"
     ),

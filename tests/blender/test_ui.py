@@ -11,6 +11,7 @@ from addon.bodies.operator import OBJECT_OT_gridmesh_from_strokes
 from addon.bridge.operator import MESH_OT_gridmesh_bridge
 from addon.fill.operator import MESH_OT_gridmesh_fill
 from addon.live import ui as live_ui
+from addon.pictures.operator import OBJECT_OT_gridmesh_from_image
 from addon.text import telling
 from addon.ui import panels as ui
 from addon.ui import patching
@@ -126,20 +127,21 @@ def test_menu_entries(entry):
     assert len(menu.layout.drawn) == (2 if entry is ui._fill_entry else 1)
 
 
-def options(cls, **changed):
+def options(cls, context=None, **changed):
     """Stand for an operator with its default options."""
     rna = Settings(cls.bl_idname).rna
     own = types.SimpleNamespace(layout=Layout(), bl_idname=cls.bl_idname)
     for option in rna.properties:
         if option.identifier != "rna_type":
             setattr(own, option.identifier, getattr(option, "default", None))
-    for name in ("draw_result", "draw_shape_options", "draw_curve", "draw_sketch_options", "draw_join"):
+    drawing = ("draw_result", "draw_shape_options", "draw_curve", "draw_sketch_options", "draw_join")
+    for name in (*drawing, "_paths"):
         if hasattr(cls, name):
             setattr(own, name, getattr(cls, name).__get__(own))
     for name, value in changed.items():
         assert hasattr(own, name)
         setattr(own, name, value)
-    cls.draw(own, bpy.context)
+    cls.draw(own, context or bpy.context)
     return own.layout.drawn
 
 
@@ -158,6 +160,32 @@ def test_redo_panel_of_strokes(changed):
     drawn = options(OBJECT_OT_gridmesh_from_strokes, **changed)
     assert {"shape", "boundary", "use_holes", "collection"} <= set(drawn)
     assert ("edge_length" in drawn) == ("resolution" in changed)
+
+
+@pytest.mark.parametrize(
+    ("shading", "gray"),
+    [
+        (("SOLID", "MATERIAL"), True),
+        (("SOLID", "TEXTURE"), False),
+        (("WIREFRAME", "TEXTURE"), True),
+        (("MATERIAL", "MATERIAL"), False),
+        (None, False),
+    ],
+)
+def test_redo_panel_of_pictures_says_that_the_view_is_gray(shading, gray):
+    kind, color = shading or ("", "")
+    space = types.SimpleNamespace(shading=types.SimpleNamespace(type=kind, color_type=color))
+    drawn = pictured([], types.SimpleNamespace(space_data=space if shading else None))
+    assert ("See it in Material Preview" in drawn) == gray
+    assert "hide_source" in drawn
+
+
+def test_redo_panel_of_pictures_hides_nothing_for_files():
+    assert "hide_source" not in pictured(["a.png"], types.SimpleNamespace(space_data=None))
+
+
+def pictured(paths, context):
+    return options(OBJECT_OT_gridmesh_from_image, context, _paths=lambda: paths)
 
 
 def live_panel():

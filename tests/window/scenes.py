@@ -14,6 +14,7 @@ import first_scenes
 import live_scenes
 import mesh_scenes
 import part_scenes
+import picture_scenes
 import together_scenes
 from stage import perform
 
@@ -24,6 +25,7 @@ SCENES = (
     *draw_scenes.SCENES,
     *part_scenes.SCENES,
     *live_scenes.SCENES,
+    *picture_scenes.SCENES,
     *together_scenes.SCENES,
 )
 
