@@ -13,7 +13,7 @@ from .editmesh import Added, EditMesh, MeshError, Patch
 from .holes import Found, Problem
 from .patches import Snapshot
 
-_LOST = 1.0
+_LOST = 0.4
 """So many edges of its border a new surface may be off the old one until it is told."""
 
 _HARD = math.radians(30.0)

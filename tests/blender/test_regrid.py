@@ -217,11 +217,24 @@ def test_areas_become_quads():
     assert np.isfinite(uv_of(ob)).all()
 
 
+def mouth():
+    """Select what lies around Suzanne's mouth, nose included."""
+    ob = suzanne()
+    at = vertices(ob.data)
+    lip = np.linalg.norm(at - (0.0, -0.8, -0.5), axis=1).argmin()
+    select_faces(ob, lambda centre: (centre - ob.data.vertices[lip].co).length < 0.2)
+    for _ in range(3):
+        bpy.ops.mesh.select_more()
+
+
 def test_lost_shape_is_told(capfd):
     ob = suzanne()
     select_faces(ob, lambda centre: centre.x > 0.75)
     regrid()
     assert "1 area lost shape" in capfd.readouterr().out
+    mouth()
+    regrid()
+    assert "1 area lost shape: the new faces are up to 0." in capfd.readouterr().out
     ob = sphere()
     select_faces(ob, lambda centre: centre.z > 0.3)
     regrid()
