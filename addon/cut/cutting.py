@@ -293,11 +293,11 @@ def warnings_of(report: dict[str, Any], *, capped: bool) -> list[str]:
     if capped and report["open_lines"]:
         n = report["open_lines"]
         lines = counted(n, "cut line")
-        to_do = "close the mesh first (Grid Patch Fill) to get one"
+        to_do = "close the mesh first (Grid Patch Fill), or delete that wall, to get one"
         warnings.append(
-            f"{lines} ends at the border of the mesh and has no cap; {to_do}"
+            f"{lines} ends at the border of the mesh, or at a wall inside it, and has no cap; {to_do}"
             if n == 1
-            else f"{lines} end at the border of the mesh and have no cap; {to_do}"
+            else f"{lines} end at the border of the mesh, or at a wall inside it, and have no cap; {to_do}"
         )
     if capped and report["uncapped"]:
         n = report["uncapped"]

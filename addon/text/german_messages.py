@@ -447,17 +447,17 @@ _CUTS = {
     "view_direction is zero; give the direction in which the view looks": (
         "view_direction ist null; die Blickrichtung angeben"
     ),
-    "close the mesh first (Grid Patch Fill) to get one": (
-        "für einen Deckel erst das Mesh schließen (Loch mit Gitter füllen)"
+    "close the mesh first (Grid Patch Fill), or delete that wall, to get one": (
+        "für einen Deckel erst das Mesh schließen (Loch mit Gitter füllen) oder diese Wand löschen"
     ),
     "{} are folded, since the mesh cuts through itself there": (
         "{0} sind gefaltet, da das Mesh sich dort selbst schneidet"
     ),
-    "{} end at the border of the mesh and have no cap; {}": (
-        "{0} enden am Rand des Mesh und haben keinen Deckel; {1}"
+    "{} end at the border of the mesh, or at a wall inside it, and have no cap; {}": (
+        "{0} enden am Rand des Mesh oder an einer Wand in ihm und haben keinen Deckel; {1}"
     ),
-    "{} ends at the border of the mesh and has no cap; {}": (
-        "{0} endet am Rand des Mesh und hat keinen Deckel; {1}"
+    "{} ends at the border of the mesh, or at a wall inside it, and has no cap; {}": (
+        "{0} endet am Rand des Mesh oder an einer Wand in ihm und hat keinen Deckel; {1}"
     ),
     "{} is folded, since the mesh cuts through itself there": (
         "{0} ist gefaltet, da das Mesh sich dort selbst schneidet"

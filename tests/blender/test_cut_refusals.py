@@ -1,5 +1,6 @@
 """What cannot be cut: the scene stays as it is, and the message says what to do."""
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
@@ -178,4 +179,21 @@ def test_failure_half_way_leaves_nothing(editing, monkeypatch):
 def test_open_mesh_is_cut_without_a_cap(capfd):
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=4)
     cut(bpy.context.object, line((-3, 0.1, 0), (3, 0.2, 0)), direction="Z")
-    assert "ends at the border of the mesh and has no cap" in capfd.readouterr().out
+    assert "ends at the border of the mesh, or at a wall inside it, and has no cap" in capfd.readouterr().out
+
+
+def test_a_wall_inside_a_mesh_is_told(capfd):
+    bpy.ops.mesh.primitive_cube_add()
+    ob = bpy.context.object
+    bm = bmesh.new()
+    bm.from_mesh(ob.data)
+    ring = bmesh.ops.bisect_plane(
+        bm, geom=[*bm.verts, *bm.edges, *bm.faces], plane_co=(0, 0, 0), plane_no=(1, 0, 0)
+    )
+    edges = [one for one in ring["geom_cut"] if isinstance(one, bmesh.types.BMEdge)]
+    bmesh.ops.contextual_create(bm, geom=edges)
+    bm.to_mesh(ob.data)
+    bm.free()
+    cut(ob, line((-3, 0.1, 0), (3, 0.2, 0)), direction="Z")
+    said = capfd.readouterr().out
+    assert "1 cut line ends at the border of the mesh, or at a wall inside it, and has no cap" in said
