@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import bpy
@@ -22,7 +23,8 @@ class Transaction:
     def __exit__(self, kind: Any, *_: object) -> None:
         if kind is not None:
             for collection, block in reversed(self._made):
-                collection.remove(block)
+                with suppress(ReferenceError):  # with a mesh go the objects that have it
+                    collection.remove(block)
 
     def new(self, collection: Any, *arguments: Any) -> Any:
         """Make a data block with `collection.new` and remember it."""

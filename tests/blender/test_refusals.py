@@ -22,6 +22,7 @@ from drawings import (
 import addon
 from addon import api
 from addon.data import frames
+from addon.data.placing import Transaction
 
 NAN, INF = float("nan"), float("inf")
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
@@ -287,3 +288,19 @@ def test_a_stroke_that_crosses_itself_becomes_a_body_where_crossings_are_resolve
     ob = run_one(use_union=True, follow=follow)
     check_body(ob)
     assert frames.is_linked(ob) == follow
+
+
+def test_what_was_made_is_removed_where_one_goes_with_another():
+    before = fingerprint()
+
+    def fail():
+        with Transaction() as transaction:
+            first = transaction.new(bpy.data.meshes, "First")
+            ob = transaction.new(bpy.data.objects, "Body", first)
+            ob.data = transaction.new(bpy.data.meshes, "Second")  # its removal takes the object along
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    assert fingerprint() == before
+    assert not {"First", "Second"} & {mesh.name for mesh in bpy.data.meshes}
