@@ -207,10 +207,11 @@ class DrawnCut:
         context.workspace.status_text_set(told(status(self._find_ends(context)), "interface"))
 
     def _find_ends(self, context: bpy.types.Context) -> list[api.NativeError | cutsweep.CutError] | None:
-        """Find how far the ends of the line are continued, over all meshes; if none can be cut, return why."""
+        """Find how far the ends of an open line are continued, over all meshes; if none can be cut, return why."""
         preview = self._preview
-        if self.extend_ends or np.array_equal(preview.line[0], preview.line[-1]):
+        if self.extend_ends:
             return None
+        closed = np.array_equal(preview.line[0], preview.line[-1])
         region, region_data = preview.region, preview.region.data
         points, view = np.array(self._world_points(context), float), View.of(region_data)
         sweep, _ = cutline.sweep_of("VIEW", points, view)
@@ -233,7 +234,8 @@ class DrawnCut:
                 ahead = float((np.array(seen) - preview.line[-k]) @ before[k])
                 if ahead > farthest[k]:
                     ends[k], farthest[k] = np.array(seen), ahead
-        preview.ends = np.stack(ends)
+        if not closed:
+            preview.ends = np.stack(ends)
         return None if crosses else problems
 
     def _choose(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

@@ -50,6 +50,12 @@ def test_menu_entries():
         ([(-3, -2, 0), (3, -2, 0)], "Click: keep this side"),
         ([(-3, -2, 5), (3, -2, 5)], "The line crosses no selected mesh    D: draw again"),
         ([(-1, -2, -1), (1, -2, 1), (-1, -2, 1), (1, -2, -1)], "The stroke meets itself"),
+        ([(0, -2, 0), (0.5, -2, 0), (0.5, -2, 0.5), (0, -2, 0)], "Click: keep this side"),
+        (
+            [(5, -2, 0), (6, -2, 0), (6, -2, 1), (5, -2, 0)],
+            "The line crosses no selected mesh    D: draw again",
+        ),
+        ([(0, -2, 0), (0.5, -2, 0.5), (0, -2, 0.5), (0.5, -2, 0), (0, -2, 0)], "The stroke meets itself"),
     ],
 )
 def test_a_drawn_line_that_cuts_nothing_is_said_why(line, said):

@@ -124,6 +124,16 @@ def cut_drawn():
     yield 0.8
     assert not stage.window.modal_operators, "Esc did not end the drawing of a cut"
     assert len(mesh_objects()) == 1, "Esc cut all the same"
+    yield from stage.press_button("UI", "gridmesh_cut", "DRAWN")
+    x, y = stage.middle()
+    turn = np.linspace(0, 2 * np.pi, 60)
+    yield from stage.drag(
+        [(x + 90 * a, y + 90 * b) for a, b in zip(np.cos(turn), np.sin(2 * turn), strict=True)]
+    )
+    yield 0.5
+    yield from stage.picture("cut_eight")
+    yield from stage.key("ESC")
+    yield 0.5
 
 
 def across():
