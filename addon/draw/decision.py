@@ -15,9 +15,10 @@ import numpy as np
 from ..api import reason_of
 from ..bodies.outlines import Plane, area
 from ..native import native
+from ..text.messages import of_stroke
 from . import parts
 from .regions import Part, covered, inside, relation, united
-from .trace import Mirror, Trace, closed, of_stroke
+from .trace import Mirror, Trace, closed
 
 __all__ = ["Decision", "DecisionError", "Part", "Shape", "Wanted", "decide", "inside", "relation", "united"]
 

@@ -19,13 +19,13 @@ from ..live import engine, outlined
 from ..live.linework import nearest
 from ..live.outlined import OutlineError, radii
 from ..native import native
+from ..text.messages import of_stroke
 from . import shapes
 from .decision import Decision, Part, united
 from .gesture import FEWEST
 from .joining import absorb, adopt, indices, same_layer
 from .memory import Memory
 from .pencil import layer_of, renumber
-from .trace import of_stroke
 
 NOTHING = "the stroke encloses nothing"
 

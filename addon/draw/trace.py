@@ -134,8 +134,3 @@ def unpack(text: str) -> tuple[np.ndarray, np.ndarray]:
     if not np.isfinite(table).all():
         raise ValueError("it has numbers that are not finite")
     return table[:, :2].copy(), np.clip(table[:, 2], 0.0, 1.0)
-
-
-def of_stroke(text: str) -> str:
-    """What the library says of an outline, said of the stroke that was drawn."""
-    return text.replace("the other outline", "the stroke").replace("the outline", "the stroke")

@@ -38,3 +38,8 @@ def faces_counted(sizes: Iterable[int]) -> str:
     if not triangles:
         return counted(quads, "quad")
     return f"{counted(quads, 'quad')} and {counted(triangles, 'triangle')}"
+
+
+def of_stroke(text: str) -> str:
+    """What the library says of an outline, said of the stroke that was drawn."""
+    return text.replace("the other outline", "the stroke").replace("the outline", "the stroke")
