@@ -7,8 +7,9 @@ use super::disjoint::Disjoint;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 
-/// Cotangents are bounded, as of triangles whose doubled area is this share of their squared side.
-const THINNEST: f64 = 1e-12;
+/// In triangles whose doubled area is a smaller share of their squared sides, edges have the same weights. Cotangents above
+/// its inverse would be lost to rounding beside those of other triangles.
+const THINNEST: f64 = 1e-6;
 
 /// Replaces the values of the vertices `free` by harmonic ones: those with the least Dirichlet energy for the values of the
 /// others, by linear finite elements (cotangent weights). On a flat mesh what is linear at the fixed vertices is linear everywhere.
@@ -121,13 +122,14 @@ fn weighted_edges(
 ) -> Vec<(usize, u32, f64)> {
     let mut edges: Vec<(usize, u32, f64)> = Vec::new();
     for t in triangles {
+        let [p, q, o] = t.map(|v| vertices[v as usize]);
+        let doubled = (q - p).cross(o - p).length();
+        let squared = p.distance_squared(q) + q.distance_squared(o) + o.distance_squared(p);
+        let is_thin = doubled <= THINNEST * squared;
         for k in 0..3 {
             let [a, b, opposite] = [t[k], t[(k + 1) % 3], t[(k + 2) % 3]];
             let [p, q, o] = [a, b, opposite].map(|v| vertices[v as usize]);
-            let (u, v) = (p - o, q - o);
-            let doubled = u.cross(v).length();
-            let least = THINNEST * (u.length_squared() + v.length_squared());
-            let weight = if doubled.max(least) > 0.0 { u.dot(v) / doubled.max(least) } else { 0.0 };
+            let weight = if is_thin { 1.0 } else { (p - o).dot(q - o) / doubled };
             edges.extend(unknown[a as usize].map(|i| (i, b, weight)));
             edges.extend(unknown[b as usize].map(|i| (i, a, weight)));
         }
@@ -204,6 +206,23 @@ mod tests {
         harmonic(&vertices, &triangles, &inner, &mut values, 1).unwrap();
         assert!(values.iter().all(|x| (0.0..=1.0).contains(x)));
         assert!(inner.iter().any(|&v| values[v as usize] > 0.05 && values[v as usize] < 0.95));
+    }
+
+    #[test]
+    fn triangles_without_area_are_no_obstacle() {
+        let (mut vertices, triangles, inner) = square(6);
+        let at = |i: usize, j: usize| i * 7 + j;
+        vertices[at(2, 2)] = vertices[at(2, 3)];
+        vertices[at(4, 4)] = vertices[at(5, 4)].lerp(vertices[at(4, 3)], 0.5); // on an edge of another triangle
+        for k in 1..6 {
+            vertices[at(k, 5)] = vertices[at(3, 5)] + DVec3::X * (k as f64 * 1e-9);
+        }
+        let mut values: Vec<f64> = (0..vertices.len()).map(|k| (k / 7) as f64).collect();
+        inner.iter().for_each(|&v| values[v as usize] = -99.0);
+        harmonic(&vertices, &triangles, &inner, &mut values, 1).unwrap();
+        assert!(values.iter().all(|x| (0.0..=6.0).contains(x)));
+        let within = [at(1, 1), at(3, 2), at(5, 3)].map(|v| values[v]);
+        assert!(within[0] + 0.5 < within[1] && within[1] + 0.5 < within[2], "{within:?}");
     }
 
     #[test]

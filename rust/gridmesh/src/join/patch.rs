@@ -193,6 +193,9 @@ impl Place<'_> {
             if places.is_empty() || far || hopeless {
                 break;
             }
+            if crease && std::mem::take(&mut given.merges) {
+                continue;
+            }
             for v in given.border..given.positions.len() {
                 let (p, size) = (given.positions[v], given.sizes[v]);
                 let distance = places.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min) / size;

@@ -21,6 +21,12 @@ const THIN: f64 = 0.1;
 /// Cosine of the angle by which a triangle may turn.
 const TURN: f64 = 0.3;
 
+/// Knots nearer to each other than this, in wanted lengths, may become one.
+const CLOSE: f64 = 0.3;
+
+/// The same for lines: what lies between them would be triangles with hardly an angle.
+const SAME: f64 = 0.1;
+
 /// A mesh whose connections change.
 #[derive(Clone, Debug)]
 pub(crate) struct Local {
@@ -39,8 +45,10 @@ pub(crate) struct Local {
     pub taken: FxHashSet<[u32; 2]>,
     /// Edges that stay, but for being split and collapsed along their line; lower vertex first.
     pub hard: BTreeSet<[u32; 2]>,
-    /// Vertices inside that stay where they are.
+    /// Vertices that stay where they are, unless one takes up another.
     pub knots: BTreeSet<u32>,
+    /// Whether knots and lines that are close to each other may become one.
+    pub merges: bool,
     at: Vec<Fan>,
 }
 
@@ -72,6 +80,7 @@ impl Local {
             taken: FxHashSet::default(),
             hard: BTreeSet::new(),
             knots: BTreeSet::new(),
+            merges: true,
             positions,
             triangles,
             sides,
@@ -168,12 +177,28 @@ impl Local {
         }
     }
 
-    /// Whether a vertex may be moved into another one: it is inside, and on a hard line only along that.
+    /// Whether a vertex may be moved into another one: it is inside, and on a hard line only along that, or into a line that is
+    /// as good as the same. A knot may only be moved into one that is close, or, where it is the end of a line, into any line
+    /// that is.
     fn may_move(&self, a: u32, b: u32) -> bool {
-        if (a as usize) < self.border || self.knots.contains(&a) {
+        let e = edge(a, b);
+        if (a as usize) < self.border {
             return false;
         }
-        self.is_soft(a) || self.hard.contains(&edge(a, b))
+        if self.merges && self.length(e) < SAME && self.lines_at(b) > 0 {
+            return true;
+        }
+        if self.knots.contains(&a) {
+            let along = self.hard.contains(&e) && self.knots.contains(&b);
+            let close = self.merges && self.length(e) < CLOSE;
+            return close && (along || self.lines_at(a) == 1 && self.lines_at(b) > 0);
+        }
+        self.is_soft(a) || self.hard.contains(&e)
+    }
+
+    /// How many hard edges end at a vertex.
+    fn lines_at(&self, v: u32) -> usize {
+        self.neighbours(v).into_iter().filter(|&u| self.hard.contains(&edge(u, v))).count()
     }
 
     /// Whether no hard edge ends at a vertex.
@@ -190,6 +215,7 @@ impl Local {
         if beside.len() != 2 {
             return false;
         }
+        let (is_knot, is_same) = (self.knots.contains(&a), self.merges && self.length([a, b]) < SAME);
         let (near, other) = (self.neighbours(a), self.neighbours(b));
         let common = near.iter().filter(|v| other.contains(v)).count();
         if common != 2 || near.len() < 4 && self.fan(a).len() != 3 {
@@ -204,10 +230,14 @@ impl Local {
             {
                 return false;
             }
-            if !other.contains(&v) && self.length(edge(b, v)) > longest {
+            if !other.contains(&v) && self.length(edge(b, v)) > longest && !is_same {
                 return false;
             }
-            if self.hard.contains(&edge(a, v)) && other.contains(&v) {
+            // Two lines do not become one, but for one that ends there, or is as good as the same.
+            let is_line = other.contains(&v) && self.hard.contains(&edge(a, v));
+            let are_two = !is_knot || self.hard.contains(&edge(b, v)) && self.lines_at(a) > 1;
+            let is_thin = || self.merges && quality([a, b, v].map(|v| self.positions[v as usize])) < THIN;
+            if is_line && are_two && !is_same && !is_thin() {
                 return false;
             }
         }
@@ -237,6 +267,9 @@ impl Local {
             if self.hard.remove(&edge(a, v)) && v != b {
                 self.hard.insert(edge(b, v));
             }
+        }
+        if self.knots.remove(&a) {
+            self.knots.insert(b);
         }
         true
     }
@@ -311,9 +344,9 @@ impl Local {
         let knots = self.knots.iter().map(|&v| name[v as usize]).collect();
         let (positions, sizes) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.sizes));
         let (wanted, taken) = (std::mem::take(&mut self.wanted), std::mem::take(&mut self.taken));
-        let border = self.border;
-        *self =
-            Local { sizes, wanted, taken, hard, knots, ..Local::new(positions, triangles, sides, border) };
+        let (border, merges) = (self.border, self.merges);
+        let bare = Local::new(positions, triangles, sides, border);
+        *self = Local { sizes, wanted, taken, hard, knots, merges, ..bare };
     }
 }
 

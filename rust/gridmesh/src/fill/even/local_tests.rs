@@ -77,3 +77,51 @@ fn hard_lines_are_split_and_collapsed_along_themselves() {
     assert!(local.hard.iter().flatten().all(|&v| local.positions[v as usize].y == 2.0));
     assert!(is_disk(&local));
 }
+
+/// A sheet with the vertices at the given places moved.
+fn moved(n: u32, places: &[([f64; 2], [f64; 2])]) -> (Local, Vec<u32>) {
+    let mut local = sheet(n);
+    let found = |&([x, y], _): &([f64; 2], _)| {
+        local.positions.iter().position(|p| *p == DVec3::new(x, y, 0.0)).unwrap()
+    };
+    let which = places.iter().map(found).collect::<Vec<_>>();
+    for (&v, (_, [x, y])) in which.iter().zip(places) {
+        local.positions[v] = DVec3::new(*x, *y, 0.0);
+    }
+    (local, which.into_iter().map(|v| v as u32).collect())
+}
+
+#[test]
+fn knots_become_one_where_they_are_close_along_a_line() {
+    for (apart, merges, may) in [(0.25, true, true), (0.25, false, false), (0.5, true, false)] {
+        let places = [([2.0, 2.0], [2.0, 2.0]), ([3.0, 2.0], [2.0 + apart, 2.0]), ([3.0, 3.0], [3.0, 3.0])];
+        let (mut local, v) = moved(5, &places);
+        local.merges = merges;
+        local.sizes.fill(1.0);
+        local.hard.extend([edge(v[0], v[1]), edge(v[1], v[2])]);
+        local.knots.extend([v[0], v[1]]);
+        assert_eq!(local.collapse(v[1], v[0], 9.0), may, "{apart} {merges}");
+        if may {
+            assert!(local.hard.contains(&edge(v[0], v[2])) && !local.knots.contains(&v[1]));
+            assert!(is_disk(&local));
+        }
+    }
+}
+
+#[test]
+fn lines_that_are_as_good_as_the_same_become_one() {
+    for (apart, may) in [(0.05, true), (0.6, false)] {
+        // Two ways from one vertex to another one, around one triangle on each side.
+        let places = [([2.0, 2.0], [2.0, 2.0]), ([3.0, 3.0], [3.0 - apart / 2.0, 2.0 + apart])];
+        let (mut local, v) = moved(6, &places);
+        let at = |x, y| local.positions.iter().position(|p| *p == DVec3::new(x, y, 0.0)).unwrap() as u32;
+        let (side, end) = (at(3.0, 2.0), at(4.0, 3.0));
+        local.sizes.fill(1.0);
+        local.hard.extend([edge(v[0], side), edge(side, end), edge(v[0], v[1]), edge(v[1], end)]);
+        assert_eq!(local.collapse(v[1], side, 9.0), may, "{apart}");
+        if may {
+            assert_eq!(local.hard.len(), 2);
+            assert!(is_disk(&local));
+        }
+    }
+}

@@ -172,7 +172,15 @@ pub(crate) fn relax(local: &mut Local, ground: Option<&Ground>) {
         let along = near.iter().copied().filter(|&u| local.hard.contains(&edge(u, v))).collect::<Vec<_>>();
         let lines = ground.and_then(|ground| ground.lines.as_ref());
         let moved = match (along.as_slice(), lines) {
-            ([a, b], Some(lines)) => lines.nearest(0.5 * p + 0.25 * (at(*a) + at(*b))),
+            ([a, b], Some(lines)) => {
+                let there = lines.nearest(0.5 * p + 0.25 * (at(*a) + at(*b)));
+                // A short closed line would shrink to a point of it.
+                let apart = |p: DVec3| p.distance(at(*a)).min(p.distance(at(*b)));
+                if apart(there) < apart(p) {
+                    continue;
+                }
+                there
+            }
             ([], _) => {
                 let mean = near.iter().map(|&u| at(u)).sum::<DVec3>() / near.len() as f64;
                 let normal = local
@@ -201,4 +209,33 @@ fn stays_sound(local: &Local, v: u32, p: DVec3) -> bool {
         let moved = own.map(|u| if u == v { p } else { local.positions[u as usize] });
         local.is_better(local.corners(t), moved)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fill::even::local::tests::sheet;
+
+    #[test]
+    fn short_closed_lines_do_not_shrink_to_a_point() {
+        let mut local = sheet(9);
+        for p in &mut local.positions {
+            p.y = 0.2 * (p.y - 3.0);
+        }
+        let at = |[x, y]: [f64; 2]| {
+            let place = DVec3::new(x, 0.2 * (y - 3.0), 0.0);
+            local.positions.iter().position(|p| *p == place).unwrap() as u32
+        };
+        let line = [[3.0, 3.0], [4.0, 3.0], [5.0, 3.0], [6.0, 4.0], [5.0, 4.0], [4.0, 4.0]].map(at);
+        local.hard.extend((0..6).map(|k| edge(line[k], line[(k + 1) % 6])));
+        local.knots.insert(line[0]);
+        local.sizes.fill(3.0);
+        local.merges = false;
+        let ground = Ground::of(&local);
+        remesh(&mut local, &ground, Progress::NONE).unwrap();
+        let ends = local.hard.iter().map(|e| e.map(|v| local.positions[v as usize])).collect::<Vec<_>>();
+        assert!(ends.len() >= 3);
+        let shortest = ends.iter().map(|[a, b]| a.distance(*b)).fold(f64::INFINITY, f64::min);
+        assert!(shortest > 0.1, "{ends:?}");
+    }
 }
