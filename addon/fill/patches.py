@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,9 @@ from ..native import native
 
 NO_PATCH = "no triangles between these loops make one patch; subdivide the smallest, or join fewer at once"
 """Said of three loops or more."""
+
+APART = "some of the loops look away from each other, as both ends of a pipe do, and one patch would meet itself; choose Pairs under Loops"
+"""Why one patch is refused that would have to turn round."""
 
 MEETS = "a tube between two of the loops would meet the mesh or itself; select these two alone to join them all the same"
 """Said of one of several pairs of loops."""
@@ -190,7 +194,14 @@ def fill_loops(
     Ctrl-C asked to stop.
     """
     indices = [np.asarray(loop, np.int32) for loop in loops]
-    return _made(native("fill_hole").fill_hole, at, [indices], progress, options, no_patch=NO_PATCH)
+    return _made(
+        native("fill_hole").fill_hole,
+        at,
+        [indices],
+        progress,
+        options,
+        refusals={"no_patch": NO_PATCH, "fill_intersects": APART},
+    )
 
 
 def _made(
@@ -200,11 +211,11 @@ def _made(
     progress: Progress | None,
     options: dict[str, Any],
     *,
-    no_patch: str = "",
+    refusals: Mapping[str, str] = MappingProxyType({}),
 ) -> Filled | str:
     """The patch that a function of the module makes, or the reason why there is none.
 
-    no_patch : said where the module finds none; empty: what the module says.
+    refusals : what is said in place of the module's own words, by the kind of its error.
     """
     gridmesh = native()
     try:
@@ -214,7 +225,7 @@ def _made(
             )
             return _filled(gridmesh, made, at, progress)
     except gridmesh.GridMeshError as error:
-        return no_patch if no_patch and error.kind == "no_patch" else str(error)
+        return refusals.get(error.kind, str(error))
 
 
 def _filled(gridmesh: Any, fill: Any, at: Snapshot, progress: Progress | None) -> Filled | str:

@@ -526,6 +526,11 @@ _BRIDGES = {
     "{} of the loops pass through vertex {}; split it, or choose loops that are apart": (
         "{0} der Schleifen gehen durch Punkt {1}; ihn trennen oder Schleifen wählen, die getrennt sind"
     ),
+    "some of the loops look away from each other, as both ends of a pipe do, and one patch would meet itself; choose Pairs "
+    "under Loops": (
+        "einige der Schleifen sehen voneinander weg, wie beide Enden eines Rohrs, und ein Flicken träfe sich selbst; unter "
+        "Schleifen Paare wählen"
+    ),
     "no triangles between these loops make one patch; subdivide the smallest, or join fewer at once": (
         "keine Dreiecke zwischen diesen Schleifen ergeben einen Flicken; die kleinste unterteilen, oder weniger auf einmal verbinden"
     ),
@@ -844,6 +849,38 @@ _LIBRARY = {
     ),
     "the linear solve of the {} failed: {}": "das Gleichungssystem ({0}) war nicht lösbar: {1}",
     "cancelled": "abgebrochen",
+    "the {} names vertex {}, but no vertices were given; give those of the mesh": (
+        "{0} nennt Punkt {1}, aber es wurden keine Punkte gegeben; die des Meshs geben"
+    ),
+    "face {} was chosen, but no triangles were given; give those of the mesh": (
+        "Fläche {0} wurde gewählt, aber es wurden keine Dreiecke gegeben; die des Meshs geben"
+    ),
+    "face {} was chosen; allowed: 0 to {}, one of the {} triangles given": (
+        "Fläche {0} wurde gewählt; erlaubt: 0 bis {1}, eines der {2} gegebenen Dreiecke"
+    ),
+    "loop {} has {} vertices; at least 3 are needed, name all vertices around the hole in order": (
+        "Schleife {0} hat {1} Punkte; mindestens 3 sind nötig, alle Punkte um das Loch der Reihe nach nennen"
+    ),
+    "the loop has {} vertices; at least 3 are needed, name all vertices around the hole in order": (
+        "die Schleife hat {0} Punkte; mindestens 3 sind nötig, alle Punkte um das Loch der Reihe nach nennen"
+    ),
+    "loops {} and {} both pass through vertex {}; split it, or choose loops that are apart": (
+        "Schleifen {0} und {1} gehen beide durch Punkt {2}; ihn teilen, oder getrennte Schleifen wählen"
+    ),
+    "loops {} and {} touch at vertices {} and {}, near ({}, {}, {}): no face fits between them there; merge the vertices "
+    "by distance, or move one of the loops away": (
+        "Schleifen {0} und {1} berühren sich an den Punkten {2} und {3}, bei ({4}, {5}, {6}): dort passt keine Fläche zwischen "
+        "sie; die Punkte nach Abstand zusammenfügen, oder eine der Schleifen wegrücken"
+    ),
+    "loops {} and {}, around vertices {} and {}, look away from each other, as both ends of a pipe do: one patch between "
+    "all the loops would meet itself; join them in pairs, or choose loops that face each other": (
+        "Schleifen {0} und {1}, um die Punkte {2} und {3}, sehen voneinander weg, wie beide Enden eines Rohrs: ein Flicken "
+        "zwischen allen Schleifen träfe sich selbst; sie paarweise verbinden, oder Schleifen wählen, die einander ansehen"
+    ),
+    "two loops are not two": "zwei Schleifen sind nicht zwei",
+    "no faces were chosen; choose one connected region": (
+        "keine Flächen wurden gewählt; ein zusammenhängendes Gebiet wählen"
+    ),
     "the {} names vertex {}; allowed: 0 to {}, one of the {} vertices given": (
         "{0} nennt Punkt {1}; erlaubt: 0 bis {2}, einer der {3} gegebenen Punkte"
     ),

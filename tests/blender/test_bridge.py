@@ -640,12 +640,44 @@ def test_how_loops_are_joined_can_be_chosen(capfd):
     assert "Rows and Twist" not in (told := capfd.readouterr().out)
     assert "Joined 2 pairs of loops by 5 rows" in told
     assert is_closed_but_for(ob, 80)
-    ob = whole_pipes(*BESIDE)
-    choose_rims(ob)
+    ob, loops = star((20, 20, 20, 20))
+    choose(ob, loops)
     bridge(connect="ONE")
     leave()
     assert "Joined 4 loops: " in capfd.readouterr().out
-    assert is_closed_but_for(ob, 0)
+    assert is_closed_but_for(ob, 80)
+
+
+@pytest.mark.parametrize("pipes_of", [BESIDE, BEHIND])
+def test_one_patch_that_would_have_to_turn_round_is_refused(pipes_of):
+    ob = whole_pipes(*pipes_of)
+    before = vertices(ob.data).tobytes(), faces_of(ob.data)
+    choose_rims(ob)
+    with pytest.raises(RuntimeError, match=r"look away from each other.*choose Pairs under Loops"):
+        bpy.ops.mesh.gridmesh_bridge(connect="ONE")
+    leave()
+    assert (vertices(ob.data).tobytes(), faces_of(ob.data)) == before
+
+
+@pytest.mark.parametrize("cells", ["TRIANGLES", "QUADS"])
+def test_rings_that_lie_on_each_other_are_refused(cells):
+    """A loose ring and its copy in place; the tube between them had no area."""
+    mesh = bpy.data.meshes.new("rings")
+    turns = 2 * np.pi * np.arange(16) / 16
+    points = np.c_[np.cos(turns), np.sin(turns), 0 * turns]
+    edges = [(k, (k + 1) % 16) for k in range(16)]
+    mesh.from_pydata(
+        np.vstack([points, points]).tolist(), [*edges, *((a + 16, b + 16) for a, b in edges)], []
+    )
+    ob = bpy.data.objects.new("rings", mesh)
+    bpy.context.scene.collection.objects.link(ob)
+    activate(ob)
+    bm = edit(ob)
+    select(ob, list(bm.edges))
+    with pytest.raises(RuntimeError, match=r"touch at vertices .* merge the vertices by distance"):
+        bpy.ops.mesh.gridmesh_bridge(cells=cells)
+    leave()
+    assert (len(mesh.vertices), len(mesh.edges), len(mesh.polygons)) == (32, 32, 0)
 
 
 def test_a_loop_without_a_partner_is_told(capfd):

@@ -1,6 +1,7 @@
 """`bridge`: what is guaranteed of a tube between two loops."""
 
 import pickle
+import re
 import sys
 from pathlib import Path
 
@@ -329,6 +330,70 @@ def test_what_is_not_fit_is_refused(change, kind):
     with pytest.raises(gridmesh.GridMeshError) as caught:
         gridmesh.bridge(np.vstack([circle(12), circle(12, z=1.0)]), NO_FACES, *loops, **arguments)
     assert caught.value.kind in (kind, "invalid_option")
+
+
+def touching_rings(kind, scale):
+    """Two rings that lie on each other, all along or in places, far from the origin too."""
+    one = circle(24)
+    other = {
+        "the same": one,
+        "rounded": one.astype(np.float32).astype(float),
+        "every second vertex": circle(12),
+        "one vertex": one + [2.0, 0, 0],
+        "edges that cross": one + [0.3, 0, 0],
+        "a stretch": np.where(one[:, :1] > 0.1, one, one + [0, 0, 1.0]),
+    }[kind]
+    return scale * np.vstack([one, other]), np.arange(24), 24 + np.arange(len(other))
+
+
+@pytest.mark.parametrize("cells", ["triangles", "quads"])
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize(
+    "kind", ["the same", "rounded", "every second vertex", "one vertex", "edges that cross", "a stretch"]
+)
+def test_loops_that_touch_are_refused(kind, scale, cells):
+    """Between them were faces without area."""
+    vertices, one, two = touching_rings(kind, scale)
+    far = len(vertices) + np.arange(12)
+    vertices = np.vstack([vertices, scale * circle(12, z=3.0)])
+    calls = (
+        lambda: gridmesh.bridge(vertices, NO_FACES, one, two, cells=cells),
+        lambda: gridmesh.bridge(vertices, NO_FACES, two[::-1], one, cells=cells),
+        lambda: gridmesh.fill_hole(vertices, NO_FACES, [far, one, two], cells=cells),
+    )
+    for call in calls:
+        with pytest.raises(
+            gridmesh.GridMeshError, match=r"touch at vertices .* merge the vertices by dist"
+        ) as caught:
+            call()
+        assert caught.value.kind == "loops_touch"
+    named = [
+        int(number) for number in re.search("vertices ([0-9]+) and ([0-9]+)", str(caught.value)).groups()
+    ]
+    assert np.isin(named, one).any()
+    assert np.isin(named, two).any()
+
+
+def test_of_pairs_those_that_touch_are_refused():
+    vertices, one, two = touching_rings("the same", 1.0)
+    far = [len(vertices) + np.arange(12), len(vertices) + 12 + np.arange(12)]
+    vertices = np.vstack([vertices, circle(12, z=3.0), circle(12, z=4.0)])
+    pairs = gridmesh.bridge_pairs(vertices, NO_FACES, [one, two, *far])
+    assert [(a, b) for a, b, _ in pairs] == [(0, 1), (2, 3)]
+    assert pairs[0][2].kind == "loops_touch"
+    assert len(pairs[1][2].triangles) > 0
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("gap", [0.3, 0.03, 0.001])
+def test_loops_near_each_other_are_joined(gap, scale):
+    vertices = scale * np.vstack([circle(24), circle(24, z=gap)])
+    fill = gridmesh.bridge(vertices, NO_FACES, np.arange(24), 24 + np.arange(24))
+    corners = np.vstack([vertices, fill.vertices])[fill.triangles]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    assert areas.sum() == pytest.approx(2 * np.pi * gap * scale**2, rel=0.02)
+    assert areas.min() > 0.1 * areas.max()
+    assert fill.report["self_intersections"] == 0
 
 
 def test_cancelling():

@@ -229,10 +229,52 @@ def test_a_patch_of_linked_loops_that_meets_itself_is_told_and_refused_if_strict
     assert caught.value.kind == "fill_intersects"
 
 
+def pipes_along_z(n, *places, tilt=0.0, turned=False):
+    """Open pipes of radius 1 and length 2, each about its place and tilted more than the one before: vertices, triangles, loops."""
+    t = 2 * np.pi * np.arange(n) / n
+    vertices, triangles, loops = [], [], []
+    for k, place in enumerate(places):
+        first = 3 * n * k
+        rings = np.vstack([np.c_[np.cos(t), np.sin(t), np.full(n, z)] for z in (-1.0, 0.0, 1.0)])
+        c, s = np.cos(k * tilt), np.sin(k * tilt)
+        vertices.append(rings @ [[c, 0, -s], [0, 1, 0], [s, 0, c]] + place)
+        i, j = np.arange(n), (np.arange(n) + 1) % n
+        for row in (first, first + n):
+            triangles += [np.c_[i, j, i + n] + row, np.c_[j, j + n, i + n] + row]
+        loops += [first + i, first + 2 * n + i]
+    faces = np.concatenate(triangles)
+    return np.concatenate(vertices), faces[:, ::-1] if turned else faces, loops
+
+
+@pytest.mark.parametrize("cells", ["triangles", "quads"])
+@pytest.mark.parametrize("smooth", ["flat", "tangent"])
+@pytest.mark.parametrize(
+    ("places", "options"),
+    [
+        (([0, 0, 0], [3, 0, 0]), {}),
+        (([0, 0, 0], [8, 0, 0]), {}),
+        (([0, 0, 0], [0, 0, 4]), {}),
+        (([0, 0, 0], [5, 0, 1]), {"tilt": 1.2}),
+        (([0, 0, 0], [3, 0, 0]), {"turned": True}),
+    ],
+)
+def test_one_patch_between_both_ends_of_pipes_is_refused_and_pairs_are_named(places, options, smooth, cells):
+    """It folded and met itself some hundred times, after seconds."""
+    vertices, triangles, loops = pipes_along_z(24, *places, **options)
+    assert gridmesh.look_apart(vertices, triangles, loops)
+    with pytest.raises(
+        gridmesh.GridMeshError, match=r"look away from each other.* join them in pairs"
+    ) as caught:
+        gridmesh.fill_hole(vertices, triangles, loops, smooth=smooth, cells=cells)
+    assert caught.value.kind == "fill_intersects"
+
+
 def test_a_surface_that_would_grow_without_end_is_no_larger_than_a_film():
     """Triangles beside these loops of 8, 16 and 177 vertices cross each other: every smoother surface was larger (46,403 triangles)."""
     given = json.loads((Path(__file__).parent / "loops_that_cross.json").read_text())
     vertices, faces, loops = (given[name] for name in ("vertices", "triangles", "loops"))
+    # The second and the third look away from each other, which alone would be refused.
+    faces = [face for face in faces if not set(face) & set(loops[1])]
     fill, film = (gridmesh.fill_hole(vertices, faces, loops, smooth=smooth) for smooth in ("tangent", "flat"))
     check(np.array(vertices), np.array(faces), loops, fill)
     assert len(fill.triangles) < 1.5 * len(film.triangles)

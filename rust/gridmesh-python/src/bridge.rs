@@ -53,7 +53,7 @@ use crate::watch::Watch;
 /// ------
 /// GridMeshError
 ///     If a loop, the mesh near it or an option is not fit (see `GridMeshError.kind`; "figure_eight" for loops that
-///     share a vertex), or when cancelled.
+///     share a vertex, "loops_touch" for loops that lie on each other, all along or in places), or when cancelled.
 /// TypeError
 ///     If an argument has a type that is not allowed.
 ///

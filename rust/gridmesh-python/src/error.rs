@@ -27,7 +27,7 @@ create_exception!(
          \"invalid_type\" (only inside the list of `map_sketches`; elsewhere a TypeError is raised),\n    \
          \"too_coarse\", \"too_large\", \"no_patch\", \"inverted\", \"solver\", \"cancelled\"; of fills\n    \
          \"index_out_of_range\", \"repeated_vertex\", \"figure_eight\", \"branching\", \"open_chain\", \"zero_length_edge\",\n    \
-         \"self_touching\", \"faces_on_both_sides\", \"non_manifold\", \"shared_edge\",\n    \
+         \"self_touching\", \"loops_touch\", \"faces_on_both_sides\", \"non_manifold\", \"shared_edge\",\n    \
          \"fill_intersects\", \"not_a_disk\"; of cuts\n    \
          \"invalid_face\", \"stroke_too_short\", \"stroke_misses\", \"slice_too_thin\", \"behind_eye\",\n    \
          \"cut_failed\", \"still_joined\"; of joins \"not_closed\", \"join_failed\", \"join_intersects\";\n    \

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use gridmesh::error::Error;
 use gridmesh::fill::FillOptions;
 use gridmesh::options::CellShape;
 use pyo3::prelude::*;
-use pyo3::types::{PyList, PyTuple};
+use pyo3::types::{PyInt, PyList, PyTuple};
 
 use crate::error::{from_core, is_of_kind};
 use crate::filled::{Fill, WORDS};
@@ -101,7 +102,7 @@ pub fn fill_hole(
 ) -> PyResult<Fill> {
     let mesh = Mesh::read(vertices, triangles)?;
     let loops = loops_of(r#loop)?;
-    let mut options = hard(options(smooth, strict, polygons)?, sharp, creases)?;
+    let mut options = hard(options(smooth, strict, polygons)?, sharp, creases, mesh.positions()?.len())?;
     options.cells = shape(cells)?;
     let (positions, faces) = (mesh.positions()?.into_owned(), mesh.faces()?.into_owned());
     let fill = Watch::new(progress)?
@@ -113,18 +114,29 @@ pub fn fill_hole(
 fn loops_of(value: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<u32>>> {
     let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
     if !is_list || !value.get_item(0).is_ok_and(|first| first.len().is_ok()) {
-        return Ok(vec![indices(&loop_argument("loop", value))?]);
+        let allowed = "a (k,) array of whole numbers, or a list of several";
+        return Ok(vec![indices(&Argument { name: "loop", value, allowed })?]);
     }
     read_loops(value)
 }
 
 /// Reads several loops.
 pub(crate) fn read_loops(value: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<u32>>> {
-    let mut loops = Vec::new();
-    for (k, item) in value.try_iter()?.enumerate() {
-        loops.push(indices(&loop_argument(&format!("loop {k}"), &item?))?);
+    let allowed = "a sequence of (k,) arrays of whole numbers, one for each loop";
+    let items = each(&Argument { name: "loops", value, allowed })?;
+    let read = |(k, item)| indices(&loop_argument(&format!("loop {k}"), item));
+    items.iter().enumerate().map(read).collect()
+}
+
+/// The items of a sequence of loops; one loop is none.
+fn each<'py>(loops: &Argument<'_, 'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let items = loops.value.try_iter().map_err(|_| loops.wrong_type())?.collect::<PyResult<Vec<_>>>()?;
+    let number =
+        items.iter().position(|item| item.is_instance_of::<PyInt>() || item.extract::<f64>().is_ok());
+    match number {
+        Some(k) => Err(loops.wrong_shape(&format!("has a single number at place {k}"))),
+        None => Ok(items),
     }
-    Ok(loops)
 }
 
 /// Tell whether a loop is the outer border of a sheet that is flat there, and no hole in one and no end of a pipe: a patch would
@@ -227,7 +239,7 @@ pub fn fill_holes(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Py<PyList>> {
     let mesh = Mesh::read(vertices, triangles)?;
-    let mut options = hard(options(smooth, strict, polygons)?, sharp, creases)?;
+    let mut options = hard(options(smooth, strict, polygons)?, sharp, creases, mesh.positions()?.len())?;
     options.cells = shape(cells)?;
     if let Some(value) = max_edges {
         let it = Argument { name: "max_edges", value, allowed: "a whole number not below 0, or None" };
@@ -240,9 +252,9 @@ pub fn fill_holes(
             let allowed = "a sequence of (k,) arrays of whole numbers, or None";
             let all = Argument { name: "loops", value, allowed };
             let mut read = vec![];
-            for item in value.try_iter().map_err(|_| all.wrong_type())? {
+            for item in each(&all)? {
                 let name = format!("loop {}", read.len());
-                match indices(&loop_argument(&name, &item?)) {
+                match indices(&loop_argument(&name, &item)) {
                     Ok(vertices) => read.push(vertices),
                     // Its own error takes the place of that of the empty loop.
                     Err(err) if is_of_kind(py, &err, "index_out_of_range") => {
@@ -302,6 +314,7 @@ fn hard(
     mut options: FillOptions,
     sharp: Option<&Bound<'_, PyAny>>,
     creases: Option<&Bound<'_, PyAny>>,
+    vertices: usize,
 ) -> PyResult<FillOptions> {
     if let Some(value) = sharp {
         let allowed = "an angle from 0 to pi, in radians, or None";
@@ -310,6 +323,11 @@ fn hard(
     if let Some(value) = creases {
         options.creases =
             pairs(&Argument { name: "creases", value, allowed: "an (e, 2) array of whole numbers" })?;
+        if let Some(&v) = options.creases.iter().flatten().find(|&&v| v as usize >= vertices) {
+            let what = "list of creases".into();
+            let found = Error::IndexOutOfRange { what, index: v as i32, vertices };
+            return Err(from_core(value.py(), &found));
+        }
     }
     Ok(options)
 }

@@ -7,9 +7,10 @@ use numpy::{
 use pyo3::exceptions::{PyOverflowError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyBool, PyString};
+use pyo3::types::{PyBool, PyList, PyString, PyTuple};
 
 use crate::error::error;
+use crate::reports::counted;
 
 /// A named argument, for messages.
 #[derive(Clone, Copy)]
@@ -27,6 +28,23 @@ impl<'py> Argument<'_, 'py> {
     pub fn wrong_type(&self) -> PyErr {
         let found = self.value.get_type().name().map_or_else(|_| "unknown".into(), |name| name.to_string());
         PyTypeError::new_err(format!("{} is of type {found}; allowed: {}", self.name, self.allowed))
+    }
+
+    /// A `TypeError` that names what numpy makes of a value; `advice` says what to do.
+    pub fn wrong_dtype(&self, array: &Bound<'_, PyUntypedArray>, advice: &str) -> PyErr {
+        let value = self.value;
+        let read = if value.is_instance_of::<PyUntypedArray>() {
+            format!(", of dtype {}", array.dtype())
+        } else if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+            format!(", which numpy reads as {}", array.dtype())
+        } else {
+            return self.wrong_type();
+        };
+        let found = value.get_type().name().map_or_else(|_| "unknown".into(), |name| name.to_string());
+        PyTypeError::new_err(format!(
+            "{} is of type {found}{read}; allowed: {}{advice}",
+            self.name, self.allowed
+        ))
     }
 
     /// A `GridMeshError` of kind `invalid_option` that shows the value and what is allowed.
@@ -49,6 +67,7 @@ impl<'py> Argument<'_, 'py> {
         if self.value.is_instance_of::<PyBool>() || self.value.is_instance_of::<PyString>() {
             return Err(self.wrong_type());
         }
+        self.refuse_masked()?;
         match self.value.extract::<f64>() {
             Ok(number) => Ok(number),
             Err(err) if err.is_instance_of::<PyOverflowError>(self.value.py()) => Err(self.wrong_value()),
@@ -125,18 +144,52 @@ impl<'py> Argument<'_, 'py> {
     pub fn array(&self) -> PyResult<Bound<'py, PyUntypedArray>> {
         static AS_ARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
         let py = self.value.py();
+        self.refuse_masked()?;
         let as_array = AS_ARRAY.import(py, "numpy", "asarray")?;
         let array = as_array.call1((self.value,)).map_err(|err| {
-            if err.is_instance_of::<pyo3::exceptions::PyValueError>(py) {
-                self.wrong_shape(&format!("is not an array ({})", err.value(py)))
+            if !err.is_instance_of::<pyo3::exceptions::PyValueError>(py) {
+                return err;
+            }
+            let reason = err.value(py).to_string();
+            if reason.contains("inhomogeneous") {
+                self.wrong_shape("has rows of different lengths")
             } else {
-                err
+                self.wrong_shape(&format!("is not an array ({reason})"))
             }
         })?;
         let array = array.cast_into::<PyUntypedArray>()?;
         match array.dtype().kind() {
             b'f' | b'i' | b'u' => Ok(array),
-            _ => Err(self.wrong_type()),
+            _ => Err(self.wrong_dtype(&array, "")),
         }
+    }
+
+    /// Refuses an array, or a list of arrays, with masked values: numpy would go on with what lies under the mask.
+    pub fn refuse_masked(&self) -> PyResult<()> {
+        if self.value.is_instance_of::<PyList>() || self.value.is_instance_of::<PyTuple>() {
+            for (k, row) in self.value.try_iter()?.enumerate() {
+                self.refuse_masked_in(&row?, &format!(", row {k},"))?;
+            }
+            return Ok(());
+        }
+        self.refuse_masked_in(self.value, "")
+    }
+
+    fn refuse_masked_in(&self, value: &Bound<'py, PyAny>, place: &str) -> PyResult<()> {
+        static MASKED: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        static COUNT: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        let py = value.py();
+        if !value.is_instance(MASKED.import(py, "numpy.ma", "MaskedArray")?)? {
+            return Ok(());
+        }
+        let masked = COUNT.import(py, "numpy.ma", "count_masked")?.call1((value,))?.extract::<usize>()?;
+        if masked == 0 {
+            return Ok(());
+        }
+        let values = counted(masked, "masked value");
+        Err(PyTypeError::new_err(format!(
+            "{}{place} has {values}; allowed: {}; leave out what is masked, or fill it in with numpy.ma.filled",
+            self.name, self.allowed
+        )))
     }
 }

@@ -131,7 +131,7 @@ pub fn narrowed(it: &Argument<'_, '_>, array: &Bound<'_, PyUntypedArray>) -> PyR
         })
     };
     match (array.dtype().kind(), array.dtype().itemsize()) {
-        (b'f', _) => Err(it.wrong_type()),
+        (b'f', _) => Err(it.wrong_dtype(array, "; convert it with .astype(int)")),
         // As signed integers the greatest would be negative.
         (b'u', 8) => {
             let wide = array.extract::<PyArrayLikeDyn<'_, u64, AllowTypeChange>>()?;

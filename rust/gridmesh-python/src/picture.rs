@@ -215,6 +215,7 @@ impl Pixels {
 fn as_array<'py>(it: &Argument<'_, 'py>) -> PyResult<Bound<'py, PyUntypedArray>> {
     static AS_ARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let py = it.value.py();
+    it.refuse_masked()?;
     let array = AS_ARRAY.import(py, "numpy", "asarray")?.call1((it.value,)).map_err(|err| {
         if err.is_instance_of::<pyo3::exceptions::PyValueError>(py) {
             it.wrong_shape(&format!("is not an array ({})", err.value(py)))

@@ -1,10 +1,12 @@
 //! What can go wrong, said so that the caller can mend it.
 
 mod kind;
+mod several;
 mod words;
 
+pub use self::several::LoopError;
 pub use self::words::Needed;
-use self::words::{not_symmetric, too_coarse};
+use self::words::{no_such_face, not_a_disk, not_symmetric, out_of_range, too_coarse};
 pub(crate) use self::words::{told, told_all};
 
 /// Result with [`Error`].
@@ -164,10 +166,7 @@ pub enum Error {
         reason: &'static str,
     },
     /// A vertex number that does not exist.
-    #[error(
-        "the {what} names vertex {index}; allowed: 0 to {}, one of the {vertices} vertices given",
-        .vertices.saturating_sub(1)
-    )]
+    #[error(fmt = out_of_range)]
     IndexOutOfRange {
         /// What names it, such as `loop` or `triangle 7`.
         what: String,
@@ -275,11 +274,24 @@ pub enum Error {
         second: usize,
     },
     /// Faces that were to be replaced do not form a disk.
-    #[error("{}", not_a_disk(*.borders))]
+    #[error(fmt = not_a_disk)]
     NotADisk {
+        /// Their number.
+        faces: usize,
         /// Their number of borders.
         borders: usize,
     },
+    /// A face number that does not exist.
+    #[error(fmt = no_such_face)]
+    FaceOutOfRange {
+        /// The number given.
+        index: i32,
+        /// How many faces there are.
+        faces: usize,
+    },
+    /// Loops that cannot be filled or joined.
+    #[error(transparent)]
+    Loops(LoopError),
     /// The fill meets itself or the mesh, which was not to be.
     #[error(
         "the fill would meet itself or the mesh in {pairs} pairs of triangles, first near ({:.6}, {:.6}, \
@@ -429,8 +441,7 @@ pub enum Error {
     },
     /// A value of a picture is NaN or infinite.
     #[error(
-        "the pixel in row {row}, column {column} of the picture is NaN or infinite; all values must be \
-         finite"
+        "the pixel in row {row}, column {column} of the picture is NaN or infinite; all values must be finite"
     )]
     PixelNotFinite {
         /// Its row, from the top.
@@ -438,13 +449,4 @@ pub enum Error {
         /// Its column, from the left.
         column: usize,
     },
-}
-
-fn not_a_disk(borders: usize) -> String {
-    match borders {
-        0 => "the faces have no border; choose one connected region, not the whole of a closed mesh".into(),
-        _ => format!(
-            "the faces have {borders} borders or touch themselves; choose one connected region without holes"
-        ),
-    }
 }

@@ -52,7 +52,7 @@ use crate::progress::Progress;
 ///
 /// # Errors
 /// A loop that is not fit has its own variant for each reason: [`Error::IndexOutOfRange`],
-/// [`Error::TooFewPoints`], [`Error::RepeatedVertex`], [`Error::FigureEight`], [`Error::NotFinite`],
+/// [`Error::Loops`], [`Error::RepeatedVertex`], [`Error::FigureEight`], [`Error::NotFinite`],
 /// [`Error::ExtremeSize`], [`Error::ZeroLengthEdge`], [`Error::SelfTouching`], [`Error::FacesOnBothSides`],
 /// [`Error::NonManifold`]. [`Error::InvalidOption`]; [`Error::FillIntersects`] if `strict`; [`Error::Cancelled`].
 /// Vertices within two rings of triangles around the loop have to be finite, wherever else they need not.
@@ -81,7 +81,8 @@ pub fn fill_hole(
 ///
 /// # Errors
 /// Those of [`fill_hole`] and [`bridge()`]; [`Error::InvalidOption`] without a loop, and for `sharp` with two loops or more;
-/// [`Error::NoPatch`] if the loops have too few vertices to be joined; [`Error::FigureEight`] for a vertex of two loops.
+/// [`Error::NoPatch`] if the loops have too few vertices to be joined; [`Error::Loops`] for loops that share a vertex or touch, and for three
+/// or more of which two look away from each other (see [`look_apart`]) where the patch would meet itself.
 pub fn fill_loops(
     vertices: &[DVec3],
     triangles: &[[u32; 3]],

@@ -66,7 +66,7 @@ pub use body::inflate::{InflateOptions, inflate};
 pub use body::stitch::{flat, stitch};
 pub use body::surface::Surface;
 pub use cut::{Cut, CutOptions, cut};
-pub use error::Error;
+pub use error::{Error, LoopError};
 pub use fill::{
     BridgeOptions, Fill, FillOptions, Smooth, bridge, bridge_pairs, fill_hole, fill_holes, regrid,
 };

@@ -56,6 +56,47 @@ pub(super) fn too_coarse(
     }
 }
 
+pub(super) fn out_of_range(
+    what: &str,
+    index: &i32,
+    vertices: &usize,
+    f: &mut fmt::Formatter<'_>,
+) -> fmt::Result {
+    match vertices {
+        0 => write!(f, "the {what} names vertex {index}, but no vertices were given; give those of the mesh"),
+        _ => {
+            let last = vertices - 1;
+            write!(
+                f,
+                "the {what} names vertex {index}; allowed: 0 to {last}, one of the {vertices} vertices given"
+            )
+        }
+    }
+}
+
+pub(super) fn no_such_face(index: &i32, faces: &usize, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match faces {
+        0 => write!(f, "face {index} was chosen, but no triangles were given; give those of the mesh"),
+        _ => {
+            let last = faces - 1;
+            write!(f, "face {index} was chosen; allowed: 0 to {last}, one of the {faces} triangles given")
+        }
+    }
+}
+
+pub(super) fn not_a_disk(faces: &usize, borders: &usize, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match (faces, borders) {
+        (0, _) => write!(f, "no faces were chosen; choose one connected region"),
+        (_, 0) => {
+            write!(f, "the faces have no border; choose one connected region, not the whole of a closed mesh")
+        }
+        _ => write!(
+            f,
+            "the faces have {borders} borders or touch themselves; choose one connected region without holes"
+        ),
+    }
+}
+
 /// A number without a hundred zeros.
 pub(crate) fn told(value: f64) -> String {
     if value == 0.0 || (1e-6..1e9).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }

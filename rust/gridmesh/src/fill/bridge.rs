@@ -27,6 +27,7 @@ use crate::fill::parallel::steady;
 use crate::progress::Progress;
 
 pub use self::options::BridgeOptions;
+pub(in crate::fill) use self::pairs::apart;
 pub use self::pairs::{Pair, bridge_pairs, look_apart};
 use self::span::tube;
 
@@ -44,7 +45,7 @@ use self::span::tube;
 /// The same input gives the same output for any number of threads.
 ///
 /// # Errors
-/// Those of [`fill_hole`](super::fill_hole); [`Error::FigureEight`](crate::Error::FigureEight) for a vertex of both loops,
+/// Those of [`fill_hole`](super::fill_hole); [`Error::Loops`](crate::Error::Loops) for loops that share a vertex or touch,
 /// [`Error::InvalidOption`](crate::Error::InvalidOption) for no rows or a twist that is not finite, [`Error::TooLarge`](crate::Error::TooLarge) beyond 20 million triangles.
 ///
 /// Source: lattices on cones as in Thurston, *Shapes of polyhedra and triangulations of the sphere*, 1998; the

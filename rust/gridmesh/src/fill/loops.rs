@@ -5,3 +5,4 @@ pub mod holes;
 pub(crate) mod mesh;
 pub mod outer;
 pub(crate) mod reserve;
+pub(crate) mod touching;

@@ -52,7 +52,7 @@ pub struct Regrid {
 /// region's triangles gone.
 ///
 /// # Errors
-/// [`Error::NotADisk`] if the faces are none; [`Error::IndexOutOfRange`]; and those of
+/// [`Error::NotADisk`] if the faces are none; [`Error::FaceOutOfRange`]; and those of
 /// [`super::fill_hole`].
 ///
 /// Source: Nealen et al. 2009, section VII, names remeshing along an enclosed area and leaves open how.
@@ -79,11 +79,9 @@ fn replaced(
     options.check(triangles)?;
     let mut chosen = vec![false; triangles.len()];
     for &face in faces {
-        let mark = chosen.get_mut(face as usize).ok_or(Error::IndexOutOfRange {
-            what: "selection (of faces)".into(),
-            index: face as i32,
-            vertices: triangles.len(),
-        })?;
+        let mark = chosen
+            .get_mut(face as usize)
+            .ok_or(Error::FaceOutOfRange { index: face as i32, faces: triangles.len() })?;
         *mark = true;
     }
     let pick = |wanted: bool| -> (Vec<u32>, Vec<[u32; 3]>) {
@@ -98,11 +96,11 @@ fn replaced(
     used.sort_unstable();
     used.dedup();
     let (loop_, others) = (loops.pop(), loops.len());
-    let Some(Ok(border)) = loop_ else { return Err(Error::NotADisk { borders: others }) };
+    let Some(Ok(border)) = loop_ else { return Err(Error::NotADisk { faces: faces.len(), borders: others }) };
     // Euler: an edge of the border belongs to one triangle, all others to two.
     let edges = (3 * region.len() + border.len()) / 2;
     if others > 0 || used.len() + region.len() != edges + 1 {
-        return Err(Error::NotADisk { borders: others + 1 });
+        return Err(Error::NotADisk { faces: faces.len(), borders: others + 1 });
     }
     if let Some(&v) = used.iter().find(|&&v| !vertices[v as usize].is_finite()) {
         return Err(Error::NotFinite { what: "mesh".into(), point: v as usize });

@@ -13,12 +13,12 @@ mod rows;
 mod tour;
 
 use glam::{DVec2, DVec3};
-use rustc_hash::FxHashSet;
 
 use self::border::{Border, Several};
 use self::polygon::{Outline, triangulated};
 use self::tour::turned;
-use crate::error::{Error, Result};
+use crate::error::{Error, LoopError, Result};
+use crate::fill::bridge::apart;
 use crate::fill::even::fair::{Beyond, fair};
 use crate::fill::even::local::Local;
 use crate::fill::even::polish::polish;
@@ -28,8 +28,9 @@ use crate::fill::even::untangle::{Near, tangled, unfold, untangle};
 use crate::fill::filled::{Bridged, Fill, Shape};
 use crate::fill::job::{Job, SOUND_RINGS};
 use crate::fill::layout::unroll::Unrolling;
-use crate::fill::loops::check::{Checked, check_loop, check_near};
+use crate::fill::loops::check::{Checked, check_loops, check_near};
 use crate::fill::loops::mesh::Rim;
+use crate::fill::loops::touching::check_apart;
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::report::{FillReport, Grid};
 use crate::fill::surface::fair::Membrane;
@@ -63,25 +64,28 @@ pub(super) fn fill_several(
     options.check(triangles)?;
     let seeds = loops.concat();
     let rim = Rim::new(vertices.len(), triangles, &seeds, rings(options.smooth))?;
-    let mut checked = loops.iter().map(|l| check_loop(l, vertices, &rim)).collect::<Result<Vec<_>>>()?;
+    let mut checked = check_loops(loops, vertices, &rim)?;
+    check_apart(loops, vertices)?;
     if vertices.iter().any(|p| !p.is_finite()) {
         let wide = Rim::new(vertices.len(), triangles, &seeds, SOUND_RINGS)?;
         loops.iter().try_for_each(|l| check_near(l, vertices, &wide))?;
     }
-    let mut known = FxHashSet::default();
-    if let Some(&vertex) = seeds.iter().find(|&&v| !known.insert(v)) {
-        return Err(Error::FigureEight { vertex });
-    }
     progress.report(0.1)?;
     let spanning = tour::spanning(&checked, vertices);
     turned(&mut checked, &spanning, vertices);
-    let span = Several { vertices, triangles, rim: &rim, options, checked: &checked, spanning: &spanning };
+    let apart = apart(vertices, triangles, loops)?;
+    let span =
+        Several { vertices, triangles, rim: &rim, options, checked: &checked, spanning: &spanning, apart };
     let fill = span.fill(progress.part(0.1, 0.8))?;
     let mut fills = [Ok(fill)];
     Job { vertices, triangles, options }.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
     let [fill] = fills;
+    let fill = fill?;
+    if fill.report.self_intersections > 0 {
+        span.refuse_apart()?;
+    }
     progress.report(1.0)?;
-    fill
+    Ok(fill)
 }
 
 /// Rings of triangles around the loops that a patch looks at.
@@ -106,6 +110,13 @@ impl Several<'_> {
         }
         clock.stage("fair");
         Ok(self.finish(shape, repaired, clock))
+    }
+
+    /// Refuses loops that look away from each other, if any do.
+    fn refuse_apart(&self) -> Result<()> {
+        let Some(loops) = self.apart else { return Ok(()) };
+        let vertices = loops.map(|k| self.checked[k].vertices[0]);
+        Err(Error::Loops(LoopError::LookApart { loops, vertices }))
     }
 
     /// Whether a patch meets itself or what is around it.
@@ -140,6 +151,12 @@ impl Several<'_> {
         let (positions, triangles) = triangulated(&outline, self.spanning, progress.part(0.0, 0.35))?;
         clock.stage("surface");
         let mut local = border.local(positions.clone(), triangles.clone());
+        // Nothing smooths a surface that has to turn round and meets itself from the first.
+        if self.apart.is_some()
+            && !tangled(&local, &self.near(border, &local), progress.part(0.35, 0.35))?.is_empty()
+        {
+            self.refuse_apart()?;
+        }
         let mut is_flat = self.options.smooth == Smooth::Flat;
         if !is_flat && !self.shaped(&mut local, beyond, progress.part(0.35, 0.6))? {
             local = border.local(positions, triangles);

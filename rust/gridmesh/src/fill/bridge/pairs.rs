@@ -1,7 +1,6 @@
 //! Loops that are joined two by two.
 
 use glam::DVec3;
-use rustc_hash::FxHashSet;
 
 use super::align::Ring;
 use super::loft::ahead;
@@ -10,7 +9,7 @@ use super::span::{onward_of, tube};
 use crate::error::{Error, Result};
 use crate::fill::filled::Fill;
 use crate::fill::job::Job;
-use crate::fill::loops::check::check_loop;
+use crate::fill::loops::check::check_loops;
 use crate::fill::loops::mesh::Rim;
 use crate::fill::parallel::steady;
 use crate::progress::Progress;
@@ -44,10 +43,22 @@ struct End {
 /// # Errors
 /// Those of [`bridge()`](super::bridge) for a loop.
 pub fn look_apart(vertices: &[DVec3], triangles: &[[u32; 3]], loops: &[Vec<u32>]) -> Result<bool> {
+    Ok(apart(vertices, triangles, loops)?.is_some())
+}
+
+/// The first two of some loops that look away from each other.
+///
+/// # Errors
+/// Those of [`bridge()`](super::bridge) for a loop.
+pub(in crate::fill) fn apart(
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+    loops: &[Vec<u32>],
+) -> Result<Option<[usize; 2]>> {
     let ends = ends(vertices, triangles, loops)?;
     let away = |a: &End, b: &End| a.onward.dot((b.centre - a.centre).normalize_or_zero()) < -AWAY;
-    let mut pairs = ends.iter().enumerate().flat_map(|(k, a)| ends[..k].iter().map(move |b| (a, b)));
-    Ok(pairs.any(|(a, b)| away(a, b) && away(b, a)))
+    let mut pairs = (0..ends.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
+    Ok(pairs.find(|&[a, b]| away(&ends[a], &ends[b]) && away(&ends[b], &ends[a])))
 }
 
 /// Joins loops of a mesh two by two, each pair by a tube as [`bridge()`](super::bridge) makes it.
@@ -84,21 +95,15 @@ pub fn bridge_pairs(
 }
 
 fn ends(vertices: &[DVec3], triangles: &[[u32; 3]], loops: &[Vec<u32>]) -> Result<Vec<End>> {
-    let seeds = loops.concat();
-    let rim = Rim::new(vertices.len(), triangles, &seeds, 1)?;
+    let rim = Rim::new(vertices.len(), triangles, &loops.concat(), 1)?;
+    check_loops(loops, vertices, &rim)?;
     let end = |loop_: &Vec<u32>| {
-        check_loop(loop_, vertices, &rim)?;
         let onward = onward_of(loop_, &rim, vertices);
         let ring = Ring::new(loop_.iter().map(|&v| vertices[v as usize]).collect());
         let samples = ring.samples().into_iter().map(|p| p + ring.centre).collect();
-        Ok(End { samples, centre: ring.centre, onward: ahead(&onward) })
+        End { samples, centre: ring.centre, onward: ahead(&onward) }
     };
-    let ends = loops.iter().map(end).collect::<Result<Vec<_>>>()?;
-    let mut known = FxHashSet::default();
-    match seeds.iter().find(|&&v| !known.insert(v)) {
-        Some(&vertex) => Err(Error::FigureEight { vertex }),
-        None => Ok(ends),
-    }
+    Ok(loops.iter().map(end).collect())
 }
 
 /// Pairs of ends, the cheapest first, each end in one pair at most.
@@ -129,6 +134,7 @@ fn cost(a: &End, b: &End) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::LoopError;
 
     /// Open pipes of one segment along z, each of (vertices around, radius, x, z from, z to), and their two rims each.
     fn pipes(them: &[(u32, f64, f64, f64, f64)]) -> (Vec<DVec3>, Vec<[u32; 3]>, Vec<Vec<u32>>) {
@@ -189,7 +195,8 @@ mod tests {
         assert!(!look_apart(&vertices, &triangles, &chosen).unwrap());
         assert!(!look_apart(&vertices, &[], &loops).unwrap(), "loops without faces");
         let twice = [loops[0].clone(), loops[0].clone()];
-        assert_eq!(look_apart(&vertices, &triangles, &twice), Err(Error::FigureEight { vertex: 0 }));
+        let shared = LoopError::Shared { vertex: 0, loops: [0, 1] };
+        assert_eq!(look_apart(&vertices, &triangles, &twice), Err(Error::Loops(shared)));
     }
 
     #[test]

@@ -13,9 +13,10 @@ use crate::error::{Error, Result};
 use crate::fill::filled::{Bridged, Fill, Shape};
 use crate::fill::job::SOUND_RINGS;
 use crate::fill::layout::unroll::Unrolling;
-use crate::fill::loops::check::{Checked, check_loop, check_near};
+use crate::fill::loops::check::{Checked, check_loops, check_near};
 use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::reserve::{edges, wanted};
+use crate::fill::loops::touching::check_apart;
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::report::{FillReport, Grid};
 use crate::fill::surface::faces::cut;
@@ -42,17 +43,17 @@ pub(super) fn tube(
     let seeds = given.concat();
     let rim =
         Rim::new(vertices.len(), triangles, &seeds, if options.smooth == Smooth::Curvature { 2 } else { 1 })?;
-    let checked = [check_loop(given[0], vertices, &rim)?, check_loop(given[1], vertices, &rim)?];
+    let checked = check_loops(&given, vertices, &rim)?;
+    check_apart(&given, vertices)?;
     if vertices.iter().any(|p| !p.is_finite()) {
         let wide = Rim::new(vertices.len(), triangles, &seeds, SOUND_RINGS)?;
         given.iter().try_for_each(|loop_| check_near(loop_, vertices, &wide))?;
     }
-    let both: FxHashSet<u32> = given[0].iter().copied().collect();
-    if let Some(&vertex) = given[1].iter().find(|v| both.contains(v)) {
-        return Err(Error::FigureEight { vertex });
-    }
     progress.report(0.12)?;
-    let span = Span::new(vertices, &rim, checked, options);
+    let Ok(both) = <[Checked; 2]>::try_from(checked) else {
+        return Err(Error::Internal { reason: "two loops are not two" });
+    };
+    let span = Span::new(vertices, &rim, both, options);
     span.fill(rest, progress.part(0.12, 1.0))
 }
 

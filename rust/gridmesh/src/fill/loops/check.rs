@@ -6,7 +6,8 @@ use rstar::{AABB, RTree};
 use rustc_hash::FxHashMap;
 
 use super::mesh::Rim;
-use crate::error::{Error, Result};
+use super::touching::closest;
+use crate::error::{Error, LoopError, Result};
 
 /// Loops up to this size are looked through pair by pair.
 const FEW: usize = 24;
@@ -40,7 +41,7 @@ pub(crate) fn check_loop(given: &[u32], positions: &[DVec3], rim: &Rim) -> Resul
         });
     }
     if n < 3 {
-        return Err(Error::TooFewPoints { what: "loop".into(), distinct: n });
+        return Err(Error::Loops(LoopError::Short { number: None, vertices: n }));
     }
     for k in 0..n {
         if given[k] == given[(k + 1) % n] {
@@ -90,6 +91,35 @@ pub(crate) fn check_loop(given: &[u32], positions: &[DVec3], rim: &Rim) -> Resul
         vertices.reverse();
     }
     Ok(Checked { vertices, reversed, conflicts: along.min(against), wire })
+}
+
+/// Checks several loops, and that no vertex is in two of them.
+///
+/// # Errors
+/// Those of [`check_loop`], and [`LoopError::Shared`].
+pub(crate) fn check_loops<L: AsRef<[u32]>>(
+    given: &[L],
+    positions: &[DVec3],
+    rim: &Rim,
+) -> Result<Vec<Checked>> {
+    let mut checked = Vec::with_capacity(given.len());
+    for (number, loop_) in given.iter().enumerate() {
+        checked.push(check_loop(loop_.as_ref(), positions, rim).map_err(|err| match err {
+            Error::Loops(LoopError::Short { vertices, .. }) => {
+                Error::Loops(LoopError::Short { number: Some(number), vertices })
+            }
+            other => other,
+        })?);
+    }
+    let mut known = FxHashMap::default();
+    for (number, loop_) in given.iter().enumerate() {
+        for &vertex in loop_.as_ref() {
+            if let Some(first) = known.insert(vertex, number) {
+                return Err(Error::Loops(LoopError::Shared { vertex, loops: [first, number] }));
+            }
+        }
+    }
+    Ok(checked)
 }
 
 /// Refuses loops that have a vertex that is not finite among the triangles of `wide`, two rings around them.
@@ -167,14 +197,7 @@ fn check_touching(given: &[u32], positions: &[DVec3]) -> Result<()> {
 
 /// Where two segments meet, if they come as near as rounding allows to tell.
 fn meeting(p: DVec3, q: DVec3, a: DVec3, b: DVec3) -> Option<DVec3> {
-    let (u, v, w) = (q - p, b - a, p - a);
-    let (uu, uv, vv, uw, vw) = (u.dot(u), u.dot(v), v.dot(v), u.dot(w), v.dot(w));
-    let determinant = uu * vv - uv * uv;
-    let mut s =
-        if determinant > 1e-14 * uu * vv { ((uv * vw - vv * uw) / determinant).clamp(0.0, 1.0) } else { 0.0 };
-    let t = ((uv * s + vw) / vv).clamp(0.0, 1.0);
-    s = ((uv * t - uw) / uu).clamp(0.0, 1.0);
-    let (x, y) = (p + s * u, a + t * v);
+    let (x, y) = closest(p, q, a, b);
     let scale = [p, q, a, b].iter().fold(0.0, |m: f64, x| m.max(x.abs().max_element()));
     (x.distance(y) <= 8.0 * f64::EPSILON * scale).then_some(x)
 }

@@ -22,6 +22,8 @@ pub(super) struct Several<'a> {
     pub checked: &'a [Checked],
     /// Pairs of loops that the patch joins, see [`spanning`](super::tour::spanning).
     pub spanning: &'a [[usize; 2]],
+    /// Two loops that look away from each other, if any do.
+    pub apart: Option<[usize; 2]>,
 }
 
 /// Places of the loops and what is around them: all, or those that large triangles have.
