@@ -118,8 +118,7 @@ pub enum Error {
     },
     /// The mesh asked for is larger than is supported.
     #[error(
-        "about {triangles:.0} triangles were asked for; at most {limit:.0} are supported, use a larger \
-         edge length"
+        "about {triangles:.0} triangles were asked for; at most {limit:.0} are supported, use a larger edge length"
     )]
     TooLarge {
         /// Triangles asked for (estimated from the area).
@@ -177,8 +176,7 @@ pub enum Error {
     },
     /// A loop names a vertex twice in a row.
     #[error(
-        "the loop names vertex {vertex} twice in a row (places {first} and {second}); name each vertex \
-         once"
+        "the loop names vertex {vertex} twice in a row (places {first} and {second}); name each vertex once"
     )]
     RepeatedVertex {
         /// The vertex.
