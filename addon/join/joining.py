@@ -66,6 +66,8 @@ def join(
         made = _united(target, options, progress)
         crease = options.blend == 0
         ob = target.apply(context, made, transaction, crease=crease, keep=options.keep_parts)
+    if made.report["overlapping"]:
+        notes.append(f"overlapping pieces of meshes, joined like parts: {made.report['overlapping']}")
     return Done(ob, len(objects), made.report, notes, uniting.warnings_of(made.report))
 
 

@@ -604,6 +604,7 @@ _JOINS = {
         "eingefroren, denn ein verbundener Körper kann seinen Zeichnungen nicht folgen: {0}"
     ),
     "inside out, and turned round: {}": "von innen nach außen gekehrt und umgedreht: {0}",
+    "overlapping pieces of meshes, joined like parts: {}": "überlappende Stücke von Meshes, wie Teile verbunden: {0}",
     "joined without their modifiers: {}": "ohne ihre Modifikatoren verbunden: {0}",
     "the mesh of '{}' is being edited; leave Edit Mode first": (
         "das Mesh von „{0}“ wird bearbeitet; erst den Bearbeitungsmodus verlassen"
@@ -1084,10 +1085,16 @@ _LIBRARY_PARTS = {
     "a piece of it is inside out, and its normals are to be flipped,": (
         "ein Stück ist umgestülpt, seine Normalen sind umzukehren,"
     ),
-    "pieces of one part may overlap each other, and are to be parts of their own (Mesh > Separate > By Loose Parts)": (
-        "Stücke eines Teils überlappen einander vielleicht und sollten eigene Teile sein (Mesh > Trennen > Nach losen Teilen)"
+    "a cavity of it crosses what it lies in, or another cavity,": (
+        "ein Hohlraum darin schneidet, was ihn umgibt, oder einen anderen Hohlraum,"
     ),
     "its faces lie on each other and enclose nothing": "seine Flächen liegen aufeinander und umschließen nichts",
+    "the faces of a piece of it lie on each other and enclose nothing": (
+        "die Flächen eines Stücks liegen aufeinander und umschließen nichts"
+    ),
+    "the Boolean operation on pieces of one part that touch broke down": (
+        "die boolesche Operation auf Stücken eines Teils, die sich berühren, ist gescheitert"
+    ),
     "what was taken away there has no border of whole edges": "was dort weggenommen wurde, hat keinen Rand aus ganzen Kanten",
     "the Boolean operation on them broke down": "die boolesche Operation auf ihnen ist gescheitert",
     "the Boolean operation on them has no result": "die boolesche Operation auf ihnen hat kein Ergebnis",

@@ -129,6 +129,48 @@ def test_a_part_inside_another_is_left_out(capfd):
     assert len(whole.data.vertices) == 32 * 15 + 2
 
 
+def merged(*objects):
+    """One object of several, by Blender's own Join: their meshes as they are."""
+    activate(*objects)
+    bpy.ops.object.join()
+    return bpy.context.object
+
+
+def test_overlapping_pieces_of_one_mesh_are_joined_like_parts(capfd):
+    """One object of two balls that cross, with a material and a vertex group each, joined with a third."""
+    pieces = [ball("First", material="Red"), ball("Second", 1.1, 0.7, material="Blue")]
+    for ob in pieces:
+        ob.vertex_groups.new(name=ob.name).add(range(len(ob.data.vertices)), 1.0, "REPLACE")
+    body = merged(*reversed(pieces))
+    other = ball("Third", 2.0, 0.6, material="Green")
+    before = dict.fromkeys(faces_in_world(other), "Green")
+    for polygon, face in zip(body.data.polygons, faces_in_world(body), strict=True):
+        before[face] = body.data.materials[polygon.material_index].name
+    whole = join(body, other)
+    check_sound(whole)
+    assert "Overlapping pieces of meshes, joined like parts: 2" in capfd.readouterr().out
+    bm = bmesh.new()
+    bm.from_mesh(whole.data)
+    assert len(bm.verts) - len(bm.edges) + len(bm.faces) == 2
+    bm.free()
+    kept = Counter()
+    for polygon, face in zip(whole.data.polygons, faces_in_world(whole), strict=True):
+        if face in before:
+            assert whole.data.materials[polygon.material_index].name == before[face]
+            kept[before[face]] += 1
+    assert min(kept[name] for name in ("Red", "Blue", "Green")) > 60
+    weights = np.zeros((len(whole.data.vertices), len(whole.vertex_groups)))
+    for vertex in whole.data.vertices:
+        for element in vertex.groups:
+            weights[vertex.index, element.group] = element.weight
+    names = [group.name for group in whole.vertex_groups]
+    # What is left of the first ball is the first group's alone, as it was.
+    far = vertices(whole.data)[:, 0] + whole.location.x < -0.5
+    assert far.sum() > 50
+    assert (weights[far][:, names.index("First")] == 1).all()
+    assert (weights[far][:, names.index("Second")] == 0).all()
+
+
 @pytest.mark.parametrize(
     "matrix",
     [
@@ -415,6 +457,14 @@ def test_an_open_mesh():
     bm.to_mesh(head.data)
     bm.free()
     refused("'Head' is not closed: it has [34] open edges; fill its holes", body, head)
+
+
+def test_a_flat_piece_beside_a_solid_one():
+    sheet = ball("Sheet", 5.0)
+    for vertex in sheet.data.vertices:
+        vertex.co.z = 0
+    body = merged(sheet, ball("Body"))
+    refused("(?s)'Sheet' .*the faces of a piece of it lie on each other", body, ball("Head", -1.1, 0.7))
 
 
 def test_a_mesh_with_a_wall_inside():

@@ -20,7 +20,7 @@ use crate::{arrays, reports};
 /// parts : sequence of pairs (vertices, faces), or of Surface or Joined
 ///     Closed meshes, in any units: positions (n, 3), and triangles (m, 3), quads (m, 4), or a pair (corners, offsets) for faces
 ///     with any number of corners, as in `cut`. Not modified. One given inside out is turned.
-///     Pieces of one part that overlap each other stay so: give each as a part of its own.
+///     Pieces of one part that overlap each other are joined as parts of their own; cavities stay with the piece around them.
 /// blend : float
 ///     So many edge lengths to each side of the lines where surfaces meet, along the surface, are taken away and closed
 ///     by one patch, smooth to both sides. 0 keeps the lines as creases, with even edges along them. 0 to 1000. Fewer
@@ -46,7 +46,7 @@ use crate::{arrays, reports};
 /// Raises
 /// ------
 /// GridMeshError
-///     If a part is no mesh, or not closed, or encloses nothing, or a piece of it is inside out ("not_closed"), if parts
+///     If a part is no mesh, or not closed, or a piece of it encloses nothing or is inside out, or cavities of it cross ("not_closed"), if parts
 ///     meet in a way that leaves no room for a patch ("join_failed", the message says where), if joints meet something and `strict` is set ("join_intersects"), or
 ///     when cancelled.
 /// TypeError
@@ -175,7 +175,7 @@ fn read(part: &Bound<'_, PyAny>) -> PyResult<(Vec<DVec3>, Vec<u32>, Vec<u32>)> {
 ///     For each patch its rims: closed loops of old vertices, as the old faces along them run.
 /// report : dict
 ///     Plain numbers: "watertight", "components", "genus", "alone" (parts that meet no other), "swallowed" (parts within
-///     others), "turned" (parts given inside out), "curves" (closed lines in which surfaces meet), "collars" (patches), "tubes" and
+///     others, and pieces that overlap others of the same part), "overlapping" (pieces that overlap others of the same part), "turned" (parts given inside out), "curves" (closed lines in which surfaces meet), "collars" (patches), "tubes" and
 ///     "fills" (of those, lattices between two rims and in one), "creased" (of those, with the line as a crease, where any blend
 ///     would meet something or take most of a part away), "exact" (of those, triangles of the exact union as they are, where that did
 ///     not help either), "collar_triangles", "collar_vertices" and "collar_irregular" (new
@@ -333,6 +333,7 @@ fn report(py: Python<'_>, report: &JoinReport) -> PyResult<Py<PyDict>> {
     dict.set_item("genus", report.genus)?;
     dict.set_item("alone", report.alone)?;
     dict.set_item("swallowed", report.swallowed)?;
+    dict.set_item("overlapping", report.overlapping)?;
     dict.set_item("turned", report.turned)?;
     dict.set_item("curves", report.curves)?;
     dict.set_item("collars", report.collars)?;

@@ -1,6 +1,7 @@
 //! Joins closed meshes to one, with even triangles where they meet.
 //!
-//! [`join()`] does it all. `parts` checks and numbers what is given, `union` finds out by an exact Boolean operation what is within
+//! [`join()`] does it all. `parts` checks and numbers what is given, `pieces` and `overlap` find pieces of one part that overlap
+//! each other and are joined as parts of their own, `union` finds out by an exact Boolean operation what is within
 //! other parts and where surfaces meet, `collar` which faces lie near that, `rims` makes the borders of what stays simple loops,
 //! `strips` finds the pieces of the union between them. For each one `patch` makes a tube or a fill, or, where it is neither an
 //! annulus nor a disk, takes the piece itself (`take`); triangles are made even there with what `fill::even` has, or stay as they are
@@ -10,6 +11,7 @@ mod assemble;
 mod border;
 mod collar;
 mod options;
+mod overlap;
 mod parts;
 mod patch;
 mod pieces;
@@ -48,9 +50,6 @@ const GAINED: f64 = 0.03;
 const NARROWED: usize = 3;
 const TIGHT: f64 = 0.5;
 const SLIM: f64 = 0.7;
-
-/// Where a part is what Blender's *Join* makes of overlapping meshes.
-const OVERLAP: &str = "pieces of one part may overlap each other, and are to be parts of their own (Mesh > Separate > By Loose Parts)";
 
 /// Joins closed meshes: one closed mesh of what is in any of them.
 ///
@@ -133,21 +132,19 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
     }
     progress.report(0.0)?;
     let mut clock = Clock::new();
-    let parts = Parts::new(given)?;
+    let parts = &Parts::new(given, progress.part(0.0, 0.05))?;
     clock.stage("check");
-    united(&parts, options, clock, progress).map_err(|error| match error {
-        Error::JoinFailed { at, .. } if parts.overlap() => Error::JoinFailed { reason: OVERLAP, at },
-        other => other,
-    })
-}
-
-fn united(parts: &Parts, options: &JoinOptions, mut clock: Clock, progress: Progress<'_>) -> Result<Joined> {
     let union = Union::new(parts, progress.part(0.05, 0.4))?;
     clock.stage("union");
     let seams = union.seams(parts);
     let left = Left::new(parts, &union, &seams);
     let curves = Curves::new(parts, &union, &seams);
-    let mut report = JoinReport { turned: parts.turned, curves: curves.count, ..JoinReport::default() };
+    let mut report = JoinReport {
+        turned: parts.turned,
+        curves: curves.count,
+        overlapping: parts.overlapping(),
+        ..JoinReport::default()
+    };
     (report.alone, report.swallowed) = apart(parts, &union, &seams);
     let stage = Stage { parts, union: &union, left: &left, curves: &curves, seams: &seams, options };
     clock.stage("lines");
@@ -351,17 +348,18 @@ fn share(allowed: f64, patches: &[Patch]) -> f64 {
     left / count.max(1) as f64
 }
 
-/// How many parts meet no other one, and of how many nothing is left.
+/// How many parts meet no other one, and of how many, or pieces of them that overlap others, nothing is left.
 fn apart(parts: &Parts, union: &Union, seams: &[([u32; 2], [u32; 2])]) -> (usize, usize) {
-    let mut sets = Disjoint::new(parts.len());
-    let mut left = vec![false; parts.len()];
-    (0..union.triangles.len()).for_each(|t| left[union.part(parts, t)] = true);
-    for (_, [s, t]) in seams {
-        let [a, b] = [*s, *t].map(|t| union.part(parts, t as usize) as u32);
-        sets.join(a, b);
-    }
-    let mut sizes = vec![0; parts.len()];
-    (0..parts.len() as u32).for_each(|p| sizes[sets.root(p) as usize] += 1);
-    let alone = (0..parts.len() as u32).filter(|&p| left[p as usize] && sizes[sets.root(p) as usize] == 1);
+    let count = parts.len();
+    let mut sets = Disjoint::new(count);
+    let mut left = vec![false; parts.solids.len()];
+    (0..union.triangles.len()).for_each(|t| left[union.solid(parts, t)] = true);
+    let part = |t: u32| parts.solids[union.solid(parts, t as usize)].part as u32;
+    seams.iter().for_each(|&(_, [s, t])| sets.join(part(s), part(t)));
+    let mut sizes = vec![0; count];
+    (0..count as u32).for_each(|p| sizes[sets.root(p) as usize] += 1);
+    let mut is_left = vec![false; count];
+    parts.solids.iter().zip(&left).for_each(|(solid, &own)| is_left[solid.part] |= own);
+    let alone = (0..count as u32).filter(|&p| is_left[p as usize] && sizes[sets.root(p) as usize] == 1);
     (alone.count(), left.iter().filter(|l| !**l).count())
 }

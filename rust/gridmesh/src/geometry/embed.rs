@@ -56,6 +56,19 @@ pub(crate) fn triangles_meet(vertices: &[DVec3], t: [u32; 3], u: [u32; 3]) -> bo
     }
 }
 
+/// Whether an edge of one of two triangles goes through the inside of the other, from one side to the other.
+pub(crate) fn triangles_cross(vertices: &[DVec3], t: [u32; 3], u: [u32; 3]) -> bool {
+    let at = |v: u32| vertices[v as usize];
+    let (p, q) = (t.map(at), u.map(at));
+    let through = |a: DVec3, b: DVec3, [c, d, e]: [DVec3; 3]| {
+        side3(c, d, e, a) * side3(c, d, e, b) < 0.0 && {
+            let sides = [side3(a, b, c, d), side3(a, b, d, e), side3(a, b, e, c)];
+            sides.iter().all(|&s| s > 0.0) || sides.iter().all(|&s| s < 0.0)
+        }
+    };
+    (0..3).any(|k| through(p[k], p[(k + 1) % 3], q) || through(q[k], q[(k + 1) % 3], p))
+}
+
 fn side3(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
     let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D { x: p.x, y: p.y, z: p.z });
     sign(orient3d(a, b, c, d))

@@ -187,7 +187,7 @@ impl Joined {
         for sides in [3..=3, 4..=4, 5..=usize::MAX] {
             let triangles = *sides.start() == 3;
             for f in kept.clone().filter(|&f| sides.contains(&parts.face(f).len())) {
-                let part = parts.part_of_face(f);
+                let part = parts.solids[parts.solid_of_face(f)].part;
                 let corners = parts.face(f).iter().map(|&v| name[v as usize]).collect::<Vec<_>>();
                 push(&corners, part as i32, (f - parts.first[part][1]) as i32);
             }

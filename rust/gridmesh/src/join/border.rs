@@ -106,7 +106,10 @@ fn surfaces(site: &Site<'_>, strip: &Strip, number: impl Fn(usize) -> u32) -> Ve
     let mut corners: BTreeMap<u32, Vec<[DVec3; 3]>> = BTreeMap::new();
     for &t in &strip.triangles {
         let own = site.union.triangles[t as usize].map(|v| site.union.vertices[v as usize]);
-        corners.entry(number(site.union.part(site.parts, t as usize))).or_default().push(own);
+        corners
+            .entry(number(site.parts.solids[site.union.solid(site.parts, t as usize)].part))
+            .or_default()
+            .push(own);
     }
     corners.into_iter().map(|(part, corners)| (part, Facets::new(corners))).collect()
 }
@@ -145,7 +148,7 @@ impl<'a> Line<'a> {
         let mut line = Line { surfaces, local, off, on: BTreeSet::new() };
         // Vertices of a rim are their own part's.
         for (v, &old) in border.iter().enumerate() {
-            let color = site.options.border.color(site.parts.part_of_vertex(old));
+            let color = site.options.border.color(site.parts.solids[site.parts.solid_of_vertex(old)].part);
             if let Some(k) = surfaces.iter().position(|(own, _)| *own == color) {
                 line.off[v][k] = 0.0;
             }

@@ -21,7 +21,7 @@ const HALF: f64 = 0.5;
 pub(super) struct Curves {
     /// Their edges.
     lines: Lines,
-    /// The mean edge length of each part near each curve.
+    /// The mean edge length of each solid near each curve.
     lengths: Vec<BTreeMap<usize, f64>>,
     /// How many there are; those that branch with all their branches.
     pub count: usize,
@@ -87,7 +87,7 @@ impl Curves {
             seam_curves.push(curve as usize);
             for t in triangles {
                 let face = parts.face_of[union.source[t as usize] as usize];
-                faces[curve as usize].entry(parts.part_of_face(face)).or_default().push(face);
+                faces[curve as usize].entry(parts.solid_of_face(face)).or_default().push(face);
             }
         }
         let mean = |faces: &Vec<u32>| {
@@ -109,9 +109,9 @@ impl Curves {
         Curves { lines: Lines::numbered(segments), lengths, count: numbers.len(), seams: seam_curves }
     }
 
-    /// How near vertices of a part may be to a curve, if the blend is `scale` times what is asked for.
-    fn reach(&self, part: usize, curve: usize, options: &JoinOptions, scale: f64) -> f64 {
-        let own = self.lengths[curve].get(&part).copied().unwrap_or(0.0);
+    /// How near vertices of a solid may be to a curve, if the blend is `scale` times what is asked for.
+    fn reach(&self, solid: usize, curve: usize, options: &JoinOptions, scale: f64) -> f64 {
+        let own = self.lengths[curve].get(&solid).copied().unwrap_or(0.0);
         let asked = options.edge_length.unwrap_or(own) * (options.blend * scale);
         (asked - HALF * own).max(LEAST * own)
     }
@@ -133,10 +133,10 @@ impl Curves {
         let around = parts.around(0, 0);
         while let Some(v) = waiting.pop() {
             let at = parts.vertices[v as usize];
-            let part = parts.part_of_vertex(v);
+            let solid = parts.solid_of_vertex(v);
             let Some((curve, distance)) = self.lines.find(at) else { continue };
             let curve = curve as usize;
-            if distance >= self.reach(part, curve, options, scales[curve]) {
+            if distance >= self.reach(solid, curve, options, scales[curve]) {
                 continue;
             }
             gone[v as usize] = true;

@@ -78,8 +78,10 @@ pub struct JoinReport {
     pub genus: i32,
     /// Parts that meet no other one: pieces of their own.
     pub alone: usize,
-    /// Parts of which nothing is left, since they lie within others.
+    /// Parts, and pieces of parts that overlap others of the same part, of which nothing is left, since they lie within others.
     pub swallowed: usize,
+    /// Pieces of parts that overlap others of the same part, and were joined as parts of their own.
+    pub overlapping: usize,
     /// Parts given inside out, which were turned.
     pub turned: usize,
     /// Closed lines in which surfaces meet, and lines that branch, each with all its branches.

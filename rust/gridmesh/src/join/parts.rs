@@ -2,10 +2,12 @@
 
 use glam::DVec3;
 
-use super::pieces::{fault, overlap, volume};
+use super::overlap::solids;
+use super::pieces::{Fault, Surface, volume};
 use crate::cut::Polygons;
 use crate::cut::input::{check_mesh, triangles};
 use crate::error::{Error, Result};
+use crate::progress::Progress;
 
 /// Triangles of all parts at most.
 const LIMIT: usize = 20_000_000;
@@ -19,6 +21,17 @@ pub struct Part<'a> {
     pub faces: Polygons<'a>,
 }
 
+/// What the exact union takes as one: a part, or a piece of a part that overlaps others of it.
+#[derive(Clone, Debug)]
+pub(super) struct Solid {
+    /// The part.
+    pub part: usize,
+    /// What it encloses.
+    pub volume: f64,
+    /// Its triangles, ascending.
+    pub triangles: Vec<u32>,
+}
+
 /// All parts: vertices, faces and triangles numbered through.
 pub(super) struct Parts {
     pub vertices: Vec<DVec3>,
@@ -30,8 +43,11 @@ pub(super) struct Parts {
     pub face_of: Vec<u32>,
     /// The first vertex, face and triangle of each part, and the ends.
     pub first: Vec<[u32; 3]>,
-    /// What each part encloses.
-    pub volumes: Vec<f64>,
+    /// All solids, part by part.
+    pub solids: Vec<Solid>,
+    /// The solid of each face and vertex.
+    solid_of_face: Vec<u32>,
+    solid_of_vertex: Vec<u32>,
     /// Parts that were given inside out.
     pub turned: usize,
 }
@@ -65,8 +81,8 @@ impl Parts {
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::ExtremeSize`], [`Error::InvalidFace`], [`Error::IndexOutOfRange`],
-    /// [`Error::NotClosed`], [`Error::TooLarge`].
-    pub fn new(given: &[Part<'_>]) -> Result<Parts> {
+    /// [`Error::NotClosed`], [`Error::TooLarge`], [`Error::JoinFailed`], [`Error::Cancelled`].
+    pub fn new(given: &[Part<'_>], progress: Progress<'_>) -> Result<Parts> {
         let mut all = Parts {
             vertices: vec![],
             corners: vec![],
@@ -74,12 +90,16 @@ impl Parts {
             triangles: vec![],
             face_of: vec![],
             first: vec![[0; 3]],
-            volumes: vec![],
+            solids: vec![],
+            solid_of_face: vec![],
+            solid_of_vertex: vec![],
             turned: 0,
         };
         for (number, part) in given.iter().enumerate() {
             check_part(number, part)?;
             all.add(number, part)?;
+            let at = |k: usize| k as f64 / given.len() as f64;
+            all.divide(number, progress.part(at(number), at(number + 1)))?;
         }
         Ok(all)
     }
@@ -103,7 +123,6 @@ impl Parts {
         }
         let own = triangle as usize..self.triangles.len();
         let enclosed = volume(&self.vertices, &self.triangles[own.clone()]);
-        self.volumes.push(enclosed.abs());
         if enclosed < 0.0 {
             self.turned += 1;
             self.triangles[own].iter_mut().for_each(|t| t.swap(1, 2));
@@ -112,15 +131,37 @@ impl Parts {
             }
         }
         self.check_closed(number)?;
-        if let Some((v, reason)) = fault(&self.vertices, &self.triangles[triangle as usize..], vertex) {
-            let at = self.vertices[v as usize].into();
-            return Err(Error::NotClosed { part: number, reason, vertex: v - vertex, at });
-        }
         self.first.push([
             self.vertices.len() as u32,
             self.offsets.len() as u32 - 1,
             self.triangles.len() as u32,
         ]);
+        Ok(())
+    }
+
+    /// Finds the solids of the last part.
+    fn divide(&mut self, part: usize, progress: Progress<'_>) -> Result<()> {
+        let [first, _, start] = self.first[part];
+        let triangles = &self.triangles[start as usize..];
+        let surface = Surface { vertices: &self.vertices, first, triangles };
+        let refuse = |(v, reason): Fault| {
+            let at = self.vertices[v as usize].into();
+            Error::NotClosed { part, reason, vertex: v - first, at }
+        };
+        let found = solids(&surface, refuse, progress)?;
+        self.solid_of_face.resize(self.n_faces(), 0);
+        self.solid_of_vertex.resize(self.vertices.len(), 0);
+        for own in found {
+            let corners = own.iter().map(|&t| triangles[t as usize]).collect::<Vec<_>>();
+            let volume = volume(&self.vertices, &corners).abs();
+            let number = self.solids.len() as u32;
+            let own = own.into_iter().map(|t| t + start).collect::<Vec<_>>();
+            for &t in &own {
+                self.solid_of_face[self.face_of[t as usize] as usize] = number;
+                self.triangles[t as usize].iter().for_each(|&v| self.solid_of_vertex[v as usize] = number);
+            }
+            self.solids.push(Solid { part, volume, triangles: own });
+        }
         Ok(())
     }
 
@@ -204,28 +245,25 @@ impl Parts {
         self.first.len() - 1
     }
 
-    /// Whether pieces of one part may overlap each other, which the exact union takes for granted that they do not.
-    pub fn overlap(&self) -> bool {
-        self.first.windows(2).any(|ends| {
-            let [v, t] = [0, 2].map(|k| ends[0][k]..ends[1][k]);
-            let own = &self.triangles[t.start as usize..t.end as usize];
-            overlap(&self.vertices[..v.end as usize], own, v.start)
-        })
+    /// The solid of a triangle.
+    pub fn solid_of_triangle(&self, triangle: u32) -> usize {
+        self.solid_of_face(self.face_of[triangle as usize])
     }
 
-    /// The part of a triangle.
-    pub fn part_of_triangle(&self, triangle: u32) -> usize {
-        self.first.partition_point(|f| f[2] <= triangle) - 1
+    /// The solid of a face.
+    pub fn solid_of_face(&self, face: u32) -> usize {
+        self.solid_of_face[face as usize] as usize
     }
 
-    /// The part of a face.
-    pub fn part_of_face(&self, face: u32) -> usize {
-        self.first.partition_point(|f| f[1] <= face) - 1
+    /// The solid of a vertex that is a corner of a face.
+    pub fn solid_of_vertex(&self, vertex: u32) -> usize {
+        self.solid_of_vertex[vertex as usize] as usize
     }
 
-    /// The part of a vertex.
-    pub fn part_of_vertex(&self, vertex: u32) -> usize {
-        self.first.partition_point(|f| f[0] <= vertex) - 1
+    /// How many pieces of parts overlap others of the same part.
+    pub fn overlapping(&self) -> usize {
+        let count = |own: &[Solid]| if own.len() > 1 { own.len() } else { 0 };
+        self.solids.chunk_by(|a, b| a.part == b.part).map(count).sum()
     }
 }
 
@@ -262,7 +300,8 @@ mod tests {
         let corners = faces.concat();
         let mut offsets = vec![0];
         faces.iter().for_each(|f| offsets.push(offsets[offsets.len() - 1] + f.len() as u32));
-        Parts::new(&[Part { vertices, faces: Polygons { corners: &corners, offsets: &offsets } }])
+        let part = Part { vertices, faces: Polygons { corners: &corners, offsets: &offsets } };
+        Parts::new(&[part], Progress::NONE)
     }
 
     fn quads() -> Vec<Vec<u32>> {

@@ -280,8 +280,9 @@ impl Place<'_> {
         let own = |&t: &u32| union.triangles[t as usize].map(|v| union.vertices[v as usize]);
         let new = triangles.iter().map(|t| six(t.map(at))).sum::<f64>();
         let old = self.strip.triangles.iter().map(|t| six(own(t))).sum::<f64>();
-        let of = self.strip.triangles.iter().map(|&t| union.part(parts, t as usize)).collect::<BTreeSet<_>>();
-        let volumes = of.into_iter().map(|part| parts.volumes[part]).collect::<Vec<_>>();
+        let of =
+            self.strip.triangles.iter().map(|&t| union.solid(parts, t as usize)).collect::<BTreeSet<_>>();
+        let volumes = of.into_iter().map(|solid| parts.solids[solid].volume).collect::<Vec<_>>();
         let smaller = volumes.iter().sum::<f64>() - volumes.iter().copied().fold(0.0, f64::max);
         let own = if volumes.len() > 1 { smaller } else { volumes.iter().sum() };
         let gained = (new - old) / 6.0;

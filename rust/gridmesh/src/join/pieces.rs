@@ -1,98 +1,135 @@
-//! What the pieces of a closed part enclose.
+//! The connected pieces of a closed part, and what they enclose.
 
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
+use crate::fill::surface::meet::Box3;
 use crate::geometry::disjoint::Disjoint;
 
-/// A part with less volume than this, relative to its area, encloses nothing.
+/// A piece with less volume than this, relative to its area, encloses nothing.
 const FLAT: f64 = 1e-12;
 
+/// What a piece is that winds inward beside the others, or within a cavity.
+pub(super) const INSIDE_OUT: &str = "a piece of it is inside out, and its normals are to be flipped,";
+
+/// What keeps a part from being joined, and a vertex there.
+pub(super) type Fault = (u32, &'static str);
+
+/// The triangles of a part.
+#[derive(Clone, Copy)]
+pub(super) struct Surface<'a> {
+    /// All vertices; those of the part begin at `first`.
+    pub vertices: &'a [DVec3],
+    pub first: u32,
+    pub triangles: &'a [[u32; 3]],
+}
+
 /// A connected piece of a part.
-struct Piece {
-    triangles: Vec<[u32; 3]>,
-    /// Corners of its box.
-    low: DVec3,
-    high: DVec3,
-    volume: f64,
+pub(super) struct Piece {
+    /// The numbers of its triangles in the part, ascending.
+    pub triangles: Vec<u32>,
+    pub bounds: Box3,
+    /// Negative where it is a cavity.
+    pub volume: f64,
 }
 
-/// Whether the boxes of two pieces overlap that enclose a volume each: the pieces themselves may do so too.
-pub(super) fn overlap(vertices: &[DVec3], triangles: &[[u32; 3]], first: u32) -> bool {
-    let mut outer = pieces(vertices, triangles, first);
-    outer.retain(|piece| piece.volume > 0.0);
-    outer
-        .iter()
-        .enumerate()
-        .any(|(k, a)| outer[k + 1..].iter().any(|b| a.low.cmple(b.high).all() && b.low.cmple(a.high).all()))
+impl Piece {
+    pub fn is_cavity(&self) -> bool {
+        self.volume < 0.0
+    }
 }
 
-/// What keeps a closed part that encloses a volume above 0 in all from being joined, and a vertex there. Vertices of the part begin at `first`.
-pub(super) fn fault(vertices: &[DVec3], triangles: &[[u32; 3]], first: u32) -> Option<(u32, &'static str)> {
-    let pieces = pieces(vertices, triangles, first);
-    for (k, piece) in pieces.iter().enumerate().filter(|(_, piece)| piece.volume < 0.0) {
-        let v = piece.triangles[0][0];
-        let at = vertices[v as usize];
-        let around = |other: &Piece| {
-            let is_near = other.low.cmple(at).all() && other.high.cmpge(at).all();
-            if is_near { other.volume.signum() * turns(vertices, &other.triangles, at) } else { 0.0 }
+impl Surface<'_> {
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
+    }
+
+    /// Its pieces, in the order of their first triangles.
+    pub fn pieces(&self) -> Vec<Piece> {
+        let n = self.vertices.len() - self.first as usize;
+        let mut sets = Disjoint::new(n);
+        let first = self.first;
+        for &[a, b, c] in self.triangles {
+            sets.join(a - first, b - first);
+            sets.join(b - first, c - first);
+        }
+        let mut number = vec![usize::MAX; n];
+        let mut pieces: Vec<Piece> = vec![];
+        for (t, corners) in (0..).zip(self.triangles) {
+            let slot = &mut number[sets.root(corners[0] - first) as usize];
+            if *slot == usize::MAX {
+                *slot = pieces.len();
+                pieces.push(Piece { triangles: vec![], bounds: Box3::around([]), volume: 0.0 });
+            }
+            pieces[*slot].triangles.push(t);
+        }
+        for piece in &mut pieces {
+            piece.bounds = Box3::around(piece.triangles.iter().flat_map(|&t| self.corners(t)));
+            piece.volume = self.volume(piece);
+        }
+        pieces
+    }
+
+    fn volume(&self, piece: &Piece) -> f64 {
+        let own = piece.triangles.iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
+        volume(self.vertices, &own)
+    }
+
+    /// A vertex of a piece.
+    pub fn vertex(&self, piece: &Piece) -> u32 {
+        self.triangles[piece.triangles[0] as usize][0]
+    }
+
+    /// How often a piece winds around a point; 0 outside its box.
+    ///
+    /// Source: van Oosterom and Strackee, *The solid angle of a plane triangle*, 1983.
+    pub fn turns(&self, piece: &Piece, at: DVec3) -> f64 {
+        if !piece.bounds.meets(&Box3 { low: at, high: at }) {
+            return 0.0;
+        }
+        let angle = |&t: &u32| {
+            let [a, b, c] = self.corners(t).map(|p| p - at);
+            let [x, y, z] = [a, b, c].map(DVec3::length);
+            libm::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
         };
-        let others = pieces.iter().enumerate().filter(|&(other, _)| other != k);
-        // Within another one it is a cavity.
-        if others.map(|(_, other)| around(other)).sum::<f64>() < 0.5 {
-            return Some((v, "a piece of it is inside out, and its normals are to be flipped,"));
-        }
+        piece.triangles.iter().map(angle).sum::<f64>() / (2.0 * PI)
     }
-    let area = triangles.iter().map(|t| {
-        let [a, b, c] = t.map(|v| vertices[v as usize]);
-        0.5 * (b - a).cross(c - a).length()
-    });
-    let area = area.sum::<f64>();
-    let enclosed = pieces.iter().map(|piece| piece.volume.abs()).sum::<f64>();
-    (enclosed <= FLAT * area * area.sqrt())
-        .then(|| (triangles[0][0], "its faces lie on each other and enclose nothing"))
-}
 
-fn pieces(vertices: &[DVec3], triangles: &[[u32; 3]], first: u32) -> Vec<Piece> {
-    let n = vertices.len() - first as usize;
-    let mut sets = Disjoint::new(n);
-    for &[a, b, c] in triangles {
-        sets.join(a - first, b - first);
-        sets.join(b - first, c - first);
+    /// A piece that encloses nothing.
+    pub fn flat(&self, pieces: &[Piece]) -> Option<Fault> {
+        let is_flat = |piece: &&Piece| {
+            let area = piece.triangles.iter().map(|&t| {
+                let [a, b, c] = self.corners(t);
+                0.5 * (b - a).cross(c - a).length()
+            });
+            let area = area.sum::<f64>();
+            piece.volume.abs() <= FLAT * area * area.sqrt()
+        };
+        let reason = match pieces {
+            [_] => "its faces lie on each other and enclose nothing",
+            _ => "the faces of a piece of it lie on each other and enclose nothing",
+        };
+        pieces.iter().find(is_flat).map(|piece| (self.vertex(piece), reason))
     }
-    let mut number = vec![usize::MAX; n];
-    let mut pieces: Vec<Piece> = vec![];
-    for t in triangles {
-        let slot = &mut number[sets.root(t[0] - first) as usize];
-        if *slot == usize::MAX {
-            *slot = pieces.len();
-            let (low, high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-            pieces.push(Piece { triangles: vec![], low, high, volume: 0.0 });
-        }
-        let piece = &mut pieces[*slot];
-        piece.triangles.push(*t);
-        for v in t {
-            let p = vertices[*v as usize];
-            (piece.low, piece.high) = (piece.low.min(p), piece.high.max(p));
-        }
-    }
-    for piece in &mut pieces {
-        piece.volume = volume(vertices, &piece.triangles);
-    }
-    pieces
-}
 
-/// How often a closed surface winds around a point.
-///
-/// Source: van Oosterom and Strackee, *The solid angle of a plane triangle*, 1983.
-fn turns(vertices: &[DVec3], triangles: &[[u32; 3]], at: DVec3) -> f64 {
-    let angle = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|v| vertices[v as usize] - at);
-        let [x, y, z] = [a, b, c].map(DVec3::length);
-        libm::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
-    };
-    triangles.iter().map(angle).sum::<f64>() / (2.0 * PI)
+    /// For each piece the one whose volume it belongs to: for a cavity the smallest one around it, else itself.
+    pub fn owners(&self, pieces: &[Piece]) -> Result<Vec<usize>, Fault> {
+        let owner = |(k, piece): (usize, &Piece)| {
+            if !piece.is_cavity() {
+                return Ok(k);
+            }
+            let v = self.vertex(piece);
+            let at = self.vertices[v as usize];
+            let others = pieces.iter().enumerate().filter(|&(other, _)| other != k);
+            let around = others.filter(|(_, other)| self.turns(other, at) > 0.5);
+            let smallest = around.min_by(|a, b| a.1.volume.total_cmp(&b.1.volume));
+            smallest.map(|(other, _)| other).ok_or((v, INSIDE_OUT))
+        };
+        // The first fault, on any number of threads.
+        pieces.par_iter().enumerate().map(owner).collect::<Vec<_>>().into_iter().collect()
+    }
 }
 
 /// The volume that triangles enclose.

@@ -50,7 +50,7 @@ pub(super) fn take(site: &Site<'_>, strip: &Strip, crease: bool) -> Option<Taken
             })
         });
         triangles.push(corners);
-        sides.push(site.union.part(site.parts, t as usize) as u32);
+        sides.push(site.union.solid(site.parts, t as usize) as u32);
     }
     if found.contains(&false) {
         return None;
@@ -144,7 +144,8 @@ fn harden(site: &Site<'_>, strip: &Strip, number: &FxHashMap<u32, u32>, local: &
         let own = site.union.triangles[t as usize];
         for k in 0..3 {
             let other = site.union.topology.across[t as usize][k];
-            let same = site.union.part(site.parts, t as usize) == site.union.part(site.parts, other as usize);
+            let same =
+                site.union.solid(site.parts, t as usize) == site.union.solid(site.parts, other as usize);
             if other == NONE || other < t || !same || normal(t).angle_between(normal(other)) < SHARP {
                 continue;
             }

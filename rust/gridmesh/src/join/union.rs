@@ -8,8 +8,10 @@ use manifold_rust::types::{BooleanEngine, MeshGL64, OpType};
 use rustc_hash::FxHashMap;
 
 use super::parts::Parts;
+use super::pieces::Surface;
 use crate::error::{Error, Result};
 use crate::fill::parallel::in_parallel;
+use crate::fill::surface::meet::Box3;
 use crate::geometry::topology::{NONE, Topology};
 use crate::progress::Progress;
 
@@ -37,9 +39,10 @@ impl Union {
     /// [`Error::JoinFailed`], [`Error::Cancelled`].
     pub fn new(parts: &Parts, progress: Progress<'_>) -> Result<Union> {
         let failed = |reason| Error::JoinFailed { reason, at: parts.vertices[0].into() };
-        let first_id = Manifold::reserve_ids(parts.len() as u32);
+        let first_id = Manifold::reserve_ids(parts.solids.len() as u32);
         // Side by side, in pairs, pairs of pairs and so on: the order is the same on any number of threads.
-        let solids = groups(parts).iter().map(|group| solid(parts, group, first_id)).collect::<Vec<_>>();
+        let solids =
+            groups(parts).iter().map(|group| mesh_of_group(parts, group, first_id)).collect::<Vec<_>>();
         let size = |solid: &MeshGL64| solid.tri_verts.len();
         let mut all = in_parallel(&solids, size, progress.part(0.0, 0.2), |solid, progress| {
             progress.report(0.0)?;
@@ -85,14 +88,13 @@ impl Union {
         let triangles = triangles.collect::<Vec<_>>();
         let mut source = vec![NONE; triangles.len()];
         for (run, id) in mesh.run_original_id.iter().enumerate() {
-            let part = id.checked_sub(first_id).filter(|&part| (part as usize) < parts.len())?;
-            let first = parts.first[part as usize][2];
+            let own = &parts.solids.get(id.checked_sub(first_id)? as usize)?.triangles;
             let span = |k: usize| mesh.run_index.get(k).map_or(triangles.len(), |&i| i as usize / 3);
             for (t, source) in source.iter_mut().enumerate().take(span(run + 1)).skip(span(run)) {
-                *source = first + u32::try_from(*mesh.face_id.get(t)?).ok()?;
+                *source = *own.get(usize::try_from(*mesh.face_id.get(t)?).ok()?)?;
             }
         }
-        if source.iter().any(|&s| s as usize >= parts.triangles.len()) {
+        if source.contains(&NONE) {
             return None;
         }
         let mut old = vec![NONE; vertices.len()];
@@ -113,18 +115,18 @@ impl Union {
         (!open).then_some(Union { vertices, triangles, source, old, topology })
     }
 
-    /// The part that a triangle lies on.
-    pub fn part(&self, parts: &Parts, triangle: usize) -> usize {
-        parts.part_of_triangle(self.source[triangle])
+    /// The solid that a triangle lies on.
+    pub fn solid(&self, parts: &Parts, triangle: usize) -> usize {
+        parts.solid_of_triangle(self.source[triangle])
     }
 
-    /// Edges between triangles of different parts: their vertices, and the two triangles.
+    /// Edges between triangles of different solids: their vertices, and the two triangles.
     pub fn seams(&self, parts: &Parts) -> Vec<([u32; 2], [u32; 2])> {
-        let part = (0..self.triangles.len()).map(|t| self.part(parts, t)).collect::<Vec<_>>();
+        let solid = (0..self.triangles.len()).map(|t| self.solid(parts, t)).collect::<Vec<_>>();
         let mut seams = vec![];
         for (t, beyond) in self.topology.across.iter().enumerate() {
             for (k, &other) in beyond.iter().enumerate() {
-                if other as usize > t && part[other as usize] != part[t] {
+                if other as usize > t && solid[other as usize] != solid[t] {
                     let [a, b] = [self.triangles[t][(k + 1) % 3], self.triangles[t][(k + 2) % 3]];
                     seams.push(([a, b], [t as u32, other]));
                 }
@@ -150,48 +152,47 @@ impl Union {
     }
 }
 
-/// Parts whose boxes are apart in groups that need no Boolean operation among themselves: often all limbs of a body.
+/// Solids whose boxes are apart in groups that need no Boolean operation among themselves: often all limbs of a body.
 fn groups(parts: &Parts) -> Vec<Vec<usize>> {
-    let bounds = (0..parts.len()).map(|part| {
-        let [v, end] = [part, part + 1].map(|part| parts.first[part][0] as usize);
-        let first = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        parts.vertices[v..end].iter().fold(first, |(low, high), &p| (low.min(p), high.max(p)))
+    let bounds = parts.solids.iter().map(|solid| {
+        let corners = solid.triangles.iter().flat_map(|&t| parts.triangles[t as usize]);
+        Box3::around(corners.map(|v| parts.vertices[v as usize]))
     });
     let bounds = bounds.collect::<Vec<_>>();
-    let is_apart = |&a: &usize, &b: &usize| {
-        let ([low, high], [first, last]) = ([bounds[a].0, bounds[a].1], [bounds[b].0, bounds[b].1]);
-        high.cmplt(first).any() || last.cmplt(low).any()
-    };
     let mut groups: Vec<Vec<usize>> = vec![];
-    for part in 0..parts.len() {
-        match groups.iter_mut().find(|group| group.iter().all(|other| is_apart(&part, other))) {
-            Some(group) => group.push(part),
-            None => groups.push(vec![part]),
+    for solid in 0..parts.solids.len() {
+        match groups.iter_mut().find(|group| group.iter().all(|&o| !bounds[solid].meets(&bounds[o]))) {
+            Some(group) => group.push(solid),
+            None => groups.push(vec![solid]),
         }
     }
     groups
 }
 
-/// Parts as the Boolean operation takes them: each triangle a face of its own.
-fn solid(parts: &Parts, group: &[usize], first_id: u32) -> MeshGL64 {
+/// Solids as the Boolean operation takes them.
+fn mesh_of_group(parts: &Parts, group: &[usize], first_id: u32) -> MeshGL64 {
     let mut mesh = MeshGL64 { num_prop: 3, run_index: vec![0], ..MeshGL64::default() };
-    for &part in group {
-        let ([v, _, t], [v_end, _, t_end]) = (parts.first[part], parts.first[part + 1]);
-        let vertices = &parts.vertices[v as usize..v_end as usize];
-        let triangles = &parts.triangles[t as usize..t_end as usize];
-        // Vertices of no face would count as points of the solid's box.
-        let mut used = vec![NONE; vertices.len()];
-        for &corner in triangles.iter().flatten() {
-            let slot = &mut used[(corner - v) as usize];
-            if *slot == NONE {
-                *slot = (mesh.vert_properties.len() / 3) as u32;
-                mesh.vert_properties.extend(vertices[(corner - v) as usize].to_array());
-            }
-            mesh.tri_verts.push(u64::from(*slot));
-        }
-        mesh.run_original_id.push(first_id + part as u32);
-        mesh.run_index.push(mesh.tri_verts.len() as u64);
-        mesh.face_id.extend(0..triangles.len() as u64);
+    for &solid in group {
+        let own = &parts.solids[solid];
+        let all = Surface { vertices: &parts.vertices, first: 0, triangles: &parts.triangles };
+        add_run(&mut mesh, &all, &own.triangles, first_id + solid as u32);
     }
     mesh
+}
+
+/// Adds triangles of a surface as a run, each a face of its own.
+pub(super) fn add_run(mesh: &mut MeshGL64, surface: &Surface<'_>, triangles: &[u32], id: u32) {
+    // Vertices of no face would count as points of the solid's box.
+    let mut used: FxHashMap<u32, u64> = FxHashMap::default();
+    for corner in triangles.iter().flat_map(|&t| surface.triangles[t as usize]) {
+        let next = (mesh.vert_properties.len() / 3) as u64;
+        let number = *used.entry(corner).or_insert(next);
+        if number == next {
+            mesh.vert_properties.extend(surface.vertices[corner as usize].to_array());
+        }
+        mesh.tri_verts.push(number);
+    }
+    mesh.run_original_id.push(id);
+    mesh.run_index.push(mesh.tri_verts.len() as u64);
+    mesh.face_id.extend(0..triangles.len() as u64);
 }
