@@ -142,7 +142,8 @@ def test_a_cavity_stays_with_the_piece_around_it_where_another_one_crosses():
 
 def test_cavities_that_cross_are_refused_with_their_place():
     outer, hole = box(0, 4), inward(box(1, 1))
-    for other in (inward(box([1.4, 1.3, 1.55], 1)), inward(box([3.5, 2.2, 2.1], 1))):
+    others = box(1.5, 1), box([1.4, 1.3, 1.55], 1), box([3.5, 2.2, 2.1], 1), box([3.5, 2, 2], 1)
+    for other in map(inward, others):
         with pytest.raises(gridmesh.GridMeshError, match="a cavity of it crosses") as caught:
             gridmesh.join([one(outer, hole, other), box(9, 1)])
         assert caught.value.kind == "not_closed"

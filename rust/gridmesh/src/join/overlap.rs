@@ -148,18 +148,18 @@ fn lie(surface: &Surface<'_>, a: &Piece, b: &Piece) -> Result<Lie> {
     }
     match touching {
         None => Ok(Lie::Apart),
-        Some(v) if !a.is_cavity() && !b.is_cavity() && common_volume(surface, a, b, v)? => {
-            Ok(Lie::Crossing(v))
-        }
+        Some(v) if overlap(surface, a, b, v)? => Ok(Lie::Crossing(v)),
         Some(_) => Ok(Lie::Touching),
     }
 }
 
-/// Whether two pieces that touch at a vertex enclose something in common.
-fn common_volume(surface: &Surface<'_>, a: &Piece, b: &Piece, v: u32) -> Result<bool> {
+/// Whether what two pieces that touch at a vertex enclose overlaps; for a solid one and a cavity neither may hold the other, too.
+fn overlap(surface: &Surface<'_>, a: &Piece, b: &Piece, v: u32) -> Result<bool> {
+    let turned = surface.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect::<Vec<_>>();
     let meshes = [a, b].map(|piece| {
+        let triangles = if piece.is_cavity() { &turned[..] } else { surface.triangles };
         let mut mesh = MeshGL64 { num_prop: 3, run_index: vec![0], ..MeshGL64::default() };
-        add_run(&mut mesh, surface, &piece.triangles, 0);
+        add_run(&mut mesh, &Surface { triangles, ..*surface }, &piece.triangles, 0);
         mesh
     });
     let common = catch_unwind(AssertUnwindSafe(|| {
@@ -170,5 +170,6 @@ fn common_volume(surface: &Surface<'_>, a: &Piece, b: &Piece, v: u32) -> Result<
         let reason = "the Boolean operation on pieces of one part that touch broke down";
         Error::JoinFailed { reason, at: surface.vertices[v as usize].into() }
     })?;
-    Ok(common > COMMON * a.volume.min(b.volume))
+    let share = common / a.volume.abs().min(b.volume.abs());
+    Ok(share > COMMON && (a.is_cavity() == b.is_cavity() || share < 1.0 - COMMON))
 }

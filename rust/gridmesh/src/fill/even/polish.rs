@@ -38,15 +38,20 @@ pub(crate) fn improve(local: &mut Local, v: u32) -> bool {
     let p = local.positions[v as usize];
     let sum = local.fan(v).iter().map(|&t| normal(own(p, t))).sum::<DVec3>();
     let Some(up) = sum.try_normalize() else { return false };
-    // A triangle that faces away counts as worse than any.
-    let worst = |p: DVec3| {
-        let of = |&t: &u32| {
+    // A triangle that faces away counts as worse than any. What is no better than `least` is not looked at to the end.
+    let worst = |p: DVec3, least: f64| {
+        let mut worst = f64::INFINITY;
+        for &t in local.fan(v) {
             let corners = own(p, t);
-            if normal(corners).dot(up) > 0.0 { quality(corners) } else { -quality(corners) }
-        };
-        local.fan(v).iter().map(of).fold(f64::INFINITY, f64::min)
+            let it = quality(corners);
+            worst = worst.min(if normal(corners).dot(up) > 0.0 { it } else { -it });
+            if worst <= least {
+                break;
+            }
+        }
+        worst
     };
-    let before = worst(p);
+    let before = worst(p, f64::NEG_INFINITY);
     if before > THIN {
         return false;
     }
@@ -57,7 +62,7 @@ pub(crate) fn improve(local: &mut Local, v: u32) -> bool {
         for way in 0..WAYS {
             let t = std::f64::consts::TAU * way as f64 / WAYS as f64;
             let there = p + step * size * (libm::cos(t) * e + libm::sin(t) * f);
-            let found = worst(there);
+            let found = worst(there, best.0);
             if found > best.0 {
                 best = (found, there);
             }

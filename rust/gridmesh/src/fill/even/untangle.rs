@@ -32,6 +32,15 @@ pub(crate) struct Near {
     positions: Vec<DVec3>,
     /// Numbers below that of the border's vertices are the patch's, the others those above.
     triangles: Vec<[u32; 3]>,
+    /// Their boxes: a patch is looked at many times, and what is near stays.
+    boxes: RTree<Boxed>,
+}
+
+type Boxed = GeomWithData<Rectangle<[f64; 3]>, u32>;
+
+fn boxed(number: usize, corners: [DVec3; 3]) -> Boxed {
+    let own = Box3::around(corners);
+    Boxed::new(Rectangle::from_corners(own.low.to_array(), own.high.to_array()), number as u32)
 }
 
 impl Near {
@@ -54,6 +63,8 @@ impl Near {
             });
             near.triangles.push(named);
         }
+        let corners = found[0].iter().map(|&t| triangles[t as usize].map(|v| vertices[v as usize]));
+        near.boxes = RTree::bulk_load(corners.enumerate().map(|(k, corners)| boxed(k, corners)).collect());
         near
     }
 
@@ -73,14 +84,10 @@ impl Near {
 /// [`Error::Cancelled`](crate::error::Error::Cancelled).
 pub(crate) fn tangled(local: &Local, near: &Near, progress: Progress<'_>) -> Result<Vec<u32>> {
     let (vertices, around) = near.beside(local);
-    let all = [&local.triangles[..], &around[..]].concat();
-    let around = |t: &[u32; 3]| Box3::around(t.map(|v| vertices[v as usize]));
-    let boxed = |(k, t): (usize, &[u32; 3])| {
-        let own = around(t);
-        GeomWithData::new(Rectangle::from_corners(own.low.to_array(), own.high.to_array()), k as u32)
-    };
+    let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
     let finite = |t: &[u32; 3]| t.iter().all(|&v| vertices[v as usize].is_finite());
-    let tree = RTree::bulk_load(all.iter().enumerate().filter(|(_, t)| finite(t)).map(boxed).collect());
+    let own = local.triangles.iter().enumerate().filter(|(_, t)| finite(t));
+    let tree = RTree::bulk_load(own.map(|(k, t)| boxed(k, corners(t))).collect());
     let n = local.triangles.len();
     let mut bad = vec![false; n];
     for (i, &t) in local.triangles.iter().enumerate() {
@@ -91,17 +98,16 @@ pub(crate) fn tangled(local: &Local, near: &Near, progress: Progress<'_>) -> Res
             bad[i] = true;
             continue;
         }
-        let own = around(&t);
+        let own = Box3::around(corners(&t));
         let envelope = AABB::from_corners(own.low.to_array(), own.high.to_array());
         for hit in tree.locate_in_envelope_intersecting(envelope) {
             let k = hit.data as usize;
-            if k > i && triangles_meet(&vertices, t, all[k]) {
-                bad[i] = true;
-                if k < n {
-                    bad[k] = true;
-                }
+            if k > i && triangles_meet(&vertices, t, local.triangles[k]) {
+                (bad[i], bad[k]) = (true, true);
             }
         }
+        let mut beside = near.boxes.locate_in_envelope_intersecting(envelope);
+        bad[i] = bad[i] || beside.any(|hit| triangles_meet(&vertices, t, around[hit.data as usize]));
     }
     Ok((0..n as u32).filter(|&t| bad[t as usize]).collect())
 }
