@@ -9,7 +9,6 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
 use super::pieces::{Fault, INSIDE_OUT, Piece, Surface};
-use super::union::add_run;
 use crate::error::{Error, Result};
 use crate::fill::parallel::in_parallel;
 use crate::fill::surface::meet::Box3;
@@ -159,7 +158,7 @@ fn overlap(surface: &Surface<'_>, a: &Piece, b: &Piece, v: u32) -> Result<bool> 
     let meshes = [a, b].map(|piece| {
         let triangles = if piece.is_cavity() { &turned[..] } else { surface.triangles };
         let mut mesh = MeshGL64 { num_prop: 3, run_index: vec![0], ..MeshGL64::default() };
-        add_run(&mut mesh, &Surface { triangles, ..*surface }, &piece.triangles, 0);
+        Surface { triangles, ..*surface }.add_run(&mut mesh, &piece.triangles, 0);
         mesh
     });
     let common = catch_unwind(AssertUnwindSafe(|| {

@@ -3,7 +3,9 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use manifold_rust::types::MeshGL64;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use crate::fill::surface::meet::Box3;
 use crate::geometry::disjoint::Disjoint;
@@ -75,6 +77,23 @@ impl Surface<'_> {
     fn volume(&self, piece: &Piece) -> f64 {
         let own = piece.triangles.iter().map(|&t| self.triangles[t as usize]).collect::<Vec<_>>();
         volume(self.vertices, &own)
+    }
+
+    /// Adds some of its triangles to what the Boolean operation takes as a run, each a face of its own.
+    pub fn add_run(&self, mesh: &mut MeshGL64, triangles: &[u32], id: u32) {
+        // Vertices of no face would count as points of the solid's box.
+        let mut used: FxHashMap<u32, u64> = FxHashMap::default();
+        for corner in triangles.iter().flat_map(|&t| self.triangles[t as usize]) {
+            let next = (mesh.vert_properties.len() / 3) as u64;
+            let number = *used.entry(corner).or_insert(next);
+            if number == next {
+                mesh.vert_properties.extend(self.vertices[corner as usize].to_array());
+            }
+            mesh.tri_verts.push(number);
+        }
+        mesh.run_original_id.push(id);
+        mesh.run_index.push(mesh.tri_verts.len() as u64);
+        mesh.face_id.extend(0..triangles.len() as u64);
     }
 
     /// A vertex of a piece.

@@ -175,24 +175,7 @@ fn mesh_of_group(parts: &Parts, group: &[usize], first_id: u32) -> MeshGL64 {
     for &solid in group {
         let own = &parts.solids[solid];
         let all = Surface { vertices: &parts.vertices, first: 0, triangles: &parts.triangles };
-        add_run(&mut mesh, &all, &own.triangles, first_id + solid as u32);
+        all.add_run(&mut mesh, &own.triangles, first_id + solid as u32);
     }
     mesh
-}
-
-/// Adds triangles of a surface as a run, each a face of its own.
-pub(super) fn add_run(mesh: &mut MeshGL64, surface: &Surface<'_>, triangles: &[u32], id: u32) {
-    // Vertices of no face would count as points of the solid's box.
-    let mut used: FxHashMap<u32, u64> = FxHashMap::default();
-    for corner in triangles.iter().flat_map(|&t| surface.triangles[t as usize]) {
-        let next = (mesh.vert_properties.len() / 3) as u64;
-        let number = *used.entry(corner).or_insert(next);
-        if number == next {
-            mesh.vert_properties.extend(surface.vertices[corner as usize].to_array());
-        }
-        mesh.tri_verts.push(number);
-    }
-    mesh.run_original_id.push(id);
-    mesh.run_index.push(mesh.tri_verts.len() as u64);
-    mesh.face_id.extend(0..triangles.len() as u64);
 }
