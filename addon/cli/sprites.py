@@ -39,6 +39,8 @@ class MadeSprite:
             "min_angle": _least_angle(cutout),
         }
         self.notes = [f"a part is left out: {reason}" for reason in cutout.refused]
+        if cutout.finer:
+            self.notes.append(f"more faces than the {cutout.asked} asked for; {cutout.finer}")
         if cutout.widened:
             self.notes.append(
                 f"lines are too thin for a mesh; all is {cutout.widened:g} px wider to each side"

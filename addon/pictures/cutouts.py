@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,20 +10,24 @@ import numpy as np
 
 from ..api import FACE_AREA, CancelledError, Progress, cancelling, faces_of, part_of
 from ..native import native
-from .sizes import FINER, SHORT, Lacks, area, even, finest, lacks_of, shortest
+from .sizes import (
+    SHORT,
+    WORTH_SHORT,
+    Lacks,
+    Made,
+    area,
+    best,
+    even,
+    is_coarse,
+    lacks_of,
+    number_of,
+    shortest,
+    step_of,
+)
 from .tracing import Options, Outlines, PictureError, check_size, traced
 
 _SQUARE = 0.75
 """How far whole pixels may reach over the outline of what they cover, at most."""
-
-_AGAIN = 0.5
-"""Parts whose edges are at least this long, relative to those of the others, are meshed again where their mesh lacks something."""
-
-_MOST = 4
-"""Sizes tried at most for parts that are cut off."""
-
-_SIZES = (1.0, 0.94, 0.88)
-"""Edge lengths tried for bodies with short edges, relative to that wanted: little finer each, as the lattice lies elsewhere at any other size."""
 
 _MISSING = 0.01
 """Share of the area that may be missing because lines are too thin, before all is widened."""
@@ -34,6 +37,29 @@ _WIDER = (0.5, 1.0)
 
 _TRACING = 0.3
 """Part of the time that tracing takes; the rest is meshing."""
+
+
+_MORE = 1.2
+"""How many times as many faces as were asked for are told."""
+
+_WHY = {
+    "thin": "fewer cannot follow its thin lines",
+    "cut_off": "fewer cut off more of its tips",
+    "area": "fewer follow its outline less closely",
+    "short": "fewer have short edges",
+    "": "its thin parts and corners take more",
+    "beside": "fewer have short edges in its thin parts beside long ones",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class _Meshed:
+    """The parts of a picture as they are meshed."""
+
+    surfaces: list[Any]
+    """Surface or GridMeshError for each."""
+    why: str
+    """Why most of what is finer than asked for is so; empty if nothing is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +81,10 @@ class Cutout:
     """Islands that were too small."""
     refused: list[str]
     """Why parts are missing."""
+    asked: int = 0
+    """Faces of one side that were asked for."""
+    finer: str = ""
+    """Why it has more, if it has."""
     widened: float = 0.0
     """How many pixels the margin is wider than asked for, because lines were too thin to be meshed."""
 
@@ -79,67 +109,63 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
             outlines = traced(gridmesh, pixels, options, part_of(progress, 0.0, _TRACING))
             if not outlines.parts:
                 raise PictureError(_nothing(outlines.dropped))
-            surfaces = _meshed(gridmesh, outlines, options, part_of(progress, _TRACING, 1.0))
+            meshed = _meshed(gridmesh, outlines, options, part_of(progress, _TRACING, 1.0))
             widened = 0.0
-            if _is_thin(outlines.parts, surfaces):
-                outlines, surfaces, widened = _widened(
-                    gridmesh, pixels, (outlines, surfaces), options, progress
-                )
+            if _is_thin(outlines.parts, meshed.surfaces):
+                outlines, meshed, widened = _widened(gridmesh, pixels, (outlines, meshed), options, progress)
+            surfaces = meshed.surfaces
             _tell_numbers(gridmesh, outlines.parts, surfaces, options, progress)
     except gridmesh.GridMeshError as error:
         raise PictureError(str(error)) from error
     refused = [str(surface) for surface in surfaces if isinstance(surface, gridmesh.GridMeshError)]
-    meshed = [surface for surface in surfaces if not isinstance(surface, gridmesh.GridMeshError)]
-    if not meshed:
+    found = [surface for surface in surfaces if not isinstance(surface, gridmesh.GridMeshError)]
+    if not found:
         raise PictureError(refused[0])
-    starts = np.cumsum([0, *(len(surface.vertices) for surface in meshed)])
-    vertices = np.concatenate([surface.vertices for surface in meshed])
+    starts = np.cumsum([0, *(len(surface.vertices) for surface in found)])
+    vertices = np.concatenate([surface.vertices for surface in found])
     faces = np.concatenate(
-        [faces_of(surface) + start for surface, start in zip(meshed, starts, strict=False)]
+        [faces_of(surface) + start for surface, start in zip(found, starts, strict=False)]
     ).astype(np.int32)
+    asked = options.triangles if options.quads is None else options.quads
+    more = len(faces) > _MORE * asked * (1 if options.body is None else 2)
     return Cutout(
         vertices=vertices,
         faces=faces,
         uv=vertices[faces.ravel(), :2] / [width, height],
         silhouette=[
-            loop + start
-            for surface, start in zip(meshed, starts, strict=False)
-            for loop in surface.silhouette
+            loop + start for surface, start in zip(found, starts, strict=False) for loop in surface.silhouette
         ],
         starts=starts[:-1],
-        corner=[row for surface in meshed for row in surface.corner],
-        parts=len(meshed),
+        corner=[row for surface in found for row in surface.corner],
+        parts=len(found),
         dropped=outlines.dropped,
         refused=refused,
+        asked=asked,
+        finer=_WHY[meshed.why] if more else "",
         widened=widened,
     )
 
 
-def _is_coarse(surface: Any) -> bool:
-    """Whether no size could follow a part."""
-    return getattr(surface, "kind", "") in {"too_coarse", "no_patch"}
-
-
 def _is_thin(parts: list[Any], surfaces: list[Any]) -> bool:
     """Whether lines are too thin in more of the picture than specks."""
-    missing = sum(_drawn(part) for part, surface in zip(parts, surfaces, strict=True) if _is_coarse(surface))
+    missing = sum(_drawn(part) for part, surface in zip(parts, surfaces, strict=True) if is_coarse(surface))
     return missing > _MISSING * sum(map(_drawn, parts))
 
 
 def _widened(
     gridmesh: Any,
     pixels: np.ndarray,
-    first: tuple[Outlines, list[Any]],
+    first: tuple[Outlines, _Meshed],
     options: Options,
     progress: Progress | None,
-) -> tuple[Outlines, list[Any], float]:
+) -> tuple[Outlines, _Meshed, float]:
     """Outlines and surfaces with a wider margin, if lines are no longer too thin with it, and by how much it is wider; else the first ones."""
     for more in _WIDER:
         outlines = traced(gridmesh, pixels, options, part_of(progress, 1.0, 1.0), more)
         wider = replace(options, margin=options.margin + more)
-        surfaces = _meshed(gridmesh, outlines, wider, part_of(progress, 1.0, 1.0))
-        if not _is_thin(outlines.parts, surfaces):
-            return outlines, surfaces, more
+        meshed = _meshed(gridmesh, outlines, wider, part_of(progress, 1.0, 1.0))
+        if not _is_thin(outlines.parts, meshed.surfaces):
+            return outlines, meshed, more
     return *first, 0.0
 
 
@@ -149,40 +175,46 @@ def _nothing(dropped: int) -> str:
     return "nothing in it is covered; choose another background or a lower threshold"
 
 
-def _meshed(gridmesh: Any, outlines: Outlines, options: Options, progress: Progress | None) -> list[Any]:
+def _meshed(gridmesh: Any, outlines: Outlines, options: Options, progress: Progress | None) -> _Meshed:
     """Surface or GridMeshError for each part, all with edges of about the same length."""
     parts = outlines.parts
     number, cells, length = _asked(parts, options)
-    lacks = lacks_of(parts, length, options.body is not None, options.margin, outlines.faint)
-    results: list[Any] = [None] * len(parts)
+    asked = step_of(number)
+    known: dict[tuple[int, int], Made] = {}
 
-    def mesh(which: list[int], finer: float, of_these: Progress | None) -> dict[int, Any]:
-        made = _surfaces(
-            gridmesh,
-            [parts[k] for k in which],
-            {"cells": cells, "edge_length": finer * length, "least": False, **_bend(cells, options)},
-            options,
-            # Lines that are thin for the triangles wanted have many as it is.
-            [lacks[k] if finer >= _AGAIN else None for k in which],
-            of_these,
-        )
-        if any(getattr(surface, "kind", "") == "cancelled" for surface in made):
-            raise CancelledError
-        return dict(zip(which, made, strict=True))
+    def make(k: int, step: int, score: float, of_this: Progress | None) -> Made | None:
+        if (k, step) not in known:
+            finer = number_of(step)
+            lacks = lacks_of(
+                parts, finer, FACE_AREA[cells], options.body is not None, options.margin, outlines.faint
+            )
+            sized = {
+                "cells": cells,
+                "edge_length": length * float(np.sqrt(number / finer)),
+                "least": False,
+                **_bend(cells, options),
+            }
+            made = _made(gridmesh, parts[k], sized, options, (lacks[k], step, score), of_this)
+            if made is None:
+                return None
+            known[k, step] = made
+        return known[k, step]
 
-    left = list(range(len(parts)))
-    sizes = finest(number)
-    for step, finer in enumerate(sizes):
-        # Most parts are made at once.
-        now = part_of(progress, 1 - 0.5**step, 1 - 0.5 ** (step + 1))
-        for k, surface in mesh(left, finer, now).items():
-            results[k] = surface
-        left = [k for k in left if _is_coarse(results[k])]
-        if not left:
-            break
-    if len(parts) > 1 and cells == "triangles":
-        even(results, lambda which, finer: mesh(which, finer, part_of(progress, 1.0, 1.0)))
-    return results
+    def finer(k: int, first: int) -> Made | None:
+        part = part_of(progress, k / len(parts), (k + 1) / len(parts))
+        return best(first, number, lambda step, score: make(k, step, score, part))
+
+    results = [finer(k, asked) for k in range(len(parts))]
+    why: dict[str, float] = {}
+    for k, made in enumerate(results):
+        at_first = known[k, asked]
+        reasons = {"thin": 1.0} if is_coarse(at_first.surface) else at_first.lacks
+        if made.step > asked and reasons:
+            reason = max(reasons, key=reasons.get)
+            why[reason] = why.get(reason, 0.0) + _drawn(parts[k])
+    if len(parts) > 1 and cells == "triangles" and (changed := even(results, finer)):
+        why["beside"] = sum(_drawn(parts[k]) for k in changed)
+    return _Meshed([made.surface for made in results], max(why, key=why.get) if why else "")
 
 
 def _asked(parts: list[Any], options: Options) -> tuple[int, str, float]:
@@ -251,74 +283,38 @@ def _bend(cells: str, options: Options) -> dict[str, float]:
     return {"bend": 0.0} if options.body is None and cells == "triangles" else {}
 
 
-def _surfaces(
-    gridmesh: Any,
-    parts: list[Any],
-    options: dict[str, Any],
-    chosen: Options,
-    lacks: list[Lacks | None],
-    progress: Progress | None,
-) -> list[Any]:
-    """Surface or GridMeshError for each part; those that lack more than they may are meshed again, finer."""
-    body = chosen.body
-    # Only flat corners have a single quad.
-    options = {**options, "open_corners": body is None}
-    if body is not None and "corner_angle" in body:
-        options = {**options, "corner_angle": body["corner_angle"]}
-
-    def surface(at: int) -> Any:
-        part = part_of(progress, at / len(parts), (at + 1) / len(parts))
-        try:
-            if body is None:
-                return gridmesh.flat(_patch(gridmesh, parts[at], options, chosen, lacks[at], part))
-            return _body(gridmesh, parts[at], options, chosen, lacks[at], part)
-        except gridmesh.GridMeshError as error:
-            return error
-
-    return [surface(at) for at in range(len(parts))]
-
-
-def _in_sizes(
-    gridmesh: Any,
-    sizes: tuple[float, ...],
-    options: dict[str, Any],
-    make: Callable[[dict[str, Any], Progress | None], Any],
-    progress: Progress | None,
-) -> Iterator[Any]:
-    """What is made with edges of each of these lengths, relative to that wanted; no more where one is refused after the first."""
-    for step, size in enumerate(sizes):
-        sized = {**options, "edge_length": size * options["edge_length"]}
-        try:
-            made = make(sized, part_of(progress, step / len(sizes), (step + 1) / len(sizes)))
-        except gridmesh.GridMeshError as error:
-            if step == 0 or error.kind == "cancelled":
-                raise
-            return
-        yield made
-
-
-def _body(
+def _made(
     gridmesh: Any,
     part: tuple[np.ndarray, list[np.ndarray]],
     options: dict[str, Any],
     chosen: Options,
-    lacks: Lacks | None,
+    wanted: tuple[Lacks, int, float],
     progress: Progress | None,
-) -> Any:
-    """Body on the outline of a part; of a few sizes the first that has no short edge, or the one whose shortest is longest."""
-
-    def make(sized: dict[str, Any], of_this: Progress | None) -> Any:
-        patch = _patch(gridmesh, part, sized, chosen, lacks, part_of(of_this, 0.0, 0.7))
-        return gridmesh.inflate(patch, progress=part_of(of_this, 0.7, 1.0), **chosen.body)
-
+) -> Made | None:
+    """Surface or GridMeshError of a part at a step, and what it lacks; None if its score is not below one."""
+    body = chosen.body
+    lacks, step, score = wanted
+    # Only flat corners have a single quad.
+    options = {**options, "open_corners": body is None}
+    if body is not None and "corner_angle" in body:
+        options = {**options, "corner_angle": body["corner_angle"]}
+    try:
+        patch = _patch(gridmesh, part, options, chosen, lacks, part_of(progress, 0.0, 0.7))
+        covers = chosen.margin > 0 or chosen.cover
+        made = Made(patch, step, lacks.of(patch) if covers else {})
+        if made.score >= score:
+            return None
+        if body is None:
+            return Made(gridmesh.flat(patch), step, made.lacks)
+        surface = gridmesh.inflate(patch, progress=part_of(progress, 0.7, 1.0), **body)
+    except gridmesh.GridMeshError as error:
+        if error.kind == "cancelled":
+            raise CancelledError from error
+        return Made(error, step, {})
     # Quads at a rim are low by themselves.
-    sizes = _SIZES if lacks is not None and options["cells"] == "triangles" else _SIZES[:1]
-    made = []
-    for body in _in_sizes(gridmesh, sizes, options, make, progress):
-        made.append(body)
-        if shortest(body) >= SHORT:
-            return body
-    return max(made, key=shortest)
+    if options["cells"] == "triangles" and shortest(surface) < SHORT:
+        return Made(surface, step, {**made.lacks, "short": WORTH_SHORT})
+    return Made(surface, step, made.lacks)
 
 
 def _patch(
@@ -326,30 +322,20 @@ def _patch(
     part: tuple[np.ndarray, list[np.ndarray]],
     options: dict[str, Any],
     chosen: Options,
-    lacks: Lacks | None,
+    lacks: Lacks,
     progress: Progress | None,
 ) -> Any:
-    """Patch on the outline of a part, or one that covers it but for what the margin allows, or lies across it.
-
-    It is finer where it lacks more than it may, unless nothing is said of that.
-    """
+    """Patch on the outline of a part, or one that covers it but for what the margin allows, or lies across it."""
     outline, holes = part
     if chosen.margin <= 0 and not chosen.cover:
         return gridmesh.mesh_sketch(outline, holes, progress=progress, **options)
     across = chosen.margin <= 0
     slack = max(0.0, chosen.margin - _SQUARE)
-
-    def make(sized: dict[str, Any], of_this: Progress | None) -> Any:
-        return gridmesh.cover_sketch(outline, holes, slack=slack, across=across, progress=of_this, **sized)
-
-    if lacks is None:
-        return make(options, progress)
-    found = []
-    for patch in _in_sizes(gridmesh, FINER[:_MOST], options, make, progress):
-        found.append(patch)
-        if lacks.are_enough(found):
-            break
-    return min(found, key=lacks.of)
+    # The rims of bodies keep their lengths, while other edges become longer.
+    beyond = lacks.cut_off if chosen.body is None else None
+    return gridmesh.cover_sketch(
+        outline, holes, slack=slack, across=across, beyond=beyond, progress=progress, **options
+    )
 
 
 def _drawn(part: tuple[np.ndarray, list[np.ndarray]]) -> float:

@@ -347,10 +347,12 @@ def _select(context: bpy.types.Context, objects: list[bpy.types.Object]) -> None
 
 
 def _left_out(made: list[tuple[images.Picture, Options, bool, Cutout]]) -> list[str]:
-    """Tell what of the pictures is missing."""
+    """Tell what of the pictures is missing, and why a mesh has more faces than were asked for."""
     told_of = []
     for picture, *_, cutout in made:
         told_of += [f"{picture.label}: a part is left out: {reason}" for reason in cutout.refused[:3]]
+        if cutout.finer:
+            told_of.append(f"{picture.label}: more faces than the {cutout.asked} asked for; {cutout.finer}")
         if cutout.widened:
             told_of.append(
                 f"{picture.label}: lines are too thin for a mesh; all is {cutout.widened:g} px wider to each side"

@@ -1272,6 +1272,15 @@ _LIBRARY_PARTS = {
     "{}: lines are too thin for a mesh; all is {} px wider to each side": (
         "{0}: Linien sind zu dünn für ein Mesh; alles ist auf jeder Seite {1} px breiter"
     ),
+    "{}: more faces than the {} asked for; {}": "{0}: mehr Flächen als die {1} verlangten; {2}",
+    "fewer cannot follow its thin lines": "weniger können seinen dünnen Linien nicht folgen",
+    "its thin parts and corners take more": "seine dünnen Teile und Ecken brauchen mehr",
+    "fewer cut off more of its tips": "weniger schneiden mehr von seinen Spitzen ab",
+    "fewer follow its outline less closely": "weniger folgen seinem Umriss weniger genau",
+    "fewer have short edges": "weniger haben kurze Kanten",
+    "fewer have short edges in its thin parts beside long ones": (
+        "weniger haben kurze Kanten in seinen dünnen Teilen neben langen"
+    ),
     "{}: {} left out, smaller than Least Area": "{0}: {1} weggelassen, kleiner als „Kleinste Fläche“",
     "{} picture": "{0} Bild",
     "{} pictures": "{0} Bilder",

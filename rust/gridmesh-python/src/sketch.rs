@@ -175,6 +175,9 @@ pub fn mesh_sketch(
 /// across : bool
 ///     Instead of around the drawing the boundary lies across its contours: single vertices are moved until the area between
 ///     is least, about as much of it outside as inside. `slack` is not used then.
+/// beyond : float, optional
+///     Where the drawing would still reach farther beyond the mesh and the slack, as with a tip between two vertices, boundary edges of triangles are
+///     split there: a few more triangles, and inner vertices of valence seven. Not used with `across`, and for quads.
 /// **options
 ///     All others of `mesh_sketch` but `keep`.
 ///
@@ -189,7 +192,7 @@ pub fn mesh_sketch(
 /// Raises
 /// ------
 /// GridMeshError
-///     As of `mesh_sketch`, and if the slack is negative or not finite.
+///     As of `mesh_sketch`, and if the slack is negative or not finite, or `beyond` negative.
 ///
 /// Notes
 /// -----
@@ -202,10 +205,11 @@ pub fn mesh_sketch(
 /// >>> patch = gridmesh.cover_sketch(np.c_[np.cos(t), np.sin(t)], triangles=100)
 /// >>> patch.report["outside"] < 0.01 * patch.edge_length
 /// True
+#[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 #[pyfunction]
 #[pyo3(
-    signature = (outline, holes = None, *, slack = 0.0, across = false, progress = None, **options),
-    text_signature = "(outline, holes=(), *, slack=0.0, across=False, progress=None, **options)"
+    signature = (outline, holes = None, *, slack = 0.0, across = false, beyond = None, progress = None, **options),
+    text_signature = "(outline, holes=(), *, slack=0.0, across=False, beyond=None, progress=None, **options)"
 )]
 pub fn cover_sketch(
     py: Python<'_>,
@@ -213,12 +217,17 @@ pub fn cover_sketch(
     holes: Option<&Bound<'_, PyAny>>,
     slack: f64,
     across: bool,
+    beyond: Option<f64>,
     progress: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Patch> {
     let drawing = drawing(outline, holes)?;
     let chosen = chosen(py, "cover_sketch", options)?;
-    let rim = if across { Rim::Across } else { Rim::Around(slack) };
+    let rim = match beyond {
+        _ if across => Rim::Across,
+        Some(beyond) => Rim::Whole { slack, beyond },
+        None => Rim::Around(slack),
+    };
     let covering = Watch::new(progress)?.run(py, |progress| {
         gridmesh::cover::cover_sketch(&drawing.outline, &drawing.holes, rim, &chosen, progress)
     })?;

@@ -1,7 +1,7 @@
 //! Patches that cover what was drawn: outlines moved outward where the edges of a mesh cut them off.
 //!
 //! [`cover_sketch`] meshes an outline and places the mesh a few times more, each time on an outline moved outward where it was left outside (`outside`, `outward`), as far as there is room (`room`), then
-//! moves ends of short edges apart (`short`), single vertices to tips (`tips`), and others back into inlets (`tight`), until the boundary is as near around as it can be (`across`). Patches that are to
+//! moves ends of short edges apart (`short`), single vertices to tips (`tips`), splits edges there if that is asked for (`split`), and others back into inlets (`tight`), until the boundary is as near around as it can be (`across`). Patches that are to
 //! lie [`Rim::Across`] their outline are meshed once, and their boundary vertices are moved until they do (`across`).
 
 mod across;
@@ -10,6 +10,7 @@ mod outside;
 mod outward;
 mod room;
 mod short;
+mod split;
 mod tight;
 mod tips;
 
@@ -65,6 +66,14 @@ pub struct Covering {
 pub enum Rim {
     /// Nothing of the drawing is outside, but for a rim of this width.
     Around(f64),
+    /// The same, and edges of triangles are split where more than `beyond` of the drawing would still be outside, besides the slack: inner
+    /// vertices there have a valence of seven or more.
+    Whole {
+        /// The width of the rim.
+        slack: f64,
+        /// How far outside, in the units of the outline.
+        beyond: f64,
+    },
     /// Edges lie across the contours, so that the area between is least: about as much of the drawing is outside as there is more.
     Across,
 }
@@ -76,11 +85,11 @@ pub enum Rim {
 /// With [`Rim::Across`] single vertices are moved to tips and the boundary then to where the area between it and the contours is
 /// least, as far as faces and edges stay as they should be. For bodies, whose silhouettes are those of pictures.
 ///
-/// Topology, valences and orientation are as of [`mesh_sketch`]; boundary vertices lie near the contours, not on them.
+/// [`Rim::Whole`] splits boundary edges besides, where tips would be left outside. Otherwise topology, valences and orientation are as of [`mesh_sketch`]; boundary vertices lie near the contours, not on them.
 /// Takes the time of a mesh, and of placing it up to three times more.
 ///
 /// # Errors
-/// Those of [`mesh_sketch`]; [`Error::InvalidOption`] if the slack is negative or not finite.
+/// Those of [`mesh_sketch`]; [`Error::InvalidOption`] if the slack is negative or not finite, or what may be beyond it no length.
 pub fn cover_sketch(
     outline: &[DVec2],
     holes: &[Vec<DVec2>],
@@ -88,10 +97,18 @@ pub fn cover_sketch(
     options: &SketchOptions,
     progress: Progress<'_>,
 ) -> Result<Covering> {
-    let slack = if let Rim::Around(slack) = rim { slack } else { 0.0 };
+    let (rim, slack, beyond) = match rim {
+        Rim::Around(slack) => (rim, slack, f64::INFINITY),
+        Rim::Whole { slack, beyond } => (Rim::Around(slack), slack, beyond),
+        Rim::Across => (rim, 0.0, f64::INFINITY),
+    };
     if !(slack.is_finite() && slack >= 0.0) {
         let allowed = "a finite length, at least 0";
         return Err(Error::InvalidOption { name: "slack", value: told(slack), allowed });
+    }
+    if beyond.is_nan() || beyond < 0.0 {
+        let allowed = "a finite length, at least 0";
+        return Err(Error::InvalidOption { name: "beyond", value: told(beyond), allowed });
     }
     let part = |k: usize| progress.part(k as f64 / (ROUNDS + 1) as f64, (k + 1) as f64 / (ROUNDS + 1) as f64);
     let first = mesh_sketch(outline, holes, options, part(0))?;
@@ -108,8 +125,8 @@ pub fn cover_sketch(
     let mut measures = Vec::new();
     // The patch first, then the one for bodies.
     best.patch.both(|patch| {
-        let followers = followers_of(patch, &meshed);
-        let least = finished(patch, &fine, &followers, (rim, slack), progress)?;
+        let mut followers = followers_of(patch, &meshed);
+        let least = finished(patch, &fine, &mut followers, (rim, slack, beyond), progress)?;
         let between = across::between(patch, &fine, &followers) / drawn;
         measures.push((least, between));
         for (contour, own) in
@@ -122,6 +139,7 @@ pub fn cover_sketch(
     })?;
     let (outside, between) = measures[0];
     best.report.min_angle = min_angle(&best.patch);
+    best.report.triangles = best.patch.triangles.len();
     progress.report(1.0)?;
     Ok(Covering { sketch: best, outside, between })
 }
@@ -130,8 +148,8 @@ pub fn cover_sketch(
 fn finished(
     patch: &mut Patch,
     fine: &[Vec<DVec2>],
-    followers: &[Followers],
-    (rim, slack): (Rim, f64),
+    followers: &mut [Followers],
+    (rim, slack, beyond): (Rim, f64, f64),
     progress: Progress<'_>,
 ) -> Result<f64> {
     let enough = ENOUGH * patch.lattice.edge_length;
@@ -163,6 +181,10 @@ fn finished(
     let mut least = largest(&needs(fine, patch, followers, slack));
     if least > enough {
         least = tips::moved(patch, fine, followers, slack);
+    }
+    if least > beyond {
+        split::taken_in(patch, fine, followers, (slack, beyond));
+        least = largest(&needs(fine, patch, followers, slack));
     }
     tight::pulled(patch, fine, followers, slack, progress.part(1.0, 1.0))?;
     across::settled(patch, fine, followers, rim, progress.part(1.0, 1.0))?;

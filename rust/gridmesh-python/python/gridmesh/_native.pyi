@@ -190,6 +190,7 @@ def cover_sketch(
     *,
     slack: float = 0.0,
     across: bool = False,
+    beyond: float | None = None,
     progress: _Progress | None = None,
     **options: Any,
 ) -> Patch: ...

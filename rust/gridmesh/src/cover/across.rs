@@ -166,14 +166,18 @@ impl Fit<'_> {
     fn counted(&self, at: usize, beyond: f64) -> (f64, f64) {
         match self.rim {
             Rim::Across => (self.weights[at] * beyond.abs(), f64::NEG_INFINITY),
-            Rim::Around(slack) => (self.weights[at] * (-beyond).max(0.0), beyond - slack),
+            Rim::Around(slack) | Rim::Whole { slack, .. } => {
+                (self.weights[at] * (-beyond).max(0.0), beyond - slack)
+            }
         }
     }
 
     fn dents(&self, loop_: &[DVec2]) -> f64 {
         match self.rim {
             Rim::Across => f64::NEG_INFINITY,
-            Rim::Around(slack) => self.follow.beyond_dents(loop_, self.vertex, self.contour) - slack,
+            Rim::Around(slack) | Rim::Whole { slack, .. } => {
+                self.follow.beyond_dents(loop_, self.vertex, self.contour) - slack
+            }
         }
     }
 }

@@ -96,6 +96,23 @@ impl Followers {
         [i + n - 1, i, i + 1].into_iter().filter_map(of).fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// Notes a new vertex of the loop on an edge, at a point of the contour that the edge follows.
+    pub(super) fn split(&mut self, edge: usize, at: usize) {
+        let own = std::mem::take(&mut self.points[edge]);
+        let here = own.iter().position(|&point| point as usize == at).unwrap_or(own.len());
+        let (before, after) = own.split_at(here);
+        let (before, after) = (before.to_vec(), after.to_vec());
+        for edge_of in self.edge.iter_mut().flatten() {
+            *edge_of += u32::from(*edge_of as usize > edge);
+        }
+        for &point in &after {
+            self.edge[point as usize] = Some(edge as u32 + 1);
+        }
+        self.points[edge] = before;
+        self.points.insert(edge + 1, after);
+        self.places.insert(edge + 1, at as f64);
+    }
+
     /// The point of the contour nearest to the place of vertex `i`.
     pub(super) fn point_at(&self, i: usize) -> usize {
         self.places[i].round() as usize % self.edge.len()
