@@ -36,8 +36,11 @@ WORTH_CUT_OFF = 1.0
 WORTH_AREA = 2.0
 """The same for a mesh whose area is as much again as it may be."""
 
-WORTH_MOST = (1.5, 2.3)
-"""The most that is spent for both together: on meshes that are to cover, and across outlines. More helps few, and all are tried."""
+WORTH_MOST = (2.0, 1.5)
+"""The most that is spent for what is cut off: by meshes that are to cover, and by those across outlines. More helps few, and all steps are tried."""
+
+WORTH_MOST_AREA = 0.8
+"""The same for the area."""
 
 WORTH_SHORT = 0.4
 """And for one with an edge that is short in a texture."""
@@ -131,9 +134,10 @@ class Lacks:
         elif cut_off > 0:
             cut_off += WORTH_CUT_OFF
         empty = WORTH_AREA * max(0.0, float(np.log2(max(more, 1e-9) / self.much)))
-        most = WORTH_MOST[self.across]
-        cut_off = min(cut_off, WORTH_MOST[0])
-        lacks = {"cut_off": cut_off, "area": min(empty, most - cut_off)}
+        lacks = {
+            "cut_off": min(cut_off, WORTH_MOST[self.across]),
+            "area": min(empty, WORTH_MOST_AREA),
+        }
         return {what: worth for what, worth in lacks.items() if worth > 0}
 
 
