@@ -36,11 +36,11 @@ WORTH_CUT_OFF = 1.0
 WORTH_AREA = 2.0
 """The same for a mesh whose area is as much again as it may be."""
 
-WORTH_MOST = (2.0, 1.5)
-"""The most that is spent for what is cut off: by meshes that are to cover, and by those across outlines. More helps few, and all steps are tried."""
+WORTH_MOST = (5.0, 3.0)
+"""The most that is spent for what is cut off: by meshes that are to cover, and by those across outlines. With less, gross cuts are left."""
 
-WORTH_MOST_AREA = 0.8
-"""The same for the area."""
+WORTH_MOST_AREA = 1.6
+"""The same for the area. With half of it bodies have a tenth fewer faces, and seven of fifty overlap their pictures by less than 99 %, not one."""
 
 WORTH_SHORT = 0.4
 """And for one with an edge that is short in a texture."""
