@@ -82,12 +82,42 @@ def meshes(
 
 
 def pieces(ob: bpy.types.Object) -> list[bpy.types.Object]:
-    """Make an object of each piece of a mesh that hangs together."""
-    for other in bpy.context.view_layer.objects:
-        other.select_set(other == ob)
-    bpy.context.view_layer.objects.active = ob
+    """Make an object of each piece of a mesh that hangs together; cavities stay with what is around them."""
+    _select([ob])
     bpy.ops.mesh.separate(type="LOOSE")
-    return sorted(bpy.context.selected_objects, key=lambda one: (one != ob, one.name))
+    found = sorted(bpy.context.selected_objects, key=lambda one: (one != ob, one.name))
+    volumes = {one: _volume(one.data) for one in found}
+    solid = sorted((one for one in found if volumes[one] >= 0), key=volumes.__getitem__)
+    for cavity in [one for one in found if volumes[one] < 0]:
+        around = next((one for one in solid if _is_within(cavity, one)), None)
+        if around is not None:
+            found.remove(cavity)
+            _select([around, cavity])
+            bpy.ops.object.join()
+    return found
+
+
+def _select(objects: list[bpy.types.Object]) -> None:
+    """Select these alone; the first is the active one."""
+    for other in bpy.context.view_layer.objects:
+        other.select_set(other in objects)
+    bpy.context.view_layer.objects.active = objects[0]
+
+
+def _volume(mesh: bpy.types.Mesh) -> float:
+    """The volume that a mesh encloses, negative where it faces inward."""
+    bm = bmesh.new()
+    try:
+        bm.from_mesh(mesh)
+        return bm.calc_volume(signed=True)
+    finally:
+        bm.free()
+
+
+def _is_within(one: bpy.types.Object, other: bpy.types.Object) -> bool:
+    """Whether the box of a mesh is within that of another one."""
+    inner, outer = (np.array(ob.bound_box) for ob in (one, other))
+    return bool((inner >= outer.min(axis=0)).all() and (inner <= outer.max(axis=0)).all())
 
 
 def _unusable(objects: list[bpy.types.Object]) -> list[str]:

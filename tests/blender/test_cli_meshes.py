@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 import pytest
 from batches import SHAPES, batch, results, run, write_jobs
+from mathutils import Matrix
 
 ACROSS = [[-2, 0.1], [2, 0.2]]
 SUFFIXES = ("ply", "obj", "stl", "glb", "gltf", "blend")
@@ -281,6 +282,28 @@ def test_all_meshes_of_a_file_become_one(tmp_path):
         (whole,) = load(tmp_path / f"{key}.ply").values()
         assert not open_edges(whole)
         assert volumes[0] < volume(whole) < volumes[1]
+
+
+def test_a_cavity_of_the_only_mesh_stays_one(tmp_path):
+    hollow = ball("Hollow", opened=False)
+    inner = ball("Inner", opened=False)
+    inner.data.transform(Matrix.Scale(0.5, 4))
+    inner.data.flip_normals()
+    head = ball("Head", z=1.5, opened=False)
+    outside = volume(head)
+    with bpy.context.temp_override(
+        active_object=hollow, object=hollow, selected_editable_objects=[hollow, inner, head]
+    ):
+        bpy.ops.object.join()
+    path = save(tmp_path / "hollow.blend")
+    ran = run("join", path, "-o", tmp_path / "one.ply")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert result["parts"] == 2
+    (whole,) = load(tmp_path / "one.ply").values()
+    assert not open_edges(whole)
+    # What two balls have in common is a sixth of one here, or less.
+    assert (2 - 1 / 6 - 1 / 8) * outside - 0.05 * outside < volume(whole) < (2 - 1 / 8) * outside
 
 
 def test_open_meshes_are_not_joined(tmp_path):
