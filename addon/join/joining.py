@@ -52,7 +52,7 @@ def join(
     options: Options,
     progress: api.Progress | None = None,
 ) -> Done:
-    """Join mesh objects to one closed body in the first of them, which becomes the only one selected.
+    """Join mesh objects, or overlapping pieces of one, to one closed body in the first, which becomes the only one selected.
 
     Raises
     ------
@@ -64,6 +64,11 @@ def join(
         target = Target(objects, transaction)
         notes = _notes(target, options)
         made = _united(target, options, progress)
+        if len(objects) == 1 and not made.report["overlapping"]:
+            raise uniting.JoinError(
+                f"'{objects[0].name}' is the only mesh, and none of its pieces overlap; select another one as well",
+                "one_part",
+            )
         crease = options.blend == 0
         ob = target.apply(context, made, transaction, crease=crease, keep=options.keep_parts)
     if made.report["overlapping"]:

@@ -41,11 +41,14 @@ class OBJECT_OT_gridmesh_join(ResultShown, bpy.types.Operator):  # noqa: N801
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Ask for two meshes in Object Mode."""
-        if context.mode == "OBJECT" and len(join_objects(context)) > 1:
+        """Ask for meshes in Object Mode."""
+        if context.mode == "OBJECT" and join_objects(context):
             return True
         cls.poll_message_set(
-            told("Select two closed meshes or more in Object Mode, one of them active", "tooltips")
+            told(
+                "Select closed meshes in Object Mode, one of them active; or one with pieces that overlap",
+                "tooltips",
+            )
         )
         return False
 

@@ -573,8 +573,11 @@ _JOINS = {
         "„{0}“ ist nicht mannigfaltig: mehr als zwei Flächen treffen sich an {1}; die Flächen im Inneren löschen"
     ),
     "Joined {}: {}, {}, {} ms": "{0} verbunden: {1}, {2}, {3} ms",
-    "Select two closed meshes or more in Object Mode, one of them active": (
-        "Zwei oder mehr geschlossene Meshes im Objektmodus auswählen, eines davon aktiv"
+    "Select closed meshes in Object Mode, one of them active; or one with pieces that overlap": (
+        "Geschlossene Meshes im Objektmodus auswählen, eines davon aktiv; oder eines mit überlappenden Stücken"
+    ),
+    "'{}' is the only mesh, and none of its pieces overlap; select another one as well": (
+        "„{0}“ ist das einzige Mesh, und keine Stücke davon überlappen; noch ein anderes auswählen"
     ),
     "{} with a crease, since there is no room for a transition; blend less, or give the parts shorter edges there": (
         "{0} mit einer Kante, weil für einen Übergang kein Platz ist; schmaler verbinden oder den Teilen dort kürzere Kanten geben"
@@ -1005,7 +1008,6 @@ _LIBRARY_PARTS = {
     "mesh": "Mesh",
     "other outline": "Der andere Umriss",
     "outline": "Umriss",
-    "selection (of faces)": "Auswahl (von Flächen)",
     "stroke": "Strich",
     "stroke, continued straight on,": "gerade fortgesetzter Strich",
     "triangle {}": "Dreieck {0}",

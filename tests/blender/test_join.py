@@ -441,11 +441,24 @@ def refused(match, *objects, **options):
     assert fingerprint() == before
 
 
-def test_needs_two_meshes():
-    refused("Select two closed meshes or more", ball("Body"))
+def test_needs_two_meshes_or_pieces_that_overlap():
+    refused("'Body' is the only mesh, and none of its pieces overlap", ball("Body"))
     empty = bpy.data.objects.new("Empty", None)
     bpy.context.scene.collection.objects.link(empty)
-    refused("Select two closed meshes or more", bpy.data.objects["Body"], empty)
+    refused("'Body' is the only mesh", bpy.data.objects["Body"], empty)
+    refused("Select closed meshes", empty)
+    refused("'Far' is the only mesh", merged(ball("Far"), ball("Apart", 5.0)))
+
+
+@pytest.mark.parametrize("keep", [False, True])
+def test_overlapping_pieces_of_the_only_mesh_are_joined(keep):
+    body = merged(ball("Body"), ball("Head", 1.2, 0.7))
+    before = vertices(body.data)
+    whole = join(body, keep_parts=keep)
+    check_sound(whole)
+    assert (whole == body) is not keep
+    if keep:
+        assert np.array_equal(vertices(body.data), before)
 
 
 def test_an_open_mesh():
