@@ -53,6 +53,7 @@ impl Capper<'_> {
             Err(
                 Error::ZeroLengthEdge { .. }
                 | Error::SelfTouching { .. }
+                | Error::Loops(_)
                 | Error::NoPatch { .. }
                 | Error::TooLarge { .. }
                 | Error::ExtremeSize { .. }
