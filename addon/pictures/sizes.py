@@ -42,7 +42,7 @@ WORTH_MOST = (5.0, 3.0)
 WORTH_MOST_AREA = 1.6
 """The same for the area. With half of it bodies have a tenth fewer faces, and seven of fifty overlap their pictures by less than 99 %, not one."""
 
-WORTH_SHORT = 0.4
+WORTH_SHORT = 1.5
 """And for one with an edge that is short in a texture."""
 
 CUT_OFF = 0.58
