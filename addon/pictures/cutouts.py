@@ -8,26 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from ..api import FACE_AREA, CancelledError, Progress, cancelling, faces_of, part_of
+from ..api import FACE_AREA, Progress, cancelling, faces_of, part_of
 from ..native import native
-from .sizes import (
-    SHORT,
-    WORTH_SHORT,
-    Lacks,
-    Made,
-    area,
-    best,
-    even,
-    is_coarse,
-    lacks_of,
-    number_of,
-    shortest,
-    step_of,
-)
-from .tracing import Options, Outlines, PictureError, check_size, traced
+from .tracing import Options, Outlines, PictureError, area, check_size, traced
 
-_SQUARE = 0.75
-"""How far whole pixels may reach over the outline of what they cover, at most."""
+MOST_TIMES = 250.0
+"""Times the number asked for that lines as thin as a pixel or two are meshed with, at most."""
 
 _MISSING = 0.01
 """Share of the area that may be missing because lines are too thin, before all is widened."""
@@ -38,7 +24,6 @@ _WIDER = (0.5, 1.0)
 _TRACING = 0.3
 """Part of the time that tracing takes; the rest is meshing."""
 
-
 _MORE = 1.2
 """How many times as many faces as were asked for are told."""
 
@@ -47,7 +32,7 @@ _WHY = {
     "cut_off": "fewer cut off more of its tips",
     "area": "fewer follow its outline less closely",
     "short": "fewer have short edges",
-    "": "its thin parts and corners take more",
+    None: "its thin parts and corners take more",
     "beside": "fewer have short edges in its thin parts beside long ones",
 }
 
@@ -58,8 +43,8 @@ class _Meshed:
 
     surfaces: list[Any]
     """Surface or GridMeshError for each."""
-    why: str
-    """Why most of what is finer than asked for is so; empty if nothing is."""
+    why: str | None
+    """Why most of what is finer than asked for is so; nothing if nothing is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +86,7 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
     NativeError
         Without the module.
     """
-    gridmesh = native("trace_image", "mesh_sketch", "flat", "inflate")
+    gridmesh = native("trace_image", "mesh_cutout", "mesh_sketch")
     height, width = pixels.shape[:2]
     check_size(width, height)
     try:
@@ -148,7 +133,11 @@ def cut_out(pixels: np.ndarray, options: Options, progress: Progress | None = No
 
 def _is_thin(parts: list[Any], surfaces: list[Any]) -> bool:
     """Whether lines are too thin in more of the picture than specks."""
-    missing = sum(_drawn(part) for part, surface in zip(parts, surfaces, strict=True) if is_coarse(surface))
+    missing = sum(
+        _drawn(part)
+        for part, surface in zip(parts, surfaces, strict=True)
+        if getattr(surface, "kind", "") in {"too_coarse", "no_patch"}
+    )
     return missing > _MISSING * sum(map(_drawn, parts))
 
 
@@ -177,44 +166,18 @@ def _nothing(dropped: int) -> str:
 
 def _meshed(gridmesh: Any, outlines: Outlines, options: Options, progress: Progress | None) -> _Meshed:
     """Surface or GridMeshError for each part, all with edges of about the same length."""
-    parts = outlines.parts
-    number, cells, length = _asked(parts, options)
-    asked = step_of(number)
-    known: dict[tuple[int, int], Made] = {}
-
-    def make(k: int, step: int, score: float, of_this: Progress | None) -> Made | None:
-        if (k, step) not in known:
-            finer = number_of(step)
-            lacks = lacks_of(
-                parts, finer, FACE_AREA[cells], options.body is not None, options.margin, outlines.faint
-            )
-            sized = {
-                "cells": cells,
-                "edge_length": length * float(np.sqrt(number / finer)),
-                "least": False,
-                **_bend(cells, options),
-            }
-            made = _made(gridmesh, parts[k], sized, options, (lacks[k], step, score), of_this)
-            if made is None:
-                return None
-            known[k, step] = made
-        return known[k, step]
-
-    def finer(k: int, first: int) -> Made | None:
-        part = part_of(progress, k / len(parts), (k + 1) / len(parts))
-        return best(first, number, lambda step, score: make(k, step, score, part))
-
-    results = [finer(k, asked) for k in range(len(parts))]
-    why: dict[str, float] = {}
-    for k, made in enumerate(results):
-        at_first = known[k, asked]
-        reasons = {"thin": 1.0} if is_coarse(at_first.surface) else at_first.lacks
-        if made.step > asked and reasons:
-            reason = max(reasons, key=reasons.get)
-            why[reason] = why.get(reason, 0.0) + _drawn(parts[k])
-    if len(parts) > 1 and cells == "triangles" and (changed := even(results, finer)):
-        why["beside"] = sum(_drawn(parts[k]) for k in changed)
-    return _Meshed([made.surface for made in results], max(why, key=why.get) if why else "")
+    number, cells, _ = _asked(outlines.parts, options)
+    surfaces, why = gridmesh.mesh_cutout(
+        outlines.parts,
+        margin=max(0.0, options.margin),
+        cover=options.cover,
+        faint=outlines.faint,
+        most=MOST_TIMES,
+        body=options.body,
+        progress=progress,
+        **{cells: number},
+    )
+    return _Meshed(surfaces, why)
 
 
 def _asked(parts: list[Any], options: Options) -> tuple[int, str, float]:
@@ -232,36 +195,24 @@ def _tell_numbers(
     """Have the errors of parts that no size could follow tell the numbers that can, in place."""
     for k, surface in enumerate(surfaces):
         if getattr(surface, "kind", "") == "too_coarse":
-            surfaces[k] = _too_few(
-                gridmesh, parts[k], sum(map(_drawn, parts)), options, _asked(parts, options), progress
-            )
+            surfaces[k] = _too_few(gridmesh, parts, k, options, part_of(progress, 1.0, 1.0))
 
 
-def _too_few(
-    gridmesh: Any,
-    part: tuple[np.ndarray, list[np.ndarray]],
-    total: float,
-    options: Options,
-    asked: tuple[int, str, float],
-    progress: Progress | None,
-) -> Any:
+def _too_few(gridmesh: Any, parts: list[Any], k: int, options: Options, progress: Progress | None) -> Any:
     """The error for a part that no size could follow, with the number for the whole picture that would."""
-    number, cells, length = asked
+    number, cells, length = _asked(parts, options)
+    # As sprites of triangles are meshed.
+    lattice = {"bend": 0.0} if options.body is None and cells == "triangles" else {}
     try:
         gridmesh.mesh_sketch(
-            *part,
-            cells=cells,
-            edge_length=length,
-            least=True,
-            progress=part_of(progress, 1.0, 1.0),
-            **_bend(cells, options),
+            *parts[k], cells=cells, edge_length=length, least=True, progress=progress, **lattice
         )
     except gridmesh.GridMeshError as error:
         if error.kind == "cancelled":
-            raise CancelledError from error
+            raise
         if error.least is None:
             return error
-        least = int(np.ceil(error.least * total / _drawn(part)))
+        least = int(np.ceil(error.least * sum(map(_drawn, parts)) / _drawn(parts[k])))
         few = {
             "triangles": f"{number} triangles are too few to follow this drawing",
             "quads": f"{number} quads are too few to follow this drawing",
@@ -271,70 +222,6 @@ def _too_few(
         return refused
     return gridmesh.GridMeshError(
         "this drawing can be followed, but not covered" + "; " + "use a margin of 0"
-    )
-
-
-def _bend(cells: str, options: Options) -> dict[str, float]:
-    """Lattice options of the kind of mesh: sprites of triangles lie on a straight lattice.
-
-    Its even sizes leave less that is empty around the ends of limbs, for some more irregular vertices, which nobody sees on what
-    is flat.
-    """
-    return {"bend": 0.0} if options.body is None and cells == "triangles" else {}
-
-
-def _made(
-    gridmesh: Any,
-    part: tuple[np.ndarray, list[np.ndarray]],
-    options: dict[str, Any],
-    chosen: Options,
-    wanted: tuple[Lacks, int, float],
-    progress: Progress | None,
-) -> Made | None:
-    """Surface or GridMeshError of a part at a step, and what it lacks; None if its score is not below one."""
-    body = chosen.body
-    lacks, step, score = wanted
-    # Only flat corners have a single quad.
-    options = {**options, "open_corners": body is None}
-    if body is not None and "corner_angle" in body:
-        options = {**options, "corner_angle": body["corner_angle"]}
-    try:
-        patch = _patch(gridmesh, part, options, chosen, lacks, part_of(progress, 0.0, 0.7))
-        covers = chosen.margin > 0 or chosen.cover
-        made = Made(patch, step, lacks.of(patch) if covers else {})
-        if made.score >= score:
-            return None
-        if body is None:
-            return Made(gridmesh.flat(patch), step, made.lacks)
-        surface = gridmesh.inflate(patch, progress=part_of(progress, 0.7, 1.0), **body)
-    except gridmesh.GridMeshError as error:
-        if error.kind == "cancelled":
-            raise CancelledError from error
-        return Made(error, step, {})
-    # Quads at a rim are low by themselves.
-    if options["cells"] == "triangles" and shortest(surface) < SHORT:
-        return Made(surface, step, {**made.lacks, "short": WORTH_SHORT})
-    return Made(surface, step, made.lacks)
-
-
-def _patch(
-    gridmesh: Any,
-    part: tuple[np.ndarray, list[np.ndarray]],
-    options: dict[str, Any],
-    chosen: Options,
-    lacks: Lacks,
-    progress: Progress | None,
-) -> Any:
-    """Patch on the outline of a part, or one that covers it but for what the margin allows, or lies across it."""
-    outline, holes = part
-    if chosen.margin <= 0 and not chosen.cover:
-        return gridmesh.mesh_sketch(outline, holes, progress=progress, **options)
-    across = chosen.margin <= 0
-    slack = max(0.0, chosen.margin - _SQUARE)
-    # The rims of bodies keep their lengths, while other edges become longer.
-    beyond = lacks.cut_off if chosen.body is None else None
-    return gridmesh.cover_sketch(
-        outline, holes, slack=slack, across=across, beyond=beyond, progress=progress, **options
     )
 
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from ..api import Progress
 from .level import LEVELS, level_of
-from .sizes import area
 
 PIXELS = 100_000_000
 """The most pixels of a picture, as the module has it; asked for before they are read."""
@@ -117,3 +116,9 @@ def _inside(point: np.ndarray, polygon: np.ndarray) -> bool:
     a, b = a[crossed], b[crossed]
     x = a[:, 0] + (point[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
     return bool((x > point[0]).sum() % 2)
+
+
+def area(contour: np.ndarray) -> float:
+    """Signed area; holes run clockwise."""
+    following = np.roll(contour, -1, axis=0)
+    return float((contour[:, 0] * following[:, 1] - contour[:, 1] * following[:, 0]).sum() / 2)

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from rasters import coverage, placed, sampled
 from sketches import DRAWINGS
 
-from addon.pictures import sizes
+from addon.pictures import cutouts
 from addon.pictures.cutouts import Options, cut_out
-from addon.pictures.sizes import area
+from addon.pictures.tracing import area
 
 NAMES = sorted(DRAWINGS)[::3]
 
@@ -371,7 +371,7 @@ def test_the_number_that_a_refused_picture_needs_works(monkeypatch):
     alpha[:, :64] = wound(64)
     alpha[8:56, 90:150] = 1.0
     pixels = np.dstack([np.zeros((*alpha.shape, 3)), alpha])
-    monkeypatch.setattr(sizes, "last_step", sizes.step_of)
+    monkeypatch.setattr(cutouts, "MOST_TIMES", 1.0)
     refused = cut_out(pixels, Options(threshold=0.5, triangles=500)).refused
     assert len(refused) == 1
     assert refused[0].startswith("500 triangles are too few")

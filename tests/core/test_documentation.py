@@ -25,6 +25,7 @@ FUNCTIONS = [
     gridmesh.is_outer_border,
     gridmesh.join,
     gridmesh.map_sketches,
+    gridmesh.mesh_cutout,
     gridmesh.mesh_sketch,
     gridmesh.regrid,
     gridmesh.stitch,

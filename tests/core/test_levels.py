@@ -5,11 +5,10 @@ import numpy as np
 import pytest
 from rasters import coverage, sampled
 
-from addon.pictures import sizes
+from addon.pictures import cutouts
 from addon.pictures.cutouts import Options, cut_out
 from addon.pictures.level import LEVELS, level_of
-from addon.pictures.sizes import MOST_CELLS, area, last_step, number_of
-from addon.pictures.tracing import traced
+from addon.pictures.tracing import area, traced
 
 SIZE = 96
 
@@ -88,15 +87,9 @@ def test_nothing_is_seen_of_an_empty_picture():
     assert level_of(np.zeros((1, 1)), 1000.0, True) == 0.5
 
 
-def test_sizes_go_as_far_for_few_cells_as_for_many():
-    """A spiral of lines a pixel wide was refused with 500 triangles and meshed with 1000."""
-    for number in (400, 500, 1000, 2000, 3000):
-        assert number_of(last_step(number)) == MOST_CELLS
-
-
 def test_lines_too_thin_for_a_body_are_widened(monkeypatch):
     """A tree whose twigs got thinner and thinner lost its trunk, which is one part with them."""
-    monkeypatch.setattr(sizes, "last_step", sizes.step_of)
+    monkeypatch.setattr(cutouts, "MOST_TIMES", 1.0)
     trunk = np.array([[44, 8], [52, 8], [52, 88], [44, 88]], float)
     twigs = [
         np.array([[48, y], [8, y + 7], [8, y + 8.2], [48, y + 1.4]], float) for y in (20.0, 40.0, 60.0, 80.0)

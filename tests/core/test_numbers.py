@@ -2,12 +2,12 @@
 
 from itertools import pairwise
 
+import gridmesh
 import numpy as np
 import pytest
 from rasters import coverage
 
 from addon.pictures.cutouts import Options, cut_out
-from addon.pictures.sizes import Made, best, number_of, step_of
 
 SIZE = 128
 ASKED = (100, 200, 300, 500, 800)
@@ -85,28 +85,65 @@ def test_fewer_asked_for_never_give_more(name, cells, body):
         assert fewer <= 1.05 * more
 
 
-def test_the_best_step_only_rises_with_the_number_asked_for():
-    class Surface:
-        vertices = ()
+@pytest.mark.parametrize("cells", ["triangles", "quads"])
+@pytest.mark.parametrize("body", [None, {"depth": 0.5}])
+def test_all_parts_of_a_picture_are_meshed_at_once(cells, body):
+    parts = [(ring(50), []), (ring(8) + [70, 0], []), (ring(4) + [120, 0], [ring(2)[::-1] + [120, 0]])]
+    told = []
+    surfaces, finer = gridmesh.mesh_cutout(
+        parts,
+        margin=0.0 if body else 1.0,
+        body=body,
+        progress=lambda f: told.append(f) or True,
+        **{cells: 700},
+    )
+    assert finer in {None, "thin", "cut_off", "area", "short", "beside"}
+    assert told == sorted(told)
+    for (outline, holes), surface in zip(parts, surfaces, strict=True):
+        assert len(surface.silhouette) == 1 + len(holes)
+        assert surface.report["watertight"] == bool(body)
+        assert np.ptp(surface.vertices[:, 0]) == pytest.approx(np.ptp(outline[:, 0]), rel=0.1)
+    again, _ = gridmesh.mesh_cutout(parts, margin=0.0 if body else 1.0, body=body, **{cells: 700})
+    for one, other in zip(surfaces, again, strict=True):
+        assert (one.vertices == other.vertices).all()
 
-    random = np.random.default_rng(0)
-    for _ in range(50):
-        worth = {step: float(random.choice([0.0, 0.3, 1.0, 3.0])) for step in range(40, 140)}
 
-        def make(step, score, worth=worth):
-            made = Made(Surface(), step, {"area": worth[step]})
-            return made if made.score < score else None
-
-        found = [best(step_of(number), number, make).step for number in range(100, 1500, 25)]
-        assert found == sorted(found)
-        for number, step in zip(range(100, 1500, 25), found, strict=True):
-            assert step >= step_of(number)
-            if worth[step_of(number)] == 0.0:
-                assert step == step_of(number)
+def test_a_part_that_cannot_be_meshed_is_an_error_of_its_own():
+    eight = np.array([[0, 0], [40, 40], [40, 0], [0, 50]], float)
+    surfaces, _ = gridmesh.mesh_cutout([(ring(50), []), (eight, [])], triangles=500)
+    assert len(surfaces[0].triangles) > 400
+    assert surfaces[1].kind == "self_intersecting"
 
 
-def test_steps_are_near_every_number():
-    for number in range(6, 20_000, 7):
-        assert number_of(step_of(number)) == pytest.approx(number, rel=0.065)
-    for number in (10, 100, 300, 500, 1000, 2500):
-        assert number_of(step_of(number)) == number
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"triangles": 100, "quads": 100}, "not both"),
+        ({"triangles": 0}, "triangles is 0"),
+        ({"margin": -1.0}, "margin is -1"),
+        ({"margin": np.nan}, "margin is NaN"),
+        ({"faint": 0.5}, "faint is 0.5"),
+        ({"most": 0.0}, "most is 0"),
+        ({"body": {"depth": 0.0}}, "depth is 0"),
+        ({"progress": lambda _: False}, "cancelled"),
+    ],
+)
+def test_options_that_are_not_allowed_are_refused(options, words):
+    parts = [(ring(50), [])]
+    if "body" in options:
+        [refused], _ = gridmesh.mesh_cutout(parts, **options)
+        assert words in str(refused)
+        return
+    with pytest.raises(gridmesh.GridMeshError, match=words):
+        gridmesh.mesh_cutout(parts, **options)
+
+
+def test_what_is_no_part_is_refused():
+    for parts in (None, [None], [ring(50)], [(ring(50),)], [(ring(50), 3)]):
+        with pytest.raises(TypeError):
+            gridmesh.mesh_cutout(parts)
+    with pytest.raises(TypeError, match="no option deep"):
+        gridmesh.mesh_cutout([(ring(50), [])], body={"deep": 1.0})
+    with pytest.raises(gridmesh.GridMeshError, match="no area"):
+        gridmesh.mesh_cutout([(np.zeros((5, 2)), [])])
+    assert gridmesh.mesh_cutout([]) == ([], None)

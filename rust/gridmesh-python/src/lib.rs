@@ -14,6 +14,7 @@ mod bones;
 mod bridge;
 mod combine;
 mod cut;
+mod cutout;
 mod decode;
 mod error;
 mod fill;
@@ -53,6 +54,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Surface>()?;
     module.add_function(wrap_pyfunction!(sketch::mesh_sketch, module)?)?;
     module.add_function(wrap_pyfunction!(sketch::cover_sketch, module)?)?;
+    module.add_function(wrap_pyfunction!(cutout::mesh_cutout, module)?)?;
     module.add_function(wrap_pyfunction!(body::stitch, module)?)?;
     module.add_function(wrap_pyfunction!(body::flat, module)?)?;
     module.add_function(wrap_pyfunction!(body::inflate, module)?)?;

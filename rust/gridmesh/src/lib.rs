@@ -25,6 +25,7 @@
 //!   six neighbours, no triangle is inverted, and no interior edge joins two boundary vertices, so that two copies glued
 //!   along the boundary are a closed manifold.
 //! * [`inflate`], [`stitch`], [`flat`]: the patch as a round body, a pillow, a sheet.
+//! * [`trace_image`](picture::trace_image), [`mesh_cutout`](cutout::mesh_cutout): the outlines in a picture, and meshes of all of them.
 //! * [`fill_hole`], [`fill_holes`], [`regrid`]: patches whose boundary is that of a hole, vertex for vertex, smooth to
 //!   the surface around it.
 //! * [`bridge()`], [`bridge_pairs`]: a tube between two loops, with every vertex of both; more loops joined two by two.
@@ -46,6 +47,7 @@ pub mod bend;
 pub mod body;
 pub mod cover;
 pub mod cut;
+pub mod cutout;
 pub mod drawing;
 pub mod error;
 pub mod fill;

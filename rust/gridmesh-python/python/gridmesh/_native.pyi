@@ -41,6 +41,7 @@ __all__ = [
     "join",
     "look_apart",
     "map_sketches",
+    "mesh_cutout",
     "mesh_sketch",
     "regrid",
     "stitch",
@@ -194,6 +195,18 @@ def cover_sketch(
     progress: _Progress | None = None,
     **options: Any,
 ) -> Patch: ...
+def mesh_cutout(
+    parts: Sequence[tuple[_Points, Sequence[_Points]]],
+    *,
+    triangles: int | None = None,
+    quads: int | None = None,
+    margin: float = 0.0,
+    cover: bool = True,
+    faint: float = 1.0,
+    most: float = 250.0,
+    body: dict[str, Any] | None = None,
+    progress: _Progress | None = None,
+) -> tuple[list[Surface | GridMeshError], Literal["thin", "cut_off", "area", "short", "beside"] | None]: ...
 def combine(
     outline: _Points,
     other: _Points,

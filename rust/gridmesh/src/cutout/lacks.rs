@@ -1,0 +1,174 @@
+//! What the mesh of a part of a picture may lack, and what it is worth to lack less.
+
+use glam::DVec2;
+
+use crate::cover::Covering;
+use crate::cutout::options::{CutoutOptions, CutoutRim, Finer};
+use crate::drawing::combine::Part;
+
+/// Binary logarithm of the times as many cells that a mesh may have to cut off no more than it may; the more it cuts off
+/// the more may be spent.
+const WORTH_CUT_OFF: f64 = 1.0;
+
+/// The same for a mesh whose area is as much again as it may be.
+const WORTH_AREA: f64 = 2.0;
+
+/// The most that is spent for what is cut off, by meshes that are to cover. With less, gross cuts are left.
+const MOST_CUT_OFF: f64 = 5.0;
+
+/// The same across outlines.
+const MOST_CUT_OFF_ACROSS: f64 = 3.0;
+
+/// The same for the area. With half of it bodies have a tenth fewer faces, and seven of fifty overlap their pictures by less
+/// than 99 %, not one.
+const MOST_AREA: f64 = 1.6;
+
+/// What is spent for a body with an edge that is short in a texture.
+const WORTH_SHORT: f64 = 1.5;
+
+/// Meshes of fewer cells may lack more, in proportion: edges leave an area out that grows as the square of their length.
+const FEW: f64 = 500.0;
+
+/// Parts of whose outlines this many pixels stay outside, beyond the slack, are meshed finer: middles of pixels lie
+/// deeper inside. Outlines pass the middles by a sixth of a pixel at most, and the slack is a quarter at a margin of one.
+const CUT_OFF: f64 = 0.58;
+
+/// The same for rims across the outline, in pixels.
+const CUT_OFF_ACROSS: f64 = 0.5;
+
+/// And in edge lengths, if that is more: they are to follow large pictures no closer than small ones.
+const CUT_OFF_EDGES: f64 = 0.14;
+
+/// This share of a sprite may be empty, what lies in the margin included.
+const EMPTY: f64 = 0.03;
+
+/// So much larger than their outlines sprites may be whatever lies in the margin.
+const EMPTY_AT_LEAST: f64 = 0.007;
+
+/// Width, in pixels, of the part of a margin in which soft rims of pictures are seen.
+const SOFT: f64 = 0.5;
+
+/// The share for bodies with a margin, whose rims are opaque: seen from the front they overlap their pictures by 99 % where
+/// that can be held.
+const EMPTY_OF_BODY: f64 = 0.01;
+
+/// Without a margin this much of the area may lie between mesh and outline: the least and the most that is allowed.
+const BETWEEN: [f64; 2] = [0.004, 0.006];
+
+/// Width, in pixels, of the seam along an outline in which pixels lie on the other side as it is: small pictures are
+/// allowed less.
+const PIXELS: f64 = 0.03;
+
+/// What the mesh of a part may lack.
+pub(super) struct Allowed {
+    /// The area of the part.
+    drawn: f64,
+    /// The area between mesh and outline; of the mesh beyond it, if it is to cover.
+    area: f64,
+    /// How far tips may reach beyond the mesh.
+    pub(super) cut_off: f64,
+    across: bool,
+}
+
+/// What a mesh lacks, each as the binary logarithm of the times as many cells that may be spent to lack it no more.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Lacks {
+    cut_off: f64,
+    area: f64,
+    short: f64,
+}
+
+impl Lacks {
+    /// The sum of it all.
+    pub(super) fn sum(&self) -> f64 {
+        self.cut_off + self.area + self.short
+    }
+
+    /// The same, of a mesh with a short edge, too.
+    pub(super) fn with_short(self) -> Self {
+        Self { short: WORTH_SHORT, ..self }
+    }
+
+    /// What is worth most, if anything is.
+    pub(super) fn gravest(&self) -> Option<Finer> {
+        let all = [(self.short, Finer::Short), (self.area, Finer::Area), (self.cut_off, Finer::CutOff)];
+        let (worth, finer) = all.into_iter().max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+        (worth > 0.0).then_some(finer)
+    }
+
+    #[cfg(test)]
+    pub(super) fn of_area(area: f64) -> Self {
+        Self { area, ..Self::default() }
+    }
+}
+
+impl Allowed {
+    /// For each part of a picture: the share of the picture that may be lost by a mesh of `number` cells in all, parted along the outlines.
+    ///
+    /// So the sizes of the parts differ little: edges of one length lose about as much anywhere along outlines. Of rims that
+    /// are fainter than edges more may be cut off.
+    pub(super) fn of_parts(parts: &[Part], number: f64, options: &CutoutOptions) -> Vec<Self> {
+        let drawn: Vec<f64> = parts.iter().map(drawn_area).collect();
+        let rims: Vec<f64> = parts.iter().map(rim_length).collect();
+        let (area, rim): (f64, f64) = (drawn.iter().sum(), rims.iter().sum());
+        let fewer = (FEW / number).max(1.0);
+        let across = !matches!(options.rim, CutoutRim::Around { .. });
+        let share = match options.rim {
+            CutoutRim::Around { margin } if options.body.is_none() => {
+                let in_margin = (margin - SOFT).max(0.0) * rim / area;
+                (EMPTY * fewer - in_margin).max(EMPTY_AT_LEAST)
+            }
+            CutoutRim::Around { .. } => EMPTY_OF_BODY * fewer,
+            CutoutRim::Across | CutoutRim::On if options.body.is_some() => {
+                let [least, most] = BETWEEN;
+                (most - PIXELS * rim / area).max(least) * fewer
+            }
+            CutoutRim::Across | CutoutRim::On => (EMPTY * fewer).max(EMPTY_AT_LEAST),
+        };
+        let edge_length = options.edge_length(area, number);
+        let pixels = if across { CUT_OFF_ACROSS.max(CUT_OFF_EDGES * edge_length) } else { CUT_OFF };
+        let cut_off = options.faint * pixels;
+        let each = drawn.iter().zip(&rims);
+        each.map(|(&drawn, own)| Self { drawn, area: share * area * own / rim, cut_off, across }).collect()
+    }
+
+    /// What a mesh lacks.
+    pub(super) fn lacks(&self, covering: &Covering) -> Lacks {
+        let outside = covering.outside;
+        let mut more = covering.sketch.patch.area() - self.drawn;
+        let mut cut_off = libm::log2(outside.max(1e-9) / self.cut_off).max(0.0);
+        if self.across {
+            // What lies between within an inlet that is filled is told by the area alone; a tip that is cut off counts as a square, too.
+            let beyond = (outside - self.cut_off).max(0.0);
+            more = (covering.between * self.drawn).max(more.abs()) + beyond * beyond;
+        } else if cut_off > 0.0 {
+            cut_off += WORTH_CUT_OFF;
+        }
+        let most = if self.across { MOST_CUT_OFF_ACROSS } else { MOST_CUT_OFF };
+        let area = WORTH_AREA * libm::log2(more.max(1e-9) / self.area).max(0.0);
+        Lacks { cut_off: cut_off.min(most), area: area.min(MOST_AREA), short: 0.0 }
+    }
+}
+
+/// The area of a part: of its outline, without its holes. 0 if that is no number.
+pub(super) fn drawn_area(part: &Part) -> f64 {
+    finite(area(&part.outline) - part.holes.iter().map(|hole| area(hole)).sum::<f64>())
+}
+
+fn rim_length(part: &Part) -> f64 {
+    let length = |points: &[DVec2]| -> f64 { sides(points).map(|[a, b]| a.distance(b)).sum() };
+    finite(length(&part.outline) + part.holes.iter().map(|hole| length(hole)).sum::<f64>())
+}
+
+fn finite(value: f64) -> f64 {
+    if value.is_finite() { value } else { 0.0 }
+}
+
+fn area(points: &[DVec2]) -> f64 {
+    let origin = points.first().copied().unwrap_or_default();
+    0.5 * sides(points).map(|[a, b]| (a - origin).perp_dot(b - origin)).sum::<f64>().abs()
+}
+
+fn sides(points: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> {
+    points.iter().zip(points.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
+}
