@@ -41,19 +41,30 @@ class GridMeshDrawTool(bpy.types.WorkSpaceTool):
 
     @staticmethod
     def draw_settings(context: bpy.types.Context, layout: Any, tool: Any) -> None:
-        """Draw the options in the header: those of the stroke, then those of the active live body or of new ones."""
+        """Draw the options: those of the stroke, then those of the active live body or of new ones.
+
+        The header has room for icons alone; the sidebar and the properties editor have names.
+        """
+        in_header = context.region is not None and context.region.type in {"TOOL_HEADER", "HEADER"}
+
+        def draw(row: Any, data: Any, name: str, icon: str = "NONE") -> None:
+            if in_header:
+                row.prop(data, name, text="", icon=icon)
+            else:
+                row.prop(data, name)
+
         options = tool.operator_properties(OBJECT_OT_gridmesh_draw.bl_idname)
         layout.prop(options, "plane")
         layout.prop(options, "action")
-        row = layout.row(align=True)
-        row.prop(options, "use_part", icon="OUTLINER_OB_META")
+        row = layout.row(align=True) if in_header else layout.column()
+        row.prop(options, "use_part", icon="OUTLINER_OB_META" if in_header else "NONE")
         if options.use_part or options.action == "PART":
-            row.prop(options, "part_lies", text="")
-            row.prop(options, "use_twin", icon="MOD_MIRROR", text="")
-            row.prop(options, "use_join", icon="AUTOMERGE_ON", text="")
-        layout.prop(options, "use_mirror", text="", icon="MOD_MIRROR")
-        row = layout.row(align=True)
-        row.prop(options, "use_stabilizer", text="", icon="SMOOTHCURVE")
+            draw(row, options, "part_lies")
+            draw(row, options, "use_twin", "MOD_MIRROR")
+            draw(row, options, "use_join", "AUTOMERGE_ON")
+        draw(layout, options, "use_mirror", "MOD_MIRROR")
+        row = layout.row(align=True) if in_header else layout.column()
+        draw(row, options, "use_stabilizer", "SMOOTHCURVE")
         if options.use_stabilizer:
             row.prop(options, "stabilizer_radius")
             row.prop(options, "stabilizer_factor")
@@ -64,8 +75,8 @@ class GridMeshDrawTool(bpy.types.WorkSpaceTool):
         else:
             layout.label(text="New Bodies", icon="ADD")
         shown = options if body is None else body.gridmesh_live
-        layout.prop(shown, "cells", text="")
-        layout.prop(shown, "resolution", text="")
+        draw(layout, shown, "cells")
+        draw(layout, shown, "resolution")
         if shown.resolution != "AUTO":
             layout.prop(shown, fineness_of(shown))
         layout.prop(shown, "profile")
@@ -74,7 +85,8 @@ class GridMeshDrawTool(bpy.types.WorkSpaceTool):
         layout.prop(shown, "depth")
         layout.prop(shown, "pen")
         if body is not None:
-            layout.operator(OBJECT_OT_gridmesh_simplify.bl_idname, text="", icon="MOD_SIMPLIFY")
+            text = {"text": ""} if in_header else {}
+            layout.operator(OBJECT_OT_gridmesh_simplify.bl_idname, icon="MOD_SIMPLIFY", **text)
 
 
 def chosen_body(context: bpy.types.Context) -> bpy.types.Object | None:

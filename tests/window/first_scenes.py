@@ -328,6 +328,8 @@ class Names:
     def row(self, **_):
         return self
 
+    column = row
+
     def separator(self, **_):
         pass
 

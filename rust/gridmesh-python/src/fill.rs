@@ -32,7 +32,8 @@ use crate::watch::Watch;
 ///     its slope and curvature. A patch that would meet something then is a film, if that meets nothing ("repaired" in
 ///     the report).
 /// strict : bool
-///     True: a fill that meets itself or the mesh is refused. False: this is counted in the report.
+///     True: a fill that meets itself or the mesh is refused. False: this is counted in the report; but one patch between several loops
+///     that look away from each other (see `look_apart`), as both ends of a pipe do, is always refused where it would meet something.
 /// polygons : (m,) array of int, optional
 ///     The polygon that each triangle is a part of, the triangles of one following each other: the loop's
 ///     vertices then get the edges that quads want, whichever diagonals cut them.
