@@ -13,14 +13,11 @@ from ..bodies.density import automatic
 from ..bodies.outlines import Plane, area
 from ..native import native
 from .regions import Part
+from .steady import SPACING
 from .trace import Trace, pack, unpack  # noqa: F401 (scripts take them from here)
 
 FEWEST = 8
 """A stroke of fewer points is no outline."""
-
-SPACING = 2.0
-"""Points nearer than this, in pixels, are one."""
-
 
 MOST = 4000
 """Triangles of a preview whose number is left to the stroke; of quads half as many."""
@@ -42,6 +39,8 @@ class Gesture:
         self._points: list[tuple[float, float]] = []
         self._rays: list[tuple[np.ndarray, np.ndarray]] = []
         self._pressures: list[float] = []
+        self._left_out = 0
+        self._after: list[tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]] = []
 
     def __len__(self) -> int:
         return len(self._points)
@@ -50,20 +49,6 @@ class Gesture:
     def across(self) -> float:
         """Extent in pixels."""
         return float(np.ptp(self._pixels, axis=0).max()) if self._pixels else 0.0
-
-    def steadied(
-        self, pixel: tuple[float, float], radius: float, factor: float
-    ) -> tuple[float, float] | None:
-        """Where a stabilized stroke goes when the mouse is at a pixel; None while that is within the radius.
-
-        radius : pixels that the stroke stays behind. factor : from 0 to 1, how slowly it follows.
-        """
-        if not self._pixels:
-            return pixel
-        x, y = self._pixels[-1]
-        if (pixel[0] - x) ** 2 + (pixel[1] - y) ** 2 < radius**2:
-            return None
-        return x + (1 - factor) * (pixel[0] - x), y + (1 - factor) * (pixel[1] - y)
 
     def add(
         self,
@@ -87,19 +72,30 @@ class Gesture:
             self._rays.append(ray)
         return True
 
+    def close(self, left_out: int, after: list[tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]]) -> bool:
+        """Leave the first points out of the stroke, and have others come after the last: points of the plane and their sight lines.
+
+        They replace those of before; returns whether there are or were any.
+        """
+        changed = bool(left_out or self._left_out)
+        self._left_out, self._after = left_out, after
+        return changed
+
     @property
     def points(self) -> np.ndarray:
         """(n, 2) in the plane."""
-        return np.array(self._points, float).reshape(-1, 2)
+        after = [point for point, _ in self._after]
+        return np.array([*self._points[self._left_out :], *after], float).reshape(-1, 2)
 
     @property
     def pressures(self) -> np.ndarray:
         """(n,) from 0 to 1."""
-        return np.array(self._pressures, float)
+        return np.array(self._pressures[self._left_out :] + self._pressures[-1:] * len(self._after), float)
 
     def trace(self, plane: Plane, *, free: bool, perspective: bool) -> Trace:
         """Return the stroke so far, as it was seen."""
-        origins, directions = (np.array(side, float).reshape(-1, 3) for side in zip(*self._rays, strict=True))
+        rays = [*self._rays[self._left_out :], *(ray for _, ray in self._after)]
+        origins, directions = (np.array(side, float).reshape(-1, 3) for side in zip(*rays, strict=True))
         directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
         return Trace(plane, origins, directions, self.pressures, True, free, perspective)
 

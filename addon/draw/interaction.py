@@ -19,6 +19,7 @@ from .decision import Decision, DecisionError, Shape, Wanted, decide
 from .gesture import Gesture
 from .memory import Memory
 from .preview import Preview
+from .steady import Pixel, Steady
 from .trace import Mirror, Trace
 
 drawing_now = False
@@ -73,6 +74,10 @@ class Interaction:
         kind = options.cells.lower()
         number = None if options.resolution == "AUTO" else getattr(options, kind)
         self._gesture = Gesture(number, length, kind)
+        self._steady: Steady | None = None
+        if options.use_stabilizer:
+            radius = options.stabilizer_radius * context.preferences.system.ui_scale
+            self._steady = Steady(radius, options.stabilizer_factor)
         self._preview = Preview(context)
         drawing_now = True
         self._tell(context, "")
@@ -80,16 +85,29 @@ class Interaction:
     def add(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         """Append where the mouse is; return whether the stroke has grown."""
         pixel = _pixel(context, event)
-        if self.options.use_stabilizer:
-            radius = self.options.stabilizer_radius * context.preferences.system.ui_scale
-            steady = self._gesture.steadied(pixel, radius, self.options.stabilizer_factor)
-            if steady is None:
-                return False
-            pixel = steady
+        if self._steady is None:
+            return self._append(context, event, pixel)
+        behind = self._steady.follow(pixel)
+        grown = behind is not None and self._append(context, event, behind)
+        if grown:
+            self._steady.add(behind)
+        return self._close(context) or grown
+
+    def _append(self, context: bpy.types.Context, event: bpy.types.Event, pixel: Pixel) -> bool:
+        """Append what is seen at a pixel; return whether it is a new point."""
         point = planes.on_plane(context, self._plane, pixel)
         # A mouse has no pressure: it draws at full width.
         pressure = event.pressure if event.is_tablet else 1.0
         return point is not None and self._gesture.add(pixel, point, pressure, planes.ray(context, pixel))
+
+    def _close(self, context: bpy.types.Context) -> bool:
+        """Close a steady stroke while the mouse is at its start; return whether that changes it."""
+        left_out, pixels = self._steady.lap()
+        points = [planes.on_plane(context, self._plane, pixel) for pixel in pixels]
+        if any(point is None for point in points):
+            left_out, pixels, points = 0, [], []
+        rays = [planes.ray(context, pixel) for pixel in pixels]
+        return self._gesture.close(left_out, list(zip(points, rays, strict=True)))
 
     def key(self, event: bpy.types.Event) -> bool:
         """Take a key; return whether it changes what is shown."""

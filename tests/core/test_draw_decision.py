@@ -9,7 +9,6 @@ from addon.bodies.outlines import Plane
 from addon.draw import memory
 from addon.draw.decision import DecisionError, Shape, Wanted, decide, inside, relation
 from addon.draw.fewer import simplified
-from addon.draw.gesture import Gesture
 from addon.draw.trace import Mirror, Trace, closed, flat, pack, unpack
 
 FLOOR = Plane(np.zeros(3), np.eye(3))
@@ -266,22 +265,6 @@ def test_ends_that_pass_each_other_are_cut_off():
     long = np.vstack([ring(), ring()[:4] * 1.02])
     assert len(closed(long)) < len(long)
     assert np.array_equal(closed(ring()[:30]), ring()[:30]), "ends that are far apart"
-
-
-def test_a_stabilized_stroke_stays_behind_and_is_smoother():
-    random = np.random.default_rng(1)
-    mouse = np.stack([np.arange(0, 900, 3.0), 40 * random.standard_normal(300)], axis=1)
-    lines = []
-    for radius in (0, 40):
-        gesture = Gesture(500)
-        for pixel in mouse:
-            steady = gesture.steadied(tuple(pixel), radius, 0.75 if radius else 0.0)
-            if steady is not None:
-                gesture.add(steady, np.array(steady), 1.0)
-        lines.append(gesture.points)
-    plain, steady = lines
-    assert np.abs(steady[:, 1]).mean() < 0.7 * np.abs(plain[:, 1]).mean()
-    assert steady[-1, 0] < plain[-1, 0]
 
 
 def test_strokes_are_remembered_by_a_short_name():

@@ -51,6 +51,7 @@ WITHOUT_BLENDER = {
     "data/defaults",
     "cli/params",
     "draw/gesture",
+    "draw/steady",
     "draw/trace",
     "draw/decision",
     "draw/memory",

@@ -504,6 +504,29 @@ def pen():
     yield from stage.picture("pen")
 
 
+def draw_steady():
+    """With *Stabilize Stroke* a shaky hand draws a round body, with no corner where the stroke began."""
+    yield from begin()
+    with stage.override():
+        options = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT").operator_properties(
+            "object.gridmesh_draw"
+        )
+    options.use_stabilizer = True
+    try:
+        shake = np.random.default_rng(1).normal(0, 4, (120, 2))
+        path = np.array(ring(stage.middle(), 170, 120)) + shake
+        yield from stroke([tuple(point) for point in path], picture="steady_1_preview", at=0.97)
+        yield from stage.picture("steady_2_body")
+    finally:
+        options.property_unset("use_stabilizer")
+    (outline,) = outlines()
+    (drawn,) = outline.data.layers[0].current_frame().drawing.strokes
+    points = np.array([point.position for point in drawn.points])
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    radii = np.linalg.norm(points - middle, axis=1)
+    assert radii.max() < 1.12 * radii.min(), f"from {radii.min()} to {radii.max()}"
+
+
 SCENES = (
     *(
         draw_body,
@@ -516,5 +539,15 @@ SCENES = (
         draw_click,
         draw_turned,
     ),
-    *(draw_bridge, draw_eye, draw_mirrored, draw_idle, draw_planes, draw_automatic, draw_pressed, pen),
+    *(
+        draw_bridge,
+        draw_eye,
+        draw_mirrored,
+        draw_idle,
+        draw_planes,
+        draw_automatic,
+        draw_pressed,
+        draw_steady,
+        pen,
+    ),
 )
