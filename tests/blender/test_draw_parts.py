@@ -9,7 +9,7 @@ from cuts import check_sound
 from drawings import activate, bean, circle, mesh_objects, vertices, world_vertices
 from mathutils import Vector
 
-from addon.data import frames
+from addon.data import frames, written
 from addon.draw.trace import pack
 from addon.join import characters, drafts, following, marks
 from addon.live import engine
@@ -630,6 +630,21 @@ def test_random_actions(tmp_path, seed):
     assert play.waiting <= 0.1 * play.looked, f"{play.waiting} of {play.looked} looks found one that waits"
     print(f"steps {play.done}, waiting {play.waiting} of {play.looked}, parts {len(play.parts())}, "
           f"drafts {len(drafts.timing)}")  # fmt: skip
+
+
+def test_a_part_in_edit_mode_is_read_as_it_was(disk, monkeypatch):
+    """Its corners were what lay in memory, since an attribute is missing there: the whole that was shown of them crashed Blender."""
+    part, whole = add(ARM)
+    characters.pick(part)
+    corners, digest = written.corners_of(part.data), written.digest(part.data)
+    bpy.ops.object.mode_set(mode="EDIT")
+    monkeypatch.setattr(np, "empty", lambda shape, dtype=float: np.full(shape, 7, dtype))
+    assert np.array_equal(written.corners_of(part.data), corners)
+    assert written.digest(part.data) == digest
+    following.draft(whole)
+    monkeypatch.undo()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    check_sound(whole)
 
 
 def test_a_whole_changed_by_hand_is_not_extended_and_a_part_over_it_stays_apart(disk, capfd):
