@@ -25,12 +25,23 @@ pub struct Progress<'a> {
 pub(crate) struct Meter {
     taken: AtomicU64,
     most: u64,
+    is_hasty: bool,
 }
 
 impl Meter {
     /// For at most so many steps.
     pub(crate) fn new(most: u64) -> Self {
-        Self { taken: AtomicU64::new(0), most }
+        Self { taken: AtomicU64::new(0), most, is_hasty: false }
+    }
+
+    /// The same for work that is given up where there is little hope.
+    pub(crate) fn hasty(most: u64) -> Self {
+        Self { is_hasty: true, ..Self::new(most) }
+    }
+
+    /// True if work is to be given up where there is little hope.
+    pub(crate) fn is_hasty(&self) -> bool {
+        self.is_hasty
     }
 
     /// Notes steps.

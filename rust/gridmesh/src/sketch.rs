@@ -28,7 +28,7 @@ use crate::patch::{Patch, mirror};
 use crate::path::outline::Obstacle;
 use crate::progress::{Progress, Rising};
 pub use crate::sketch::job::Sketch;
-use crate::sketch::job::{Asked, Effort, Job};
+use crate::sketch::job::{Asked, Job};
 pub use crate::sketch::kept::Kept;
 
 /// Meshes the inside of a closed planar drawing.
@@ -159,7 +159,7 @@ fn attempted(job: &mut Job<'_>, asked: Asked, expected: f64, progress: Progress<
         // A number that was chosen gives way to one that works.
         match job.least_that_works(expected, obstacle.clone(), progress)? {
             Error::TooCoarse { needed: Needed::Least(least), .. } if least <= options.max_triangles => {
-                attempt = job.attempt(Asked::Cells(least), Effort::Full, progress)?;
+                attempt = job.attempt_unless_hopeless(Asked::Cells(least), least as f64, progress)?;
             }
             refused => return Err(refused),
         }

@@ -118,9 +118,14 @@ fn attempt_with<G: Laid>(
     let mut prices: Vec<Prices> = contours.iter().map(none).collect();
     let mut walks = roots.clone();
     let share = progress.part(0.3, 0.7);
-    let mut dive = dive::dive(&contours, &mut walks, &mut prices, search, share)?;
+    let is_hasty = search.pulse.is_hasty();
+    let mut dive = if is_hasty {
+        dive::dive_in_haste(&contours, &mut walks, &mut prices, search, share)?
+    } else {
+        dive::dive(&contours, &mut walks, &mut prices, search, share)?
+    };
     let first_conflicts = dive.first;
-    if failure(&dive, &contours, &walks).is_some() {
+    if !is_hasty && failure(&dive, &contours, &walks).is_some() {
         dive::keep_apart(&contours, &mut walks, &mut prices, search);
         let rounds = dive.rounds;
         dive = dive::dive(&contours, &mut walks, &mut prices, search, share)?;
@@ -133,10 +138,10 @@ fn attempt_with<G: Laid>(
     let best = total(&walks);
     let root = total(&roots);
     let mut proof = Proof { bound: root, walks: None, optimal: root == best };
-    // Unasked only where it is not far.
+    // Unasked only where it is not far, and not in haste.
     let is_near = first_conflicts * QUICK_SHARE <= walks.iter().map(Walk::len).sum();
     search.pulse.unlimit();
-    if dive.rounds > 0 && (options.proof_nodes > 0 || is_near) {
+    if !is_hasty && dive.rounds > 0 && (options.proof_nodes > 0 || is_near) {
         let share = progress.part(0.7, 1.0);
         let nodes = options.proof_nodes;
         proof = proof::prove(&contours, &roots, best, nodes, search, share)?;

@@ -281,7 +281,7 @@ impl Job<'_> {
         let options =
             SketchOptions { edge_length: None, triangles: None, angle: along, ..self.of_bent(&bent) };
         let job = self.in_bent_plane(&bent, &options, symmetry);
-        let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Quick(0)).first() else {
+        let Some(&(angle, shift)) = job.placements_to_try(asked, Effort::Once).first() else {
             return Ok(None);
         };
         let found = job.outline(asked, Effort::Full, angle, shift, progress)?;

@@ -27,6 +27,7 @@ use crate::path::placement::{Laid, Lattice};
 use crate::progress::{Meter, Progress};
 use crate::sketch::found::Found;
 use crate::sketch::kept::{Kept, Paths};
+use crate::sketch::least::quick;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Asked {
@@ -39,7 +40,10 @@ pub(crate) enum Asked {
 pub(crate) enum Effort {
     /// All placements.
     Full,
-    /// One, whose search takes so many states at most.
+    /// One.
+    Once,
+    /// One, whose search takes so many states at most and is given up where there is little hope: now and then it ends with a
+    /// patch where all placements have none.
     Quick(u64),
 }
 
@@ -122,7 +126,15 @@ impl Job<'_> {
             };
             return Ok(Err(Obstacle::new(reason, at)));
         }
-        self.attempt(asked, Effort::Full, progress)
+        let found = self.attempt(asked, Effort::Full, progress)?;
+        match found {
+            Err(obstacle) if !self.proves && !obstacle.is_inverted => {
+                // A number is said to work where this does.
+                let found = self.attempt(asked, quick(expected), progress)?;
+                Ok(found.map_err(|_| obstacle))
+            }
+            found => Ok(found),
+        }
     }
 
     /// Tries lattice placements until one gives a valid patch of the size asked for: the angles

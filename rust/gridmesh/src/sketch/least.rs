@@ -16,20 +16,26 @@ use crate::sketch::job::{Asked, Effort, Job};
 /// as a triangle: eight million at most, less than a second.
 const WORK: f64 = 8e5;
 const EDGE: f64 = 20.0;
+/// A leap may take more by itself, up to this: three seconds.
+const MOST_OF_LEAP: f64 = 2.4e6;
 const STATES: f64 = 10.0;
 
 /// States that one search may take, and more for each triangle: where a drawing has no mesh most are spent to find out, and a
-/// larger number is found sooner than it is shown that a smaller one fails. A number that is said to work does so with
-/// more effort too. And beyond what the search took that worked, where a smaller number is looked for after it.
+/// larger number is found sooner than it is shown that a smaller one fails.
 const MOST: u64 = 200_000;
 const MOST_EACH: u64 = 200;
 
 /// Where that work is done and no number was found, so many larger ones are tried, so many steps on: no least number, but one that works.
 const LEAPS: usize = 2;
-const LEAP: i32 = 7;
+const LEAP: i32 = 9;
 
 /// Sizes are tried in steps of this factor.
 const STEP: f64 = 1.1;
+
+/// The effort with which it is told whether so many cells work. Whoever asks for them has this tried too.
+pub(super) fn quick(cells: f64) -> Effort {
+    Effort::Quick(MOST + MOST_EACH * cells.round() as u64)
+}
 
 impl Job<'_> {
     /// The error for a drawing that has no patch of the size asked for: the least number of
@@ -52,19 +58,18 @@ impl Job<'_> {
         let last = most_symmetric.map_or(limit, |most| steps(most - 1.0).min(limit));
         let mut work = WORK + 4.0 * asked;
         let mut fails = self.last_hopeless(last, at);
-        let (mut works, first, mut taken) = (None, fails, 0);
-        let effort = |cells: usize| MOST + MOST_EACH * cells as u64;
+        let (mut works, first) = (None, fails);
         let mut leaps = LEAPS;
+        let ahead_of = |job: &Self, step: i32| at(step) as f64 + EDGE * job.boundary_edges(at(step));
         while works.is_none() && fails < last {
             // Small steps first, for drawings that nearly fit; larger ones after them, and leaps where no work is left for more.
-            let ahead_of = |step: i32| at(step) as f64 + EDGE * self.boundary_edges(at(step));
             let mut step = (fails + 2 + (fails - first) / 2).min(last);
-            if work < ahead_of(step) && leaps > 0 {
+            if work < ahead_of(self, step) && leaps > 0 {
                 step = step.max(fails + LEAP).min(last);
                 leaps -= 1;
-                work = WORK;
+                work = WORK.max(ahead_of(self, step).min(MOST_OF_LEAP));
             }
-            let ahead = ahead_of(step);
+            let ahead = ahead_of(self, step);
             if work < ahead {
                 return Ok(Error::TooCoarse {
                     triangles,
@@ -72,11 +77,10 @@ impl Job<'_> {
                     needed: Needed::MoreThan(at(fails)),
                 });
             }
-            let (does, states) = self.works(at(step), effort(at(step)), progress)?;
+            let (does, states) = self.works(at(step), progress)?;
             work -= (states as f64 / STATES).max(ahead);
             if does {
                 works = Some(step);
-                taken = states;
             } else {
                 fails = step;
             }
@@ -87,10 +91,13 @@ impl Job<'_> {
                 _ => Ok(Error::NoPatch { reason: obstacle.reason, at: obstacle.at.to_array() }),
             };
         };
-        while works - fails > 1 && work > 0.0 {
+        while works - fails > 1 {
             let step = (works + fails) / 2;
-            let (does, states) = self.works(at(step), taken + effort(at(step)), progress)?;
-            work -= states as f64 / STATES;
+            if work < ahead_of(self, step) {
+                break;
+            }
+            let (does, states) = self.works(at(step), progress)?;
+            work -= (states as f64 / STATES).max(ahead_of(self, step));
             if does {
                 works = step;
             } else {
@@ -107,7 +114,7 @@ impl Job<'_> {
     /// The last of the first steps, up to `last`, at which the length of the boundary alone leaves no hope.
     fn last_hopeless(&self, last: i32, at: impl Fn(i32) -> usize) -> i32 {
         // Where the boundary takes more edges there will be no attempt.
-        let most_edges = 2.0 * WORK / EDGE;
+        let most_edges = MOST_OF_LEAP / EDGE;
         let (mut hopeless, mut hopeful) = (0, last + 1);
         let mut stride = 1;
         while hopeful - hopeless > 1 {
@@ -139,12 +146,12 @@ impl Job<'_> {
         }
     }
 
-    /// Whether the first placement at `n` triangles gives a valid patch, with so many states at most, and the states
-    /// that its searches took.
-    fn works(&mut self, n: usize, most: u64, progress: Progress<'_>) -> Result<(bool, u64)> {
+    /// Whether the first placement at `n` triangles gives a valid patch with little effort, and the states that its searches
+    /// took.
+    fn works(&mut self, n: usize, progress: Progress<'_>) -> Result<(bool, u64)> {
         progress.report(0.9)?;
         let begun = self.states.taken();
-        let does = self.attempt(Asked::Cells(n), Effort::Quick(most), progress)?.is_ok();
+        let does = self.attempt(Asked::Cells(n), quick(n as f64), progress)?.is_ok();
         Ok((does, self.states.taken() - begun))
     }
 

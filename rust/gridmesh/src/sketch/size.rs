@@ -26,10 +26,10 @@ impl Job<'_> {
         progress: Progress<'_>,
     ) -> Result<Result<(Lattice, Outline), Miss>> {
         let most = self.most_states(asked);
-        let meter = Meter::new(match effort {
-            Effort::Full => most,
-            Effort::Quick(less) => less.min(most),
-        });
+        let meter = match effort {
+            Effort::Full | Effort::Once => Meter::new(most),
+            Effort::Quick(less) => Meter::hasty(less.min(most)),
+        };
         let found = self.sized(asked, effort, angle, shift, progress.metered(&meter));
         self.states.add(meter.taken());
         found
@@ -140,7 +140,7 @@ impl Job<'_> {
         progress: Progress<'_>,
     ) -> Result<Result<(Lattice, Outline), Miss>> {
         if effort == Effort::Full && self.proves {
-            let unproved = self.outline(asked, Effort::Quick(u64::MAX), angle, shift, progress)?;
+            let unproved = self.outline(asked, Effort::Once, angle, shift, progress)?;
             let Ok((lattice, outline)) = &unproved else { return Ok(unproved) };
             let placed = self.place(None, lattice, outline, progress)?;
             if !placed.is_ok_and(|(placed, _)| placed.fault(self.options).is_none()) {

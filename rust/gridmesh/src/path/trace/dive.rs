@@ -23,6 +23,8 @@ pub(super) const APART: u32 = 2 * TURN;
 const PATIENCE: usize = 25;
 /// Pricing stops after this many rounds unless conflicts have halved or are below one per `CROWDED` vertices.
 const TRIAL: usize = 12;
+/// The same in haste.
+const SHORT_TRIAL: usize = 8;
 /// See `TRIAL`: vertices per conflict that are few enough to go on.
 const CROWDED: usize = 20;
 /// Vertices on each side of a conflict that are free to move when it is priced; and those where conflicts are so dense
@@ -67,7 +69,7 @@ pub(super) fn dive_from<G: Grid>(
 ) -> Result<Dive> {
     let mut finder = Finder::default();
     let mut rounds = 0;
-    let mut patience = Patience::new(walks);
+    let mut patience = Patience::new(walks, search.pulse.is_hasty());
     loop {
         let conflicts = finder.find(contours, walks);
         let repeated = conflicts.iter().any(|conflict| conflict.chord.is_none());
@@ -103,19 +105,54 @@ pub(super) fn dive_from<G: Grid>(
     }
 }
 
+/// The same in haste: where there are many conflicts walls are kept apart first if that leaves fewer, and only what begins
+/// with fewer is tried.
+pub(super) fn dive_in_haste<G: Grid>(
+    contours: &[Contour<G>],
+    walks: &mut [Walk<G>],
+    prices: &mut [Prices],
+    search: &mut Search<'_>,
+    progress: Progress<'_>,
+) -> Result<Dive> {
+    let first = dive_from(contours, walks, prices, search, 0, progress)?.first;
+    let vertices: usize = walks.iter().map(Walk::len).sum();
+    let is_crowded = first > vertices / CROWDED;
+    if is_crowded {
+        let cheapest = walks.to_vec();
+        keep_apart(contours, walks, prices, search);
+        let apart = dive_from(contours, walks, prices, search, 0, progress)?.first;
+        if apart >= first {
+            walks.clone_from_slice(&cheapest);
+            prices.iter_mut().for_each(Prices::clear);
+        }
+    }
+    let mut dive = dive(contours, walks, prices, search, progress)?;
+    let is_left = !dive.conflicts.is_empty() || !dive.wrong.is_empty();
+    if is_left && !is_crowded {
+        keep_apart(contours, walks, prices, search);
+        let rounds = dive.rounds;
+        dive = self::dive(contours, walks, prices, search, progress)?;
+        dive.rounds += rounds;
+    }
+    dive.first = first;
+    Ok(dive)
+}
+
 /// Whether more rounds of pricing are worth their time.
 pub(super) struct Patience {
     /// Conflicts that are not too many.
     few: usize,
+    trial: usize,
     pub first: usize,
     fewest: usize,
     since: usize,
 }
 
 impl Patience {
-    pub fn new<G: Grid>(walks: &[Walk<G>]) -> Self {
+    pub fn new<G: Grid>(walks: &[Walk<G>], is_hasty: bool) -> Self {
         let vertices: usize = walks.iter().map(Walk::len).sum();
-        Self { few: vertices / CROWDED, first: usize::MAX, fewest: usize::MAX, since: 0 }
+        let trial = if is_hasty { SHORT_TRIAL } else { TRIAL };
+        Self { few: vertices / CROWDED, trial, first: usize::MAX, fewest: usize::MAX, since: 0 }
     }
 
     /// True once there is little hope, seeing how many conflicts are left after a round.
@@ -126,7 +163,7 @@ impl Patience {
         if left < self.fewest {
             (self.fewest, self.since) = (left, round);
         }
-        let is_stuck = round >= TRIAL && self.fewest > self.few && 2 * self.fewest > self.first;
+        let is_stuck = round >= self.trial && self.fewest > self.few && 2 * self.fewest > self.first;
         is_stuck || round - self.since >= PATIENCE
     }
 }

@@ -220,7 +220,7 @@ impl<'a, G: Laid> Job<'a, G> {
     fn dive(&mut self, progress: Progress<'_>) -> Result<Dive, TraceFailure> {
         let mut finder = Finder::default();
         let mut rounds = 0;
-        let mut patience = Patience::new(&self.walks);
+        let mut patience = Patience::new(&self.walks, self.search.pulse.is_hasty());
         loop {
             let conflicts = finder.find(&self.contours, &self.walks);
             let repeated = conflicts.iter().any(|conflict| conflict.chord.is_none());

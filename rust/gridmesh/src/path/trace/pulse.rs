@@ -37,6 +37,11 @@ impl<'a> Pulse<'a> {
         self.limit = self.taken + left.min(12_000_000) + 6 * states as u64;
     }
 
+    /// True if a search is to be given up where there is little hope.
+    pub fn is_hasty(&self) -> bool {
+        self.progress.meter().is_some_and(Meter::is_hasty)
+    }
+
     /// Takes the limit back.
     pub fn unlimit(&mut self) {
         self.limit = u64::MAX;
