@@ -75,7 +75,8 @@ def test_no_part_is_lost_between_the_drawn_points(name):
 
 
 @pytest.mark.parametrize(
-    ("turns", "width", "cells"), [(5, 0.2, "triangles"), (12, 0.4, "triangles"), (12, 0.4, "quads")]
+    ("turns", "width", "cells"),
+    [(5, 0.2, "triangles"), (12, 0.4, "triangles"), (12, 0.4, "quads"), (15, 0.2, "quads")],
 )
 def test_a_spiral_of_many_turns_is_told_a_number_that_works(turns, width, cells):
     points = spiral(turns, width)

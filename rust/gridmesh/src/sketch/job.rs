@@ -27,7 +27,11 @@ use crate::path::placement::{Laid, Lattice};
 use crate::progress::{Meter, Progress};
 use crate::sketch::found::Found;
 use crate::sketch::kept::{Kept, Paths};
-use crate::sketch::least::quick;
+
+/// States that one search may take, and more for each triangle: where a drawing has no mesh most are spent to find out, and a
+/// larger number is found sooner than it is shown that a smaller one fails.
+const MOST: u64 = 200_000;
+const MOST_EACH: u64 = 200;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Asked {
@@ -45,6 +49,13 @@ pub(crate) enum Effort {
     /// One, whose search takes so many states at most and is given up where there is little hope: now and then it ends with a
     /// patch where all placements have none.
     Quick(u64),
+}
+
+impl Effort {
+    /// That with which it is told whether so many cells work. Whoever asks for them has it tried, too.
+    pub(crate) fn quick(cells: f64) -> Self {
+        Self::Quick(MOST + MOST_EACH * cells.round() as u64)
+    }
 }
 
 pub(crate) struct Job<'a> {
@@ -130,7 +141,7 @@ impl Job<'_> {
         match found {
             Err(obstacle) if !self.proves && !obstacle.is_inverted => {
                 // A number is said to work where this does.
-                let found = self.attempt(asked, quick(expected), progress)?;
+                let found = self.attempt(asked, Effort::quick(expected), progress)?;
                 Ok(found.map_err(|_| obstacle))
             }
             found => Ok(found),

@@ -20,22 +20,12 @@ const EDGE: f64 = 20.0;
 const MOST_OF_LEAP: f64 = 2.4e6;
 const STATES: f64 = 10.0;
 
-/// States that one search may take, and more for each triangle: where a drawing has no mesh most are spent to find out, and a
-/// larger number is found sooner than it is shown that a smaller one fails.
-const MOST: u64 = 200_000;
-const MOST_EACH: u64 = 200;
-
 /// Where that work is done and no number was found, so many larger ones are tried, so many steps on: no least number, but one that works.
 const LEAPS: usize = 2;
 const LEAP: i32 = 9;
 
 /// Sizes are tried in steps of this factor.
 const STEP: f64 = 1.1;
-
-/// The effort with which it is told whether so many cells work. Whoever asks for them has this tried too.
-pub(super) fn quick(cells: f64) -> Effort {
-    Effort::Quick(MOST + MOST_EACH * cells.round() as u64)
-}
 
 impl Job<'_> {
     /// The error for a drawing that has no patch of the size asked for: the least number of
@@ -151,7 +141,7 @@ impl Job<'_> {
     fn works(&mut self, n: usize, progress: Progress<'_>) -> Result<(bool, u64)> {
         progress.report(0.9)?;
         let begun = self.states.taken();
-        let does = self.attempt(Asked::Cells(n), quick(n as f64), progress)?.is_ok();
+        let does = self.attempt(Asked::Cells(n), Effort::quick(n as f64), progress)?.is_ok();
         Ok((does, self.states.taken() - begun))
     }
 
