@@ -16,7 +16,7 @@ from ..bodies.strokes import selected
 from ..fill.creases import rim_creases
 from . import colors, frames
 from .placing import Collections, Transaction
-from .written import by_hand, sign
+from .written import by_hand, is_edited, sign
 
 LINK = "gridmesh_stroke"
 """Custom property of a body without a link that says which stroke it was made from, and how it lies to that."""
@@ -77,7 +77,7 @@ def obstacle(ob: bpy.types.Object) -> str:
     """Why the object cannot be brought up to date in place; empty if it can."""
     if not ob.is_editable or not ob.data.is_editable:
         return f"'{ob.name}' is linked from another file; make it local or turn off Update Existing"
-    if ob.mode != "OBJECT":
+    if is_edited(ob):
         return f"'{ob.name}' is being edited; leave its mode or turn off Update Existing"
     if ob.data.shape_keys is not None:
         return f"'{ob.name}' has shape keys, which fit no new mesh; remove them or turn off Update Existing"

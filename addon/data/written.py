@@ -61,6 +61,14 @@ def keep(made: str, points: np.ndarray) -> None:
             del _points[gone]
 
 
+def is_edited(ob: bpy.types.Object) -> bool:
+    """Whether the mesh of an object is being edited, sculpted or painted, there or at another object that has it: it is not to be written then."""
+    if ob.mode != "OBJECT":
+        return True
+    mesh = ob.data
+    return mesh.users > 1 and any(other.data == mesh and other.mode != "OBJECT" for other in bpy.data.objects)
+
+
 def points_of(mesh: bpy.types.Mesh) -> np.ndarray:
     """Coordinates (3 n, float32) of the vertices."""
     points = np.empty(len(mesh.vertices) * 3, np.float32)

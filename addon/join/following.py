@@ -222,7 +222,7 @@ def update(ob: bpy.types.Object) -> bool:
     """Join a whole anew if its parts or options have changed; say whether that was done."""
     joined, by_hand = ob.gridmesh_joined, transforms.changed_by_hand(ob)
     found, now = placed(ob), fingerprint(ob)
-    if ob.mode != "OBJECT" or not ob.is_editable:
+    if not ob.is_editable or written.is_edited(ob):
         return False
     if not found:
         _tell(joined, GONE)
@@ -335,7 +335,7 @@ def _look() -> float | None:
 
 def draft(ob: bpy.types.Object) -> bool:
     """Show a whole whose parts have changed as these together, which is quick; say whether there was anything new."""
-    if ob.mode != "OBJECT" or not ob.is_editable or not ob.visible_get():
+    if not ob.is_editable or not ob.visible_get() or written.is_edited(ob):
         return False
     by_hand = transforms.changed_by_hand(ob)
     lying.note(ob)

@@ -31,7 +31,7 @@ def changed_by_hand(ob: bpy.types.Object) -> bool:
     if not written.by_hand(mesh):
         _seen[ob.session_uid] = np.array(ob.matrix_world)
         return False
-    if ob.mode != "OBJECT" or not ob.is_editable or not mesh.is_editable or not mesh.gridmesh_made:
+    if not ob.is_editable or not mesh.is_editable or not mesh.gridmesh_made or written.is_edited(ob):
         return True
     motion = written.motion(mesh)
     if motion is None:

@@ -128,7 +128,7 @@ def absorb(ob: bpy.types.Object) -> None:
     Edit Mode, an outline of its own goes along.
     """
     mesh = ob.data
-    if ob.mode != "OBJECT" or not ob.is_editable or not mesh.is_editable or mesh.shape_keys is not None:
+    if not ob.is_editable or not mesh.is_editable or mesh.shape_keys is not None or written.is_edited(ob):
         return
     if not mesh.gridmesh_made or not written.by_hand(mesh):
         return

@@ -188,7 +188,7 @@ def hand_over(ob: bpy.types.Object) -> bpy.types.Object:
 
 def rebuild(ob: bpy.types.Object) -> None:
     """Make a body anew whose mesh was changed by hand, and let it follow again; the changes are lost."""
-    if ob.mode == "OBJECT" and ob.is_editable and ob.data.is_editable:
+    if not written.is_edited(ob) and ob.is_editable and ob.data.is_editable:
         written.sign(ob.data)
     ob.gridmesh_live.digest = family.writer(ob).gridmesh_live.digest = ""
     remake(ob)
@@ -208,7 +208,7 @@ def _hindrance(ob: bpy.types.Object) -> str:
     """Why a body cannot follow, whatever its stroke; empty if it can."""
     if not ob.is_editable or not ob.data.is_editable:
         return "it is linked from another file"
-    if ob.mode != "OBJECT":
+    if written.is_edited(ob):
         return "it is being edited; leave its mode"
     if ob.data.shape_keys is not None:
         return "it has shape keys, which fit no new mesh"

@@ -201,6 +201,34 @@ def test_the_panel_offers_both_ways_out(drawn):
     assert "Freeze" in body.gridmesh_live.problem
 
 
+@pytest.mark.parametrize("mode", ["EDIT", "SCULPT", "WEIGHT_PAINT"])
+def test_a_mesh_that_is_edited_at_a_linked_copy_is_left(drawn, mode):
+    """It was written under the mode that held it."""
+    drawing, body = drawn
+    activate(body)
+    bpy.ops.object.duplicate(linked=True)
+    bpy.context.view_layer.update()
+    engine.settle()
+    copy = bpy.context.object
+    assert copy != body
+    assert copy.data == body.data
+    activate(copy)
+    bpy.ops.object.mode_set(mode=mode)
+    before = vertices(body.data).copy()
+    body.gridmesh_live.depth = 2.0
+    reshape(drawing, 1.5)
+    assert np.array_equal(vertices(body.data), before)
+    assert "leave its mode" in body.gridmesh_live.problem
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.update()
+    engine.settle()
+    assert body.gridmesh_live.problem == ""
+    wide, high = np.ptp(vertices(body.data), axis=0)[[0, 2]]
+    assert wide == pytest.approx(1.5 * np.ptp(before[:, 0]), rel=0.02)
+    assert high > 1.8 * np.ptp(before[:, 2])
+    check_body(body)
+
+
 def test_lines_of_messages_fit():
     from addon.ui.wrapping import lines
 
