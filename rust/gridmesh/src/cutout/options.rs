@@ -41,9 +41,9 @@ impl Default for CutoutOptions {
 pub enum CutoutRim {
     /// Boundary vertices lie on the outlines.
     On,
-    /// Edges lie across them, see [`Rim::Across`].
+    /// Edges lie across them, see [`Rim::Across`](crate::cover::Rim::Across).
     Across,
-    /// They cover the parts, whose outlines have this margin in pixels around what is to be covered; see [`Rim::Around`].
+    /// They cover the parts, whose outlines have this margin in pixels around what is to be covered; see [`Rim::Around`](crate::cover::Rim::Around).
     Around {
         /// Above 0; what is covered of it is all but three quarters of a pixel.
         margin: f64,
