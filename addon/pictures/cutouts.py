@@ -9,11 +9,9 @@ from typing import Any
 import numpy as np
 
 from ..api import FACE_AREA, Progress, cancelling, faces_of, part_of
+from ..bodies.outlines import area
 from ..native import native
-from .tracing import Options, Outlines, PictureError, area, check_size, traced
-
-MOST_TIMES = 250.0
-"""Times the number asked for that lines as thin as a pixel or two are meshed with, at most."""
+from .tracing import Options, Outlines, PictureError, check_size, traced
 
 _MISSING = 0.01
 """Share of the area that may be missing because lines are too thin, before all is widened."""
@@ -172,7 +170,6 @@ def _meshed(gridmesh: Any, outlines: Outlines, options: Options, progress: Progr
         margin=max(0.0, options.margin),
         cover=options.cover,
         faint=outlines.faint,
-        most=MOST_TIMES,
         body=options.body,
         progress=progress,
         **{cells: number},
@@ -227,4 +224,4 @@ def _too_few(gridmesh: Any, parts: list[Any], k: int, options: Options, progress
 
 def _drawn(part: tuple[np.ndarray, list[np.ndarray]]) -> float:
     outline, holes = part
-    return area(outline) + sum(map(area, holes))
+    return area(outline) - sum(map(area, holes))

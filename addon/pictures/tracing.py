@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..api import Progress
+from ..bodies.outlines import area
 from .level import LEVELS, level_of
 
 PIXELS = 100_000_000
@@ -92,9 +93,9 @@ def _without_pores(
     parts: list[tuple[np.ndarray, list[np.ndarray]]], least: float
 ) -> list[tuple[np.ndarray, list[np.ndarray]]]:
     """Outlines without holes of less than this area, and without what lies in these."""
-    pores = [hole for _, holes in parts for hole in holes if -area(hole) < least]
+    pores = [hole for _, holes in parts for hole in holes if area(hole) < least]
     return [
-        (outline, [hole for hole in holes if -area(hole) >= least])
+        (outline, [hole for hole in holes if area(hole) >= least])
         for outline, holes in parts
         if not any(_inside(outline[0], pore) for pore in pores)
     ]
@@ -116,9 +117,3 @@ def _inside(point: np.ndarray, polygon: np.ndarray) -> bool:
     a, b = a[crossed], b[crossed]
     x = a[:, 0] + (point[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
     return bool((x > point[0]).sum() % 2)
-
-
-def area(contour: np.ndarray) -> float:
-    """Signed area; holes run clockwise."""
-    following = np.roll(contour, -1, axis=0)
-    return float((contour[:, 0] * following[:, 1] - contour[:, 1] * following[:, 0]).sum() / 2)

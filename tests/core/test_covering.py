@@ -1,5 +1,7 @@
 """Meshes of pictures cover what is opaque."""
 
+from functools import partial
+
 import gridmesh
 import numpy as np
 import pytest
@@ -9,9 +11,8 @@ from hypothesis import strategies as st
 from rasters import coverage, placed, sampled
 from sketches import DRAWINGS
 
-from addon.pictures import cutouts
+from addon.bodies.outlines import area
 from addon.pictures.cutouts import Options, cut_out
-from addon.pictures.tracing import area
 
 NAMES = sorted(DRAWINGS)[::3]
 
@@ -371,7 +372,7 @@ def test_the_number_that_a_refused_picture_needs_works(monkeypatch):
     alpha[:, :64] = wound(64)
     alpha[8:56, 90:150] = 1.0
     pixels = np.dstack([np.zeros((*alpha.shape, 3)), alpha])
-    monkeypatch.setattr(cutouts, "MOST_TIMES", 1.0)
+    monkeypatch.setattr(gridmesh, "mesh_cutout", partial(gridmesh.mesh_cutout, most=1.0))
     refused = cut_out(pixels, Options(threshold=0.5, triangles=500)).refused
     assert len(refused) == 1
     assert refused[0].startswith("500 triangles are too few")

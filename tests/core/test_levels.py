@@ -1,14 +1,16 @@
 """Where the outline of a picture runs by itself: sheets hold glows and shadows, thin lines are widened, chalk is told from its board."""
 
+from functools import partial
+
 import gridmesh
 import numpy as np
 import pytest
 from rasters import coverage, sampled
 
-from addon.pictures import cutouts
+from addon.bodies.outlines import area
 from addon.pictures.cutouts import Options, cut_out
 from addon.pictures.level import LEVELS, level_of
-from addon.pictures.tracing import area, traced
+from addon.pictures.tracing import traced
 
 SIZE = 96
 
@@ -89,7 +91,7 @@ def test_nothing_is_seen_of_an_empty_picture():
 
 def test_lines_too_thin_for_a_body_are_widened(monkeypatch):
     """A tree whose twigs got thinner and thinner lost its trunk, which is one part with them."""
-    monkeypatch.setattr(cutouts, "MOST_TIMES", 1.0)
+    monkeypatch.setattr(gridmesh, "mesh_cutout", partial(gridmesh.mesh_cutout, most=1.0))
     trunk = np.array([[44, 8], [52, 8], [52, 88], [44, 88]], float)
     twigs = [
         np.array([[48, y], [8, y + 7], [8, y + 8.2], [48, y + 1.4]], float) for y in (20.0, 40.0, 60.0, 80.0)

@@ -19,7 +19,7 @@ use crate::body::stitch::flat;
 use crate::body::surface::Surface;
 use crate::cover::{Covering, Rim, cover_sketch};
 use crate::cutout::even::{Edges, evened};
-use crate::cutout::lacks::{Allowed, Lacks, drawn_area};
+use crate::cutout::lacks::{Allowed, Lacks, Measures};
 use crate::cutout::made::{Made, best, is_coarse};
 pub use crate::cutout::options::{CutoutOptions, CutoutRim, Finer};
 use crate::cutout::steps::Step;
@@ -55,12 +55,11 @@ pub struct Cutout {
 /// refuses a single part ([`mesh_sketch`], [`inflate`]) is its item.
 pub fn mesh_cutout(parts: &[Part], options: &CutoutOptions, progress: Progress<'_>) -> Result<Cutout> {
     options.check()?;
-    let drawn: Vec<f64> = parts.iter().map(drawn_area).collect();
-    let total: f64 = drawn.iter().sum();
+    let measures = Measures::of(parts);
     if parts.is_empty() {
         return Ok(Cutout { surfaces: Vec::new(), finer: None });
     }
-    if total <= 0.0 {
+    if measures.area <= 0.0 {
         return Err(Error::ZeroArea { what: "picture".into() });
     }
     let rising = Rising::new(progress);
@@ -68,7 +67,7 @@ pub fn mesh_cutout(parts: &[Part], options: &CutoutOptions, progress: Progress<'
     let search = Search {
         parts,
         options,
-        edge_length: options.edge_length(total, options.number as f64),
+        measures,
         known: parts.iter().map(|_| Mutex::default()).collect(),
         progress: Progress::new(&callback),
     };
@@ -81,12 +80,12 @@ pub fn mesh_cutout(parts: &[Part], options: &CutoutOptions, progress: Progress<'
     let mut why: BTreeMap<Finer, f64> = BTreeMap::new();
     for k in (0..parts.len()).filter(|&k| made[k].step > asked) {
         if let Some(reason) = search.why_not(k, asked) {
-            *why.entry(reason).or_default() += drawn[k];
+            *why.entry(reason).or_default() += search.measures.areas[k];
         }
     }
     if parts.len() > 1 && options.cells == CellShape::Triangle {
         for k in evened(&mut made, |k, step| search.best(k, step))? {
-            *why.entry(Finer::Beside).or_default() += drawn[k];
+            *why.entry(Finer::Beside).or_default() += search.measures.areas[k];
         }
     }
     let finer = why.into_iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(finer, _)| finer);
@@ -97,8 +96,7 @@ pub fn mesh_cutout(parts: &[Part], options: &CutoutOptions, progress: Progress<'
 struct Search<'a> {
     parts: &'a [Part],
     options: &'a CutoutOptions,
-    /// Of the number asked for.
-    edge_length: f64,
+    measures: Measures,
     /// By part, the meshes that were made.
     known: Vec<Mutex<BTreeMap<Step, Made>>>,
     progress: Progress<'a>,
@@ -117,7 +115,7 @@ impl Search<'_> {
         }
         let (count, part) = (self.parts.len() as f64, k as f64);
         let progress = self.progress.part(part / count, (part + 1.0) / count);
-        let allowed = Allowed::of_parts(self.parts, step.number(), self.options).swap_remove(k);
+        let allowed = self.measures.allowed(k, step.number(), self.options);
         let made = match self.meshed(&self.parts[k], step, (&allowed, score), progress) {
             Ok(None) => return Ok(None),
             Ok(Some(made)) => made,
@@ -160,9 +158,8 @@ impl Search<'_> {
         progress: Progress<'_>,
     ) -> Result<(Patch, Lacks)> {
         let body = self.options.body.as_ref();
-        let longer = (self.options.number as f64 / step.number()).sqrt();
         let mut options = SketchOptions {
-            edge_length: Some(longer * self.edge_length),
+            edge_length: Some(self.options.edge_length(self.measures.area, step.number())),
             cells: self.options.cells,
             // Only flat corners have a single quad.
             open_corners: body.is_none(),

@@ -12,6 +12,7 @@ pub(crate) mod laplace;
 pub(crate) mod lengthen;
 pub(crate) mod march;
 pub mod metrics;
+pub(crate) mod polygon;
 pub(crate) mod quadratic;
 pub(crate) mod segments;
 pub(crate) mod stars;

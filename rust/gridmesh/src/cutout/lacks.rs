@@ -1,10 +1,9 @@
 //! What the mesh of a part of a picture may lack, and what it is worth to lack less.
 
-use glam::DVec2;
-
 use crate::cover::Covering;
 use crate::cutout::options::{CutoutOptions, CutoutRim, Finer};
 use crate::drawing::combine::Part;
+use crate::geometry::polygon::{perimeter, signed_area};
 
 /// Binary logarithm of the times as many cells that a mesh may have to cut off no more than it may; the more it cuts off
 /// the more may be spent.
@@ -102,36 +101,65 @@ impl Lacks {
     }
 }
 
-impl Allowed {
-    /// For each part of a picture: the share of the picture that may be lost by a mesh of `number` cells in all, parted along the outlines.
+/// The measures of the parts of a picture.
+pub(super) struct Measures {
+    /// By part, its area: that of its outline without its holes; 0 if that is no number.
+    pub(super) areas: Vec<f64>,
+    /// By part, the length of its contours.
+    rims: Vec<f64>,
+    /// The sums of both.
+    pub(super) area: f64,
+    rim: f64,
+}
+
+impl Measures {
+    pub(super) fn of(parts: &[Part]) -> Self {
+        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
+        let area = |part: &Part| {
+            let holes: f64 = part.holes.iter().map(|hole| signed_area(hole).abs()).sum();
+            finite(signed_area(&part.outline).abs() - holes)
+        };
+        let rim = |part: &Part| {
+            let holes: f64 = part.holes.iter().map(|hole| perimeter(hole)).sum();
+            finite(perimeter(&part.outline) + holes)
+        };
+        let areas: Vec<f64> = parts.iter().map(area).collect();
+        let rims: Vec<f64> = parts.iter().map(rim).collect();
+        Self { area: areas.iter().sum(), rim: rims.iter().sum(), areas, rims }
+    }
+
+    /// What the mesh of a part may lack: of the share of the picture that may be lost by a mesh of `number` cells in all as much as
+    /// it has of the outlines.
     ///
     /// So the sizes of the parts differ little: edges of one length lose about as much anywhere along outlines. Of rims that
     /// are fainter than edges more may be cut off.
-    pub(super) fn of_parts(parts: &[Part], number: f64, options: &CutoutOptions) -> Vec<Self> {
-        let drawn: Vec<f64> = parts.iter().map(drawn_area).collect();
-        let rims: Vec<f64> = parts.iter().map(rim_length).collect();
-        let (area, rim): (f64, f64) = (drawn.iter().sum(), rims.iter().sum());
+    pub(super) fn allowed(&self, k: usize, number: f64, options: &CutoutOptions) -> Allowed {
         let fewer = (FEW / number).max(1.0);
         let across = !matches!(options.rim, CutoutRim::Around { .. });
         let share = match options.rim {
             CutoutRim::Around { margin } if options.body.is_none() => {
-                let in_margin = (margin - SOFT).max(0.0) * rim / area;
+                let in_margin = (margin - SOFT).max(0.0) * self.rim / self.area;
                 (EMPTY * fewer - in_margin).max(EMPTY_AT_LEAST)
             }
             CutoutRim::Around { .. } => EMPTY_OF_BODY * fewer,
             CutoutRim::Across | CutoutRim::On if options.body.is_some() => {
                 let [least, most] = BETWEEN;
-                (most - PIXELS * rim / area).max(least) * fewer
+                (most - PIXELS * self.rim / self.area).max(least) * fewer
             }
             CutoutRim::Across | CutoutRim::On => (EMPTY * fewer).max(EMPTY_AT_LEAST),
         };
-        let edge_length = options.edge_length(area, number);
+        let edge_length = options.edge_length(self.area, number);
         let pixels = if across { CUT_OFF_ACROSS.max(CUT_OFF_EDGES * edge_length) } else { CUT_OFF };
-        let cut_off = options.faint * pixels;
-        let each = drawn.iter().zip(&rims);
-        each.map(|(&drawn, own)| Self { drawn, area: share * area * own / rim, cut_off, across }).collect()
+        Allowed {
+            drawn: self.areas[k],
+            area: share * self.area * self.rims[k] / self.rim,
+            cut_off: options.faint * pixels,
+            across,
+        }
     }
+}
 
+impl Allowed {
     /// What a mesh lacks.
     pub(super) fn lacks(&self, covering: &Covering) -> Lacks {
         let outside = covering.outside;
@@ -148,27 +176,4 @@ impl Allowed {
         let area = WORTH_AREA * libm::log2(more.max(1e-9) / self.area).max(0.0);
         Lacks { cut_off: cut_off.min(most), area: area.min(MOST_AREA), short: 0.0 }
     }
-}
-
-/// The area of a part: of its outline, without its holes. 0 if that is no number.
-pub(super) fn drawn_area(part: &Part) -> f64 {
-    finite(area(&part.outline) - part.holes.iter().map(|hole| area(hole)).sum::<f64>())
-}
-
-fn rim_length(part: &Part) -> f64 {
-    let length = |points: &[DVec2]| -> f64 { sides(points).map(|[a, b]| a.distance(b)).sum() };
-    finite(length(&part.outline) + part.holes.iter().map(|hole| length(hole)).sum::<f64>())
-}
-
-fn finite(value: f64) -> f64 {
-    if value.is_finite() { value } else { 0.0 }
-}
-
-fn area(points: &[DVec2]) -> f64 {
-    let origin = points.first().copied().unwrap_or_default();
-    0.5 * sides(points).map(|[a, b]| (a - origin).perp_dot(b - origin)).sum::<f64>().abs()
-}
-
-fn sides(points: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> {
-    points.iter().zip(points.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }

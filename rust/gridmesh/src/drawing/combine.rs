@@ -8,6 +8,7 @@ use i_overlay::float::overlay::FloatOverlay;
 use crate::drawing::curve::bounds;
 use crate::drawing::union::{SOLVER, outer_outline};
 use crate::error::{Error, Result};
+use crate::geometry::polygon::signed_area;
 
 /// What becomes of two drawings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,12 +90,6 @@ fn check_size(what: &str, size: f64) -> Result<()> {
         true => Ok(()),
         false => Err(Error::ExtremeSize { what: what.to_owned(), size }),
     }
-}
-
-/// The parts' outlines are counter-clockwise, so positive; holes are negative.
-fn signed_area(points: &[DVec2]) -> f64 {
-    let Some(&origin) = points.first() else { return 0.0 };
-    0.5 * points.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum::<f64>()
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use i_overlay::float::simplify::SimplifyShape;
 
 use crate::drawing::curve::bounds;
 use crate::error::{Error, Result};
+use crate::geometry::polygon::signed_area;
 use crate::geometry::segments::SegmentGrid;
 
 /// Parts smaller than this share of the largest one are slivers of a shaky crossing: dropped.
@@ -70,9 +71,7 @@ pub(crate) fn nearest_sources(input: &[DVec2], points: &[DVec2]) -> Vec<(u32, f6
 }
 
 fn area(points: &[DVec2]) -> f64 {
-    let origin = points[0];
-    let doubled: f64 = points.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum();
-    0.5 * doubled.abs()
+    signed_area(points).abs()
 }
 
 #[cfg(test)]

@@ -119,13 +119,11 @@ fn attempt_with<G: Laid>(
     let mut walks = roots.clone();
     let share = progress.part(0.3, 0.7);
     let is_hasty = search.pulse.is_hasty();
-    let mut dive = if is_hasty {
-        dive::dive_in_haste(&contours, &mut walks, &mut prices, search, share)?
-    } else {
-        dive::dive(&contours, &mut walks, &mut prices, search, share)?
-    };
+    // In haste only what begins with fewer conflicts is tried where there are many.
+    let is_settled = is_hasty && dive::begin_crowded(&contours, &mut walks, &mut prices, search, share)?;
+    let mut dive = dive::dive(&contours, &mut walks, &mut prices, search, share)?;
     let first_conflicts = dive.first;
-    if !is_hasty && failure(&dive, &contours, &walks).is_some() {
+    if !is_settled && failure(&dive, &contours, &walks).is_some() {
         dive::keep_apart(&contours, &mut walks, &mut prices, search);
         let rounds = dive.rounds;
         dive = dive::dive(&contours, &mut walks, &mut prices, search, share)?;

@@ -130,7 +130,7 @@ pub fn points(picture: &Picture, threshold: f64, chain: &[Crossing]) -> Vec<DVec
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::margin::signed_area;
+    use crate::geometry::polygon::signed_area;
 
     fn chains(rows: &[&str], middle: f32) -> Vec<Vec<Crossing>> {
         let value = |c: char| {

@@ -11,6 +11,7 @@ use crate::drawing::combine::Part;
 use crate::drawing::contours::read_contours;
 use crate::drawing::curve::bounds;
 use crate::error::Result;
+use crate::geometry::polygon::signed_area;
 use crate::geometry::segments::{SegmentGrid, nearest_on_segment, orientation};
 use crate::picture::islands::Island;
 use crate::picture::levels::Crossing;
@@ -149,12 +150,6 @@ fn read(shapes: Vec<Vec<Vec<[f64; 2]>>>, min_area: f64) -> Vec<Part> {
 /// What an outline encloses.
 pub fn area(part: &Part) -> f64 {
     signed_area(&part.outline)
-}
-
-/// Signed area of a closed line: positive if counter-clockwise.
-pub fn signed_area(points: &[DVec2]) -> f64 {
-    let Some(&origin) = points.first() else { return 0.0 };
-    0.5 * points.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum::<f64>()
 }
 
 /// The largest distance of a point outside the parts from their contours, as far as a few pixels.

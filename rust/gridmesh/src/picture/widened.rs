@@ -211,7 +211,7 @@ impl Grid {
 mod tests {
     use super::*;
     use crate::drawing::contours::read_contours;
-    use crate::picture::margin::signed_area;
+    use crate::geometry::polygon::signed_area;
 
     fn square(x: f64, y: f64, side: f64) -> Vec<DVec2> {
         [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)]

@@ -105,37 +105,26 @@ pub(super) fn dive_from<G: Grid>(
     }
 }
 
-/// The same in haste: where there are many conflicts walls are kept apart first if that leaves fewer, and only what begins
-/// with fewer is tried.
-pub(super) fn dive_in_haste<G: Grid>(
+/// Where there are many conflicts, begins with walls that are kept apart if that leaves fewer; says whether there are.
+pub(super) fn begin_crowded<G: Grid>(
     contours: &[Contour<G>],
     walks: &mut [Walk<G>],
     prices: &mut [Prices],
     search: &mut Search<'_>,
     progress: Progress<'_>,
-) -> Result<Dive> {
+) -> Result<bool> {
     let first = dive_from(contours, walks, prices, search, 0, progress)?.first;
     let vertices: usize = walks.iter().map(Walk::len).sum();
-    let is_crowded = first > vertices / CROWDED;
-    if is_crowded {
-        let cheapest = walks.to_vec();
-        keep_apart(contours, walks, prices, search);
-        let apart = dive_from(contours, walks, prices, search, 0, progress)?.first;
-        if apart >= first {
-            walks.clone_from_slice(&cheapest);
-            prices.iter_mut().for_each(Prices::clear);
-        }
+    if first <= vertices / CROWDED {
+        return Ok(false);
     }
-    let mut dive = dive(contours, walks, prices, search, progress)?;
-    let is_left = !dive.conflicts.is_empty() || !dive.wrong.is_empty();
-    if is_left && !is_crowded {
-        keep_apart(contours, walks, prices, search);
-        let rounds = dive.rounds;
-        dive = self::dive(contours, walks, prices, search, progress)?;
-        dive.rounds += rounds;
+    let cheapest = walks.to_vec();
+    keep_apart(contours, walks, prices, search);
+    if dive_from(contours, walks, prices, search, 0, progress)?.first >= first {
+        walks.clone_from_slice(&cheapest);
+        prices.iter_mut().for_each(Prices::clear);
     }
-    dive.first = first;
-    Ok(dive)
+    Ok(true)
 }
 
 /// Whether more rounds of pricing are worth their time.
