@@ -28,6 +28,8 @@ _PERIOD = 0.02
 """Seconds between two looks at a worker."""
 _PATIENCE = 10.0
 """Seconds that a worker gets to end by itself; Blender can hang in its own clean-up."""
+_KILLED = 10.0
+"""Seconds that a killed worker gets to be gone; a process that waits for a dead disk never is."""
 
 
 @dataclass(frozen=True)
@@ -160,10 +162,8 @@ class Worker:
             self._code = process.wait(0 if self._ended else _PATIENCE)
         except subprocess.TimeoutExpired:
             process.kill()
-            with contextlib.suppress(
-                subprocess.TimeoutExpired
-            ):  # nothing ends a process that waits for a dead disk
-                process.wait(_PATIENCE)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(_KILLED)
             self._code = -9
 
     def _start(self) -> None:
