@@ -3,16 +3,20 @@
     python tests/window/run.py ZIP [SCENE ...]              # pictures go to out/tests/window/pictures
     python tests/window/run.py ZIP --documentation          # and from there into docs/pictures/windows
     python tests/window/run.py ZIP SCENE ... --film FILM.webm    # what the window shows meanwhile, without waiting
+    python tests/window/run.py ZIP random_play --seed 5 --acts 200    # whatever an artist might do, one act after another
 
 The window is on a screen in memory (Xvfb). Exit code 77 where there is no real Blender: nothing was tested then.
 """
 
 import argparse
+import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
@@ -22,6 +26,8 @@ import real_blender
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 SHARE = ROOT / "out" / "tests" / "window"
+PATIENCE = 2400
+"""Seconds that all scenes together may take."""
 
 SHELL = """
 set -e
@@ -50,6 +56,8 @@ def main():
         "--documentation", action="store_true", help="put the pictures into docs/pictures/windows"
     )
     parser.add_argument("--film", type=Path, help="write what the window shows as a film (.webm)")
+    parser.add_argument("--seed", type=int, default=1, help="of random_play")
+    parser.add_argument("--acts", type=int, default=150, help="of random_play")
     arguments = parser.parse_args()
     shutil.rmtree(SHARE, ignore_errors=True)
     try:
@@ -69,6 +77,8 @@ def main():
         "BLENDER_USER_RESOURCES": blender.path(profile),
         "SCENES": " ".join(arguments.scenes),
         "ZIP": blender.path(package),
+        "SEED": str(arguments.seed),
+        "ACTS": str(arguments.acts),
         "LIBGL_ALWAYS_SOFTWARE": "1",
         "FRAMES": blender.path(SHARE / "frames") if arguments.film else "",
     }
@@ -86,15 +96,38 @@ def main():
         blender.path(pictures),
     ]
     words = ["sh", "-c", SHELL, "window", blender.path(SHARE), blender.program, *window, *play]
-    try:
-        done = subprocess.run(blender.command(words, **settings), check=False, timeout=2400)
-    except subprocess.TimeoutExpired:
-        sys.exit("Blender did not come to an end within 40 minutes")
-    if arguments.film and done.returncode == 0:
+    code = watched(blender.command(words, **settings))
+    if arguments.film and code == 0:
         encode(blender, settings, arguments.film)
-    if arguments.documentation and done.returncode == 0:
+    if arguments.documentation and code == 0:
         illustrate(pictures, complete=not arguments.scenes)
-    sys.exit(done.returncode)
+    sys.exit(code)
+
+
+def watched(words):
+    """Run a command and show what it says; its exit code, or 1 if it told of an exception, which Blender goes on after."""
+    thrown, late = False, threading.Event()
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    with subprocess.Popen(words, start_new_session=True, **pipes) as child:
+
+        def end():
+            late.set()
+            os.killpg(child.pid, signal.SIGKILL)
+
+        timer = threading.Timer(PATIENCE, end)
+        timer.start()
+        try:
+            for line in child.stdout:
+                print(line, end="", flush=True)
+                thrown = thrown or line.startswith("Traceback")
+        except KeyboardInterrupt:
+            end()
+            raise
+        finally:
+            timer.cancel()
+    if late.is_set():
+        sys.exit("Blender did not come to an end within 40 minutes")
+    return child.returncode or int(thrown)
 
 
 def encode(blender, settings, film):

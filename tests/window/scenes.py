@@ -15,6 +15,7 @@ import live_scenes
 import mesh_scenes
 import part_scenes
 import picture_scenes
+import random_scenes
 import together_scenes
 from stage import perform
 
@@ -28,6 +29,8 @@ SCENES = (
     *picture_scenes.SCENES,
     *together_scenes.SCENES,
 )
+BY_NAME = random_scenes.SCENES
+"""They are played when they are named."""
 
 
 def finish(results):
@@ -54,8 +57,8 @@ bpy.context.preferences.view.show_splash = False
 bpy.context.preferences.view.show_tooltips = False  # they hide what the pictures show
 bpy.context.preferences.system.viewport_aa = "FXAA"
 wanted = os.environ.get("SCENES", "").split()
-known = {scene.__name__: scene for scene in SCENES}
+known = {scene.__name__: scene for scene in (*SCENES, *BY_NAME)}
 if not known.keys() >= set(wanted):
     print(f"unknown: {set(wanted) - known.keys()}; there are {', '.join(known)}")
     os._exit(2)
-perform([(name, known[name]) for name in wanted or known], finish)
+perform([(name, known[name]) for name in wanted or [scene.__name__ for scene in SCENES]], finish)
