@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from .bodies.outlines import Sketch, Stroke, StrokeError, area, nest, prepare, project
+from .bodies.nesting import nest
+from .bodies.outlines import Sketch, Stroke, StrokeError, area, prepare, project
 from .native import MANIFEST, NATIVE_VERSION, NativeError, native  # noqa: F401 (known to callers from here)
 
 Progress = Callable[[float], object]

@@ -9,7 +9,7 @@ import pytest
 from drawings import at, bean, circle, on_plane
 
 from addon import api
-from addon.bodies import outlines, sampling
+from addon.bodies import nesting, outlines, sampling
 
 
 def stroke(points, *, cyclic=True, index=0, layer="Lines", source="Drawing"):
@@ -95,7 +95,7 @@ def test_nest_by_even_odd_rule():
     apart = outlines.prepare(stroke(at(circle(), 20, 0, 0), index=4), 0.2)
     other_layer = outlines.prepare(stroke(circle(radius=0.5), index=0, layer="Other"), 0.2)
     above = outlines.prepare(stroke(at(circle(radius=0.7), 0, 0, 3), index=5), 0.2)
-    outer, notes = outlines.nest([*sketches, apart, other_layer, above])
+    outer, notes = nesting.nest([*sketches, apart, other_layer, above])
     assert [(s.stroke.index, [h.stroke.index for h in s.holes]) for s in outer] == [
         (1, [2]),
         (3, [0]),
@@ -111,7 +111,7 @@ def test_outlines_that_cross_are_bodies_of_their_own():
     over_the_rim = outlines.prepare(stroke(at(circle(), 2.5, 0, 0), index=1), 0.2)
     inside = outlines.prepare(stroke(at(circle(), -1, 0, 0), index=2), 0.2)
     beside = outlines.prepare(stroke(at(circle(), 4.5, 0, 0), index=3), 0.2)
-    outer, notes = outlines.nest([large, over_the_rim, inside, beside])
+    outer, notes = nesting.nest([large, over_the_rim, inside, beside])
     assert [sketch.stroke.index for sketch in outer] == [0, 1, 3]
     assert [hole.stroke.index for hole in large.holes] == [2]
     assert notes == ["'Drawing', layer 'Lines', stroke 2 of 9: it crosses stroke 1 and is no hole in it"]
@@ -123,7 +123,7 @@ def test_a_concave_outline_around_another_is_no_nesting():
     arcs = [np.column_stack([r * np.cos(a), r * np.sin(a), 0 * a]) for r, a in ((3, angle), (2, angle[::-1]))]
     mouth = outlines.prepare(stroke(np.concatenate(arcs)), 0.2)
     ring = outlines.prepare(stroke(circle(radius=1.5), index=1), 0.2)
-    outer, notes = outlines.nest([mouth, ring])
+    outer, notes = nesting.nest([mouth, ring])
     assert len(outer) == 2
     assert not notes
 
@@ -162,8 +162,8 @@ def test_holes_reach_the_module_in_the_plane_of_their_outline(monkeypatch):
 
 def test_contains():
     outline = bean()[:, :2]
-    assert outlines.contains(outline, np.zeros(2))
-    assert not outlines.contains(outline, np.array([3.0, 0.0]))
+    assert nesting.contains(outline, np.zeros(2))
+    assert not nesting.contains(outline, np.array([3.0, 0.0]))
 
 
 def test_suggested_edge_length():

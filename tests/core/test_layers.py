@@ -35,6 +35,7 @@ BLENDER = {"bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "blf", "bpy_extras"
 WITHOUT_BLENDER = {
     "api",
     "native",
+    "bodies/nesting",
     "bodies/outlines",
     "bodies/sampling",
     "bodies/density",

@@ -276,6 +276,122 @@ class Play:
     )
 
 
+class Editing(Play):
+    """The same with meshes: holes, loops, cuts."""
+
+    KINDS = ("cube", "cylinder", "grid", "monkey", "torus", "uv_sphere")
+    OPERATORS = (
+        ("mesh", "gridmesh_bridge"),
+        ("mesh", "gridmesh_fill"),
+        ("mesh", "gridmesh_fill"),
+        ("mesh", "gridmesh_regrid"),
+        ("object", "gridmesh_cut"),
+        ("object", "gridmesh_join"),
+    )
+
+    def add(self):
+        yield from in_object_mode()
+        place = [self.random.uniform(-1.5, 1.5) for _ in range(3)]
+        with stage.override():
+            getattr(bpy.ops.mesh, f"primitive_{self.random.choice(self.KINDS)}_add")(location=place)
+        yield 0.4
+
+    def in_edit_mode(self):
+        """Edit some meshes; whether there are any."""
+        if bpy.context.mode != "EDIT_MESH":
+            yield from in_object_mode()
+            found = [ob for ob in bpy.context.view_layer.objects if ob.type == "MESH" and ob.visible_get()]
+            if not found:
+                yield from self.add()
+                found = [bpy.context.view_layer.objects.active]
+            select(self.random.choice(found))
+            if self.random.random() < 0.2:
+                self.random.choice(found).select_set(True)
+            with stage.override():
+                bpy.ops.object.mode_set(mode="EDIT")
+            yield 0.4
+
+    def select_some(self):
+        yield from self.in_edit_mode()
+        with stage.override():
+            bpy.ops.mesh.select_mode(type=self.random.choice(("VERT", "EDGE", "FACE")))
+            bpy.ops.mesh.select_all(action="DESELECT")
+            ratio, seed = self.random.choice((0.02, 0.1, 0.3)), self.random.randint(0, 1000)
+            bpy.ops.mesh.select_random(ratio=ratio, seed=seed)
+            for _ in range(self.random.randint(0, 2)):
+                bpy.ops.mesh.select_more()
+        yield 0.3
+
+    def select_a_loop(self):
+        yield from self.in_edit_mode()
+        yield from stage.click(*self.spot(150), alt=True)
+        yield from stage.click(*self.spot(150), alt=True, shift=True)
+
+    def delete_faces(self):
+        yield from self.select_some()
+        with stage.override():
+            bpy.ops.mesh.delete(type=self.random.choice(("FACE", "VERT", "EDGE")))
+        yield 0.4
+
+    def select_rims(self):
+        yield from self.in_edit_mode()
+        with stage.override():
+            bpy.ops.mesh.select_mode(type="EDGE")
+            bpy.ops.mesh.select_all(action="DESELECT")
+            bpy.ops.mesh.select_non_manifold()
+        yield 0.3
+
+    def call(self):
+        """One of ours, with some options as a redo panel sets them."""
+        kind, name = self.random.choice(self.OPERATORS)
+        yield from self.in_edit_mode() if kind == "mesh" else in_object_mode()
+        if name == "gridmesh_join":
+            yield from self.select_all()
+        done = set()
+        with stage.override():
+            operator = getattr(getattr(bpy.ops, kind), name)
+            if operator.poll():
+                try:
+                    done = operator("EXEC_DEFAULT", True)
+                except RuntimeError as error:
+                    print(f"    {error}")
+            print(f"    {name}: {done}")
+        yield 0.6
+        last = bpy.context.window_manager.operators
+        if "FINISHED" in done and last and self.random.random() < 0.5:
+            self.change(last[-1].properties)
+            with stage.override():
+                if bpy.ops.ed.undo_redo.poll():
+                    bpy.ops.ed.undo_redo()
+            yield 0.6
+
+    def cut(self):
+        yield from in_object_mode()
+        yield from tool("gridmesh.cut")
+        held = self.random.choice(({}, {}, {"shift": True}, {"ctrl": True}))
+        start, end = self.spot(250), self.spot(250)
+        yield from stroke([tuple(start + (end - start) * t) for t in np.linspace(0, 1, 16)], **held)
+
+    def shape_key(self):
+        yield from in_object_mode()
+        ob = bpy.context.view_layer.objects.active
+        if ob is not None and ob.type == "MESH":
+            for name in ("Basis", "Key"):
+                ob.shape_key_add(name=name)
+            ob.vertex_groups.new(name="Group").add([0], 0.5, "REPLACE")
+            bpy.ops.ed.undo_push(message="Shape key")
+        yield 0.2
+
+    OFTEN = (
+        *(call,) * 12,
+        *(cut, delete_faces, select_rims) * 5,
+        *(select_some, select_a_loop, Play.undo, Play.transform) * 4,
+        *(add, Play.redo, Play.click) * 3,
+        *(shape_key, Play.delete, Play.duplicate, Play.turn_view, Play.front_view, Play.undo_and_redo) * 2,
+        *(Play.draw_blob, Play.sculpt, Play.save_and_open, Play.join, Play.call_a_command, Play.select_all),
+    )
+
+
 def in_object_mode():
     if bpy.context.mode != "OBJECT" and bpy.ops.object.mode_set.poll():
         with stage.override():
@@ -317,20 +433,29 @@ def check_closed():
         assert open_edges == 0 or by_hand(ob.data), f"{ob.name}: {open_edges} edges are not manifold"
 
 
-def random_play():
-    """No act leads to an exception, a crash or another scene than before a step there and back."""
+def played(kind):
     seed, number = int(os.environ.get("SEED", "1")), int(os.environ.get("ACTS", "150"))
-    play = Play(seed)
+    play = kind(seed)
     yield from begin()
     for k in range(number):
-        act = play.random.choice(Play.OFTEN)
+        act = play.random.choice(kind.OFTEN)
         print(f"{seed}/{k} {act.__name__} in {bpy.context.mode}, {len(bpy.data.objects)} objects", flush=True)
         yield from act(play)
         if k % 4 == 0:
             yield from in_object_mode()
             check_closed()
         if k % 50 == 49:
-            yield from stage.picture(f"random_{seed}_{k + 1}")
+            yield from stage.picture(f"{kind.__name__.lower()}_{seed}_{k + 1}")
 
 
-SCENES = (random_play,)
+def random_play():
+    """No act leads to an exception, a crash or another scene than before a step there and back."""
+    yield from played(Play)
+
+
+def random_edits():
+    """The same in Edit Mode, with the cut tool and with other meshes."""
+    yield from played(Editing)
+
+
+SCENES = (random_play, random_edits)

@@ -56,8 +56,8 @@ def main():
         "--documentation", action="store_true", help="put the pictures into docs/pictures/windows"
     )
     parser.add_argument("--film", type=Path, help="write what the window shows as a film (.webm)")
-    parser.add_argument("--seed", type=int, default=1, help="of random_play")
-    parser.add_argument("--acts", type=int, default=150, help="of random_play")
+    parser.add_argument("--seed", type=int, default=1, help="of random_play and random_edits")
+    parser.add_argument("--acts", type=int, default=150, help="of random_play and random_edits")
     arguments = parser.parse_args()
     shutil.rmtree(SHARE, ignore_errors=True)
     try:
