@@ -24,6 +24,8 @@ from setting import (
 )
 
 PART_KEYS = ((), (), ("P",), ("P",), ("P", "T"), ("P", "D"), ("P", "D", "D"), ("X",))
+AS_CALLED = ("EXEC_DEFAULT", True)
+"""For operators: with an undo step, as a menu calls them."""
 COMMANDS = (
     "Apply All Transforms",
     "Apply Join",
@@ -173,7 +175,7 @@ class Play:
         if bpy.context.mode != "OBJECT" or ob is None or ob.type != "MESH" or not ob.visible_get():
             return
         with stage.override():
-            bpy.ops.object.mode_set(mode="SCULPT")
+            bpy.ops.object.mode_set(*AS_CALLED, mode="SCULPT")
         yield 0.4
         yield from stage.drag([tuple(self.spot(150)) for _ in range(4)])
         yield from in_object_mode()
@@ -293,7 +295,9 @@ class Editing(Play):
         yield from in_object_mode()
         place = [self.random.uniform(-1.5, 1.5) for _ in range(3)]
         with stage.override():
-            getattr(bpy.ops.mesh, f"primitive_{self.random.choice(self.KINDS)}_add")(location=place)
+            getattr(bpy.ops.mesh, f"primitive_{self.random.choice(self.KINDS)}_add")(
+                *AS_CALLED, location=place
+            )
         yield 0.4
 
     def in_edit_mode(self):
@@ -308,18 +312,18 @@ class Editing(Play):
             if self.random.random() < 0.2:
                 self.random.choice(found).select_set(True)
             with stage.override():
-                bpy.ops.object.mode_set(mode="EDIT")
+                bpy.ops.object.mode_set(*AS_CALLED, mode="EDIT")
             yield 0.4
 
     def select_some(self):
         yield from self.in_edit_mode()
         with stage.override():
-            bpy.ops.mesh.select_mode(type=self.random.choice(("VERT", "EDGE", "FACE")))
-            bpy.ops.mesh.select_all(action="DESELECT")
+            bpy.ops.mesh.select_mode(*AS_CALLED, type=self.random.choice(("VERT", "EDGE", "FACE")))
+            bpy.ops.mesh.select_all(*AS_CALLED, action="DESELECT")
             ratio, seed = self.random.choice((0.02, 0.1, 0.3)), self.random.randint(0, 1000)
-            bpy.ops.mesh.select_random(ratio=ratio, seed=seed)
+            bpy.ops.mesh.select_random(*AS_CALLED, ratio=ratio, seed=seed)
             for _ in range(self.random.randint(0, 2)):
-                bpy.ops.mesh.select_more()
+                bpy.ops.mesh.select_more(*AS_CALLED)
         yield 0.3
 
     def select_a_loop(self):
@@ -330,15 +334,15 @@ class Editing(Play):
     def delete_faces(self):
         yield from self.select_some()
         with stage.override():
-            bpy.ops.mesh.delete(type=self.random.choice(("FACE", "VERT", "EDGE")))
+            bpy.ops.mesh.delete(*AS_CALLED, type=self.random.choice(("FACE", "VERT", "EDGE")))
         yield 0.4
 
     def select_rims(self):
         yield from self.in_edit_mode()
         with stage.override():
-            bpy.ops.mesh.select_mode(type="EDGE")
-            bpy.ops.mesh.select_all(action="DESELECT")
-            bpy.ops.mesh.select_non_manifold()
+            bpy.ops.mesh.select_mode(*AS_CALLED, type="EDGE")
+            bpy.ops.mesh.select_all(*AS_CALLED, action="DESELECT")
+            bpy.ops.mesh.select_non_manifold(*AS_CALLED)
         yield 0.3
 
     def call(self):
@@ -352,7 +356,7 @@ class Editing(Play):
             operator = getattr(getattr(bpy.ops, kind), name)
             if operator.poll():
                 try:
-                    done = operator("EXEC_DEFAULT", True)
+                    done = operator(*AS_CALLED)
                 except RuntimeError as error:
                     print(f"    {error}")
             print(f"    {name}: {done}")
@@ -395,7 +399,7 @@ class Editing(Play):
 def in_object_mode():
     if bpy.context.mode != "OBJECT" and bpy.ops.object.mode_set.poll():
         with stage.override():
-            bpy.ops.object.mode_set(mode="OBJECT")
+            bpy.ops.object.mode_set(*AS_CALLED, mode="OBJECT")
         yield 0.6
 
 
