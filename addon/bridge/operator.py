@@ -13,7 +13,7 @@ from ..fill.editmesh import EditMesh
 from ..fill.filling import add_all
 from ..text.messages import counted, listed
 from ..text.telling import told
-from ..ui.patching import PatchFaces, faces_made
+from ..ui.patching import PatchFaces, edited_meshes, faces_made
 from ..ui.progress import Pointer
 from .bridging import Job, summary
 
@@ -76,17 +76,16 @@ class MESH_OT_gridmesh_bridge(PatchFaces, bpy.types.Operator):  # noqa: N801
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Ask for a mesh in Edit Mode."""
-        if context.mode == "EDIT_MESH":
-            return True
-        cls.poll_message_set(told("Edit a mesh and select two or more loops of open edges", "tooltips"))
-        return False
+        return cls.can_edit(
+            context, told("Edit a mesh and select two or more loops of open edges", "tooltips")
+        )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the loops, join them as arrays, and only then change the meshes."""
         started = perf_counter()
         if not self.has_module("bridge"):
             return {"CANCELLED"}
-        edited = [EditMesh(ob) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
+        edited = [EditMesh(ob) for ob in edited_meshes(context)]
         # Meshes without a selection are none of the user's trouble while another one has one.
         jobs = [Job(it) for it in edited if it.has_selection()] or [Job(it) for it in edited]
         try:

@@ -11,7 +11,7 @@ from bpy.app.translations import pgettext_iface
 from mathutils import Vector
 
 from ..bodies.strokes import selected
-from ..join import characters, following
+from ..join import characters, following, showing
 from ..live import engine
 from ..text.telling import told
 from . import parts, planes, shapes
@@ -221,7 +221,7 @@ class Interaction:
             owned = [body for body in engine.bodies(active) if body.select_get()]
             layer.objects.active = owned[0] if owned else active
             self._pick(context, event, chosen)
-        characters.put_away()
+        showing.put_away(following.wholes())
         bpy.ops.ed.undo_push(message="Select")
         return {"FINISHED"}
 

@@ -12,7 +12,7 @@ from .. import api
 from ..data import defaults
 from ..text.messages import counted, listed
 from ..text.telling import told
-from ..ui.patching import PatchFaces, faces_made
+from ..ui.patching import PatchFaces, edited_meshes, faces_made
 from ..ui.progress import Pointer
 from .editmesh import EditMesh
 from .filling import Job, add_all, forgive_unselected, left_open, warnings_of
@@ -64,17 +64,14 @@ class MESH_OT_gridmesh_fill(PatchFaces, bpy.types.Operator):  # noqa: N801
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Ask for a mesh in Edit Mode."""
-        if context.mode == "EDIT_MESH":
-            return True
-        cls.poll_message_set(told("Edit a mesh and select the edges of a hole", "tooltips"))
-        return False
+        return cls.can_edit(context, "Edit a mesh and select the edges of a hole")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the holes, fill them as arrays, and only then change the meshes."""
         started = perf_counter()
         if not self.has_module("fill_holes"):
             return {"CANCELLED"}
-        jobs = [Job(EditMesh(ob)) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
+        jobs = [Job(EditMesh(ob)) for ob in edited_meshes(context)]
         several = len(jobs) > 1
         for job in jobs:
             if self.holes == "ALL":

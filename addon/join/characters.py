@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import bpy
 from mathutils import Vector
 
-from ..data import frames
 from ..live import engine, family
-from . import deleted, following, joining, parts
+from . import deleted, following, joining, parts, showing
 from .joinobject import beside
 
 NAME = "Character"
@@ -56,14 +55,14 @@ def add(owner: bpy.types.Object, part: bpy.types.Object, lies: Lies) -> str:
     deleted.let_go(whole)
     parts.note(part, whole, depth=lies.depth, reach=lies.reach, twin=lies.twin)
     following.attach(whole, part)
-    following.reveal(part, seen=False)
+    showing.reveal(part, seen=False)
     bpy.context.view_layer.update()
     following.update(whole)
     if not whole.gridmesh_joined.problem:
         return ""
     problem = whole.gridmesh_joined.problem
     _let_go(whole, part)
-    following.reveal(part, seen=True)
+    showing.reveal(part, seen=True)
     if new:
         _dissolve(whole, owner)
         following.hang(part, owner)
@@ -85,7 +84,7 @@ def add_like(other: bpy.types.Object, bodies: list[bpy.types.Object]) -> None:
             options, own = ob.gridmesh_part, other.gridmesh_part
             options.reach, options.lies_at = own.reach, own.depth
             options.depth, options.twin = own.depth, own.twin
-        following.reveal(ob, seen=other.visible_get())
+        showing.reveal(ob, seen=other.visible_get())
 
 
 def _begun(first: bpy.types.Object) -> bpy.types.Object:
@@ -96,7 +95,7 @@ def _begun(first: bpy.types.Object) -> bpy.types.Object:
     following.remember(whole, [first], joining.Options())
     following.hang(first, whole)
     whole.gridmesh_joined.digest = ""
-    following.reveal(first, seen=False)
+    showing.reveal(first, seen=False)
     return whole
 
 
@@ -113,7 +112,7 @@ def split(part: bpy.types.Object) -> list[bpy.types.Object]:
     made = [part] if twin is None else [part, twin]
     for ob in made:
         ob.property_unset("gridmesh_part")
-        following.reveal(ob, seen=True)
+        showing.reveal(ob, seen=True)
     bpy.context.view_layer.update()
     rest = following.parts_of(whole)
     if len(rest) == 1 and rest[0].parent == whole and not rest[0].gridmesh_part.twin:
@@ -121,7 +120,7 @@ def split(part: bpy.types.Object) -> list[bpy.types.Object]:
     else:
         following.update(whole)
     for ob in reversed(made):
-        following.choose(ob)
+        showing.choose(ob)
     for ob in made:
         ob.select_set(True)
     return made
@@ -136,7 +135,7 @@ def apply(ob: bpy.types.Object, *, keep_parts: bool) -> None:
             if part.parent == whole and part.gridmesh_part.twin:
                 twin = _own_twin(whole, part)
                 twin.property_unset("gridmesh_part")
-                following.reveal(twin, seen=True)
+                showing.reveal(twin, seen=True)
     following.apply(ob, keep_parts=keep_parts)
 
 
@@ -144,28 +143,17 @@ def pick(part: bpy.types.Object) -> None:
     """Show a part over its whole, to be moved, edited or deleted, and hide the others that were picked."""
     whole = following.whole_of(part)
     if whole is None:  # of a copy, and a body of its own again
-        following.reveal(part, seen=True)
-        following.choose(part)
+        showing.reveal(part, seen=True)
+        showing.choose(part)
         return
     for other in following.parts_of(whole):
         if other != part and other.visible_get() and whole.visible_get():
-            following.reveal(other, seen=False)
-    following.reveal(part, seen=True)
+            showing.reveal(other, seen=False)
     if whole.visible_get():
-        part.hide_render, part.display_type = True, "WIRE"
-    following.choose(part)
-
-
-def put_away() -> None:
-    """Hide parts that were picked and are no longer selected."""
-    for whole in following.wholes():
-        if not whole.visible_get():
-            continue
-        for part in following.parts_of(whole):
-            outline = frames.owned(part) if frames.is_linked(part) else None
-            held = part.select_get() or (outline is not None and outline.select_get())
-            if part.visible_get() and part.display_type == "WIRE" and not held:
-                following.reveal(part, seen=False)
+        showing.reveal_wire(part)
+    else:
+        showing.reveal(part, seen=True)
+    showing.choose(part)
 
 
 def nearest(whole: bpy.types.Object, point: Vector) -> bpy.types.Object | None:
@@ -207,7 +195,7 @@ def _dissolve(whole: bpy.types.Object, only: bpy.types.Object) -> None:
     for child in list(whole.children):
         if child != only:
             following.hang(child, only)
-    following.reveal(only, seen=True)
+    showing.reveal(only, seen=True)
     only.property_unset("gridmesh_part")
     mesh = whole.data
     bpy.data.objects.remove(whole)

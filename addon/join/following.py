@@ -17,9 +17,10 @@ from bpy.props import BoolProperty, CollectionProperty, FloatVectorProperty, Poi
 from .. import api
 from ..data import frames, listening, written
 from ..live import engine
-from . import blending, deleted, drafts, joining, leftover, lying, marks, parts, transforms
+from . import blending, deleted, drafts, joining, leftover, lying, marks, parts, showing, transforms
 from .lying import GridMeshPart, fingerprint, parts_of, placed
 from .parts import is_whole
+from .showing import choose, reveal
 from .uniting import JoinError
 
 BY_HAND = "its mesh was changed by hand; undo that, or apply the join"
@@ -184,26 +185,6 @@ def show(whole: bpy.types.Object) -> None:
     choose(whole)
 
 
-def reveal(ob: bpy.types.Object, *, seen: bool) -> None:
-    """Show or hide an object, with the outline of its own if it has one."""
-    ob.hide_set(not seen)
-    ob.hide_render = not seen
-    if ob.display_type == "WIRE" and not is_whole(ob):  # it was picked
-        ob.display_type = "TEXTURED"
-    outline = frames.owned(ob) if frames.is_linked(ob) else None
-    if outline is not None and outline.name in bpy.context.view_layer.objects:
-        outline.hide_set(not seen)
-
-
-def choose(ob: bpy.types.Object) -> None:
-    """Make an object the only one that is selected, and the active one."""
-    layer = bpy.context.view_layer
-    for other in filter(None, list(layer.objects.selected)):
-        other.select_set(False)
-    ob.select_set(True)
-    layer.objects.active = ob
-
-
 def _remove(part: bpy.types.Object) -> None:
     engine.freeze(part)
     mesh = part.data
@@ -323,6 +304,8 @@ def _look() -> float | None:
     global _since
     if not engine.awake():
         return 0.1
+    if not engine.tool_runs():
+        showing.put_away(wholes())
     drawn = [draft(ob) for ob in wholes()]
     if any(drawn) or not _since:
         _since = perf_counter()

@@ -13,7 +13,7 @@ from ..fill.editmesh import EditMesh
 from ..fill.filling import warnings_of
 from ..text.messages import counted, listed
 from ..text.telling import told
-from ..ui.patching import PatchFaces, faces_made
+from ..ui.patching import PatchFaces, edited_meshes, faces_made
 from ..ui.progress import Pointer
 from .regridding import Job, replace_all
 
@@ -34,17 +34,16 @@ class MESH_OT_gridmesh_regrid(PatchFaces, bpy.types.Operator):  # noqa: N801
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Ask for a mesh in Edit Mode."""
-        if context.mode == "EDIT_MESH":
-            return True
-        cls.poll_message_set(told("Edit a mesh and select faces, or a closed loop of edges", "tooltips"))
-        return False
+        return cls.can_edit(
+            context, told("Edit a mesh and select faces, or a closed loop of edges", "tooltips")
+        )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the areas, mesh them as arrays, and only then change the meshes."""
         started = perf_counter()
         if not self.has_module("regrid"):
             return {"CANCELLED"}
-        jobs = [Job(EditMesh(ob)) for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
+        jobs = [Job(EditMesh(ob)) for ob in edited_meshes(context)]
         for job in jobs:
             job.find()
         jobs = [job for job in jobs if job.areas or job.problems]
@@ -70,7 +69,7 @@ class MESH_OT_gridmesh_regrid(PatchFaces, bpy.types.Operator):  # noqa: N801
 
     def _nothing(self, context: bpy.types.Context) -> str:
         """Why there is no area."""
-        if any(ob.data.total_vert_sel for ob in context.objects_in_mode_unique_data if ob.type == "MESH"):
+        if any(ob.data.total_vert_sel for ob in edited_meshes(context)):
             return "Only vertices are selected; select faces, or a closed loop of edges"
         return "Nothing is selected; select faces, or a closed loop of edges"
 

@@ -63,6 +63,9 @@ _COMMON = {
         "Ein Mesh bearbeiten und Flächen oder eine geschlossene Schleife aus Kanten auswählen"
     ),
     "Cancelled; nothing was changed": "Abgebrochen; nichts wurde geändert",
+    "The mesh that is being edited is hidden; show it, or leave Edit Mode": (
+        "Das bearbeitete Mesh ist verborgen; es einblenden oder den Bearbeitungsmodus verlassen"
+    ),
     "the selected edges enclose no area; select a closed loop of edges, or faces": (
         "die ausgewählten Kanten umschließen kein Gebiet; eine geschlossene Schleife aus Kanten oder Flächen auswählen"
     ),

@@ -67,6 +67,20 @@ class PatchFaces(PatchOptions):
         default=defaults.CELLS,
     )
 
+    @classmethod
+    def can_edit(cls, context: bpy.types.Context, needs: str) -> bool:
+        """Whether a mesh is being edited and can be seen; if not, the tooltip says so. needs : what it says outside of Edit Mode."""
+        if context.mode == "EDIT_MESH" and edited_meshes(context):
+            return True
+        hidden = "The mesh that is being edited is hidden; show it, or leave Edit Mode"
+        cls.poll_message_set(told(hidden if context.mode == "EDIT_MESH" else needs, "tooltips"))
+        return False
+
+
+def edited_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Objects whose meshes are being edited, as far as they can be seen; each mesh once."""
+    return [ob for ob in context.objects_in_mode_unique_data if ob.type == "MESH"]
+
 
 def faces_made(jobs: Sequence[Any]) -> str:
     """How many quads and triangles were added to the meshes of jobs."""

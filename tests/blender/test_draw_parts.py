@@ -11,7 +11,7 @@ from mathutils import Vector
 
 from addon.data import frames, written
 from addon.draw.trace import pack
-from addon.join import characters, drafts, following, marks
+from addon.join import characters, drafts, following, marks, showing
 from addon.live import engine
 
 STEPS = int(os.environ.get("GRIDMESH_EDITS", "70"))
@@ -328,10 +328,45 @@ def test_a_picked_part_is_seen_over_the_whole_and_put_away(disk):
     bpy.ops.object.gridmesh_pick_part(name=head.name)
     assert (arm.visible_get(), head.visible_get()) == (False, True)
     activate(whole)
-    characters.put_away()
+    showing.put_away(following.wholes())
     assert not head.visible_get()
     assert not head.gridmesh_live.source.visible_get()
     assert head.display_type == "TEXTURED"
+
+
+def show_all_that_is_hidden():
+    """As Alt-H does."""
+    for ob in bpy.context.view_layer.objects:
+        if ob.hide_get():
+            ob.hide_set(False)
+            ob.select_set(True)
+
+
+def test_parts_do_not_lie_over_the_whole_after_all_that_is_hidden_was_shown(disk):
+    arm, whole = add(ARM)
+    bpy.ops.object.gridmesh_pick_part(name=arm.name)
+    whole.hide_set(True)
+    show_all_that_is_hidden()
+    assert disk.visible_get()
+    showing.put_away(following.wholes())
+    assert (whole.visible_get(), disk.visible_get(), arm.visible_get()) == (True, False, True), "it is picked"
+    assert not disk.gridmesh_live.source.visible_get()
+    activate(whole)
+    bpy.ops.object.gridmesh_show_parts()
+    show_all_that_is_hidden()
+    showing.put_away(following.wholes())
+    assert (whole.visible_get(), disk.visible_get(), arm.visible_get()) == (False, True, True)
+
+
+def test_a_part_that_is_shown_by_its_eye_is_picked(disk):
+    arm, whole = add(ARM)
+    activate(whole)
+    arm.hide_set(False)
+    showing.put_away(following.wholes())
+    assert arm.visible_get()
+    assert (arm.display_type, bpy.context.selected_objects) == ("WIRE", [arm])
+    showing.put_away(following.wholes())
+    assert arm.visible_get()
 
 
 def test_the_part_under_a_point_is_found_on_the_twin_too(disk):

@@ -6,7 +6,7 @@ import pytest
 from drawings import circle, vertices, world_vertices
 from test_join_following import copy_of, redraw, settle, snowman, top
 
-from addon.join import following
+from addon.join import following, showing
 
 __all__ = ["snowman"]
 pytestmark = pytest.mark.usefixtures("awake")
@@ -16,7 +16,7 @@ def delete(ob, how="operator"):
     if how == "remove":
         bpy.data.objects.remove(ob)
     else:
-        following.choose(ob)
+        showing.choose(ob)
         bpy.ops.object.delete()
     bpy.context.view_layer.update()
 

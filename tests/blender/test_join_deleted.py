@@ -10,7 +10,7 @@ from test_join_following import settle, snowman
 from test_live_together import draw, edit
 
 from addon.data import frames
-from addon.join import characters, following
+from addon.join import characters, following, showing
 from addon.live import engine
 
 __all__ = ["snowman"]
@@ -108,7 +108,7 @@ def test_parts_of_an_applied_whole_stay_when_they_are_hidden_and_it_is_deleted(s
     _, whole, parts = snowman
     following.apply(whole, keep_parts=True)
     for part in parts:
-        following.reveal(part, seen=False)
+        showing.reveal(part, seen=False)
     delete(whole)
     settle()
     assert all(part.users_scene for part in parts)

@@ -8,7 +8,7 @@ from mathutils import Matrix
 from test_join import ball, join
 from test_join_following import copy_of, redraw, settle, snowman
 
-from addon.join import characters, following
+from addon.join import characters, following, showing
 
 __all__ = ["snowman"]
 pytestmark = pytest.mark.usefixtures("awake")
@@ -21,13 +21,13 @@ def placed(whole):
 
 
 def apply(ob, **what):
-    following.choose(ob)
+    showing.choose(ob)
     bpy.ops.object.transform_apply(**what)
     bpy.context.view_layer.update()
 
 
 def set_origin(ob, place):
-    following.choose(ob)
+    showing.choose(ob)
     bpy.context.scene.cursor.location = place
     bpy.ops.object.origin_set(type="ORIGIN_CURSOR")
     bpy.context.view_layer.update()

@@ -304,3 +304,20 @@ def test_what_was_made_is_removed_where_one_goes_with_another():
         fail()
     assert fingerprint() == before
     assert not {"First", "Second"} & {mesh.name for mesh in bpy.data.meshes}
+
+
+@pytest.mark.parametrize("name", ["gridmesh_bridge", "gridmesh_fill", "gridmesh_regrid"])
+def test_a_mesh_that_is_edited_and_hidden_is_named_as_the_reason(name):
+    """It was told that there are no holes, that nothing is selected, or nothing at all."""
+    bpy.ops.mesh.primitive_cylinder_add(end_fill_type="NOTHING")
+    ob = bpy.context.object
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    ob.hide_set(True)
+    operator = getattr(bpy.ops.mesh, name)
+    assert not operator.poll()
+    with pytest.raises(RuntimeError, match="is hidden"):
+        operator()
+    ob.hide_set(False)
+    assert operator.poll()
+    bpy.ops.object.mode_set(mode="OBJECT")

@@ -6,7 +6,20 @@ import bpy
 import numpy as np
 from draw_scenes import euler, words
 from live_scenes import click, edited
-from setting import begin, bodies, limb, modules, outlines, ring, stage, stroke, tool, turn_view
+from setting import (
+    begin,
+    bodies,
+    limb,
+    modules,
+    outlines,
+    redo,
+    ring,
+    stage,
+    stroke,
+    tool,
+    turn_view,
+    undo,
+)
 
 
 def wholes():
@@ -126,6 +139,55 @@ def part_moved():
     assert abs(np.ptp([corner[0] for corner in wholes()[0].bound_box]) - wide) < 0.01, "not undone"
 
 
+def part_hidden():
+    """A part that was picked is no longer seen when something else is clicked; Alt-H shows no part over the whole; an eye picks one."""
+    x, y = yield from character()
+    whole, arm = wholes()[0], parts()[2]
+    yield from tool("builtin.select_box")
+    with stage.override():
+        bpy.ops.object.gridmesh_pick_part("EXEC_DEFAULT", True, name=arm.name)
+    yield 0.8
+    assert seen_now() == {whole, arm, arm.gridmesh_live.source}
+    yield from stage.picture("part_14_wire")
+    yield from stage.click(x - 60, y - 150)
+    yield 0.8
+    assert bpy.context.view_layer.objects.active == whole
+    assert seen_now() == {whole}
+    yield from stage.key("H")
+    yield 0.8
+    assert seen_now() == set()
+    yield from stage.key("H", alt=True)
+    yield 0.8
+    assert seen_now() == {whole}
+    yield from stage.picture("part_15_all_shown")
+    for step in (undo, redo):
+        yield from step()
+        whole = wholes()[0]
+        assert seen_now() == (set() if step is undo else {whole})
+    with stage.override():
+        bpy.ops.object.gridmesh_show_parts("EXEC_DEFAULT", True)
+    yield 0.8
+    shown = seen_now()
+    assert whole not in shown
+    assert shown >= set(parts())
+    yield from stage.key("H", alt=True)
+    yield 0.8
+    assert seen_now() == shown
+    with stage.override():
+        bpy.ops.object.gridmesh_show_parts("EXEC_DEFAULT", True)
+    yield 0.8
+    arm = parts()[2]
+    arm.hide_set(False)
+    bpy.ops.ed.undo_push(message="Eye")
+    yield 0.8
+    assert bpy.context.view_layer.objects.active == arm
+    assert arm.display_type == "WIRE"
+
+
+def seen_now():
+    return {ob for ob in bpy.context.view_layer.objects if ob.visible_get()}
+
+
 def dragged(times):
     """What is selected is moved by the mouse, so many times, and not let go; how long that took."""
     yield from stage.move(*stage.middle())
@@ -235,4 +297,4 @@ def part_armature():
     yield from stage.picture("part_11_posed")
 
 
-SCENES = (part_character, part_moved, part_armature, part_timing)
+SCENES = (part_character, part_moved, part_hidden, part_armature, part_timing)

@@ -40,9 +40,22 @@ COMMANDS = (
     "Shade Smooth",
     "Split Off Part",
     "Strokes to Mesh",
-    "Subdivision Set",
     "Update Bodies",
 )
+SHORTCUTS = {
+    "copy and paste": ("ctrl C", "ctrl V"),
+    "mirror": ("ctrl M", "X", "RET"),
+    "give a parent": ("ctrl P", "RET"),
+    "clear the parent": ("alt P", "RET"),
+    "apply a transform": ("ctrl A", "RET"),
+    "clear the location": ("alt G",),
+    "clear the rotation": ("alt R",),
+    "subdivide": ("ctrl ONE",),
+    "insert keys": ("K", "RET"),
+    "to a collection": ("M", "RET"),
+    "link data": ("ctrl L", "RET"),
+    "see it alone": ("NUMPAD_SLASH",),
+}
 
 
 class Play:
@@ -64,18 +77,18 @@ class Play:
     # ------------------------------------------------------------------------------------------------ drawing
 
     def draw_blob(self):
-        yield from tool("gridmesh.draw")
+        yield from pen()
         radius, start, wobble = (self.random.uniform(*span) for span in ((25, 170), (0, 6), (0, 0.35)))
         path = ring(self.spot(260), radius, 40, start, wobble)
         yield from stroke(path, keys=self.random.choice(PART_KEYS))
 
     def draw_limb(self):
-        yield from tool("gridmesh.draw")
+        yield from pen()
         angle, length, half = (self.random.uniform(*span) for span in ((0, 6.3), (60, 220), (12, 45)))
         yield from stroke(limb(self.spot(150), angle, length, half), keys=self.random.choice(PART_KEYS[:6]))
 
     def scribble(self):
-        yield from tool("gridmesh.draw")
+        yield from pen()
         point = self.spot(260)
         path = [tuple(point)]
         for _ in range(self.random.randint(2, 30)):
@@ -84,16 +97,16 @@ class Play:
         yield from stroke(path, keys=self.random.choice(((), ("P",))))
 
     def draw_across(self):
-        yield from tool("gridmesh.draw")
+        yield from pen()
         start, end = self.spot(300), self.spot(300)
         yield from stroke([tuple(start + (end - start) * t) for t in np.linspace(0, 1, 24)])
 
     def give_up_a_stroke(self):
-        yield from tool("gridmesh.draw")
+        yield from pen()
         yield from stroke(ring(self.spot(260), 80, 30), end=self.random.choice(("ESC", "RIGHTMOUSE")))
 
     def draw_with_a_key_held(self):
-        yield from tool("gridmesh.draw")
+        yield from pen()
         held = self.random.choice(("shift", "ctrl", "alt"))
         yield from stroke(ring(self.spot(260), self.random.uniform(30, 120), 30), **{held: True})
 
@@ -101,7 +114,7 @@ class Play:
 
     def click(self):
         if self.random.random() < 0.5:
-            yield from tool(self.random.choice(("builtin.select_box", "gridmesh.draw")))
+            yield from self.random.choice((pen(), tool("builtin.select_box")))
         for _ in range(self.random.randint(1, 2)):
             yield from stage.click(*self.spot(180))
 
@@ -145,6 +158,17 @@ class Play:
     def hide(self):
         yield from self.over_view()
         yield from stage.key("H", **self.random.choice(({}, {"alt": True}, {"shift": True})))
+
+    def press_a_shortcut(self):
+        what = self.random.choice(list(SHORTCUTS))
+        print(f"    {what}")
+        yield from self.over_view()
+        for pressed in SHORTCUTS[what]:
+            *held, key = pressed.split()
+            yield from stage.key(key, **dict.fromkeys(held, True))
+            yield 0.4
+        yield from stage.key("ESC")
+        yield 0.3
 
     def call_a_command(self):
         yield from stage.search(self.random.choice(COMMANDS))
@@ -211,7 +235,7 @@ class Play:
     def turn_view(self):
         yield from self.over_view()
         if self.random.random() < 0.5:
-            pads = ("NUMPAD_1", "NUMPAD_3", "NUMPAD_7", "NUMPAD_5", "NUMPAD_0", "NUMPAD_SLASH", "HOME")
+            pads = ("NUMPAD_1", "NUMPAD_3", "NUMPAD_7", "NUMPAD_5", "NUMPAD_0", "HOME")
             yield from stage.key(self.random.choice(pads))
         else:
             turn_view(self.random.uniform(0, 3), 0, self.random.uniform(-3, 3))
@@ -229,7 +253,7 @@ class Play:
         yield 0.3
 
     def change_tool_options(self):
-        yield from tool("gridmesh.draw")
+        yield from pen()
         with stage.override():
             active = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT")
         for _ in range(2):
@@ -263,6 +287,7 @@ class Play:
         *(draw_blob, draw_limb, undo) * 8,
         *(click, transform) * 5,
         *(call_a_command, front_view, change_a_body) * 4,
+        *(press_a_shortcut,) * 6,
         *(redo, delete, duplicate, edit, edit_an_outline) * 3,
         *(
             scribble,
@@ -342,7 +367,8 @@ class Editing(Play):
         with stage.override():
             bpy.ops.mesh.select_mode(*AS_CALLED, type="EDGE")
             bpy.ops.mesh.select_all(*AS_CALLED, action="DESELECT")
-            bpy.ops.mesh.select_non_manifold(*AS_CALLED)
+            if bpy.ops.mesh.select_non_manifold.poll():  # not in a mesh that is hidden
+                bpy.ops.mesh.select_non_manifold(*AS_CALLED)
         yield 0.3
 
     def call(self):
@@ -390,10 +416,17 @@ class Editing(Play):
         *(call,) * 12,
         *(cut, delete_faces, select_rims) * 5,
         *(select_some, select_a_loop, Play.undo, Play.transform) * 4,
+        *(Play.press_a_shortcut,) * 2,
         *(add, Play.redo, Play.click) * 3,
         *(shape_key, Play.delete, Play.duplicate, Play.turn_view, Play.front_view, Play.undo_and_redo) * 2,
         *(Play.draw_blob, Play.sculpt, Play.save_and_open, Play.join, Play.call_a_command, Play.select_all),
     )
+
+
+def pen():
+    """The tool that draws; there is none in other modes."""
+    yield from in_object_mode()
+    yield from tool("gridmesh.draw")
 
 
 def in_object_mode():
