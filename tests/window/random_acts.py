@@ -171,7 +171,40 @@ class Play:
         yield from stage.key("ESC")
         yield 0.3
 
+    def call_operator(self, kind, name):
+        """One of ours, then perhaps with another option, as its panel sets it."""
+        done = set()
+        with stage.override():
+            operator = getattr(getattr(bpy.ops, kind), name)
+            if operator.poll():
+                try:
+                    done = operator(*AS_CALLED)
+                except RuntimeError as error:
+                    print(f"    {error}")
+            print(f"    {name}: {done}")
+        yield 0.6
+        last = bpy.context.window_manager.operators
+        if "FINISHED" in done and last and self.random.random() < 0.5:
+            self.change(last[-1].properties)
+            with stage.override():
+                if bpy.ops.ed.undo_redo.poll():
+                    bpy.ops.ed.undo_redo()
+            yield 0.6
+
     # -------------------------------------------------------------------------------------------------- modes
+
+    def pencil(self):
+        """A drawing with Blender's pencil, and bodies of it."""
+        yield from in_object_mode()
+        with stage.override():
+            bpy.ops.object.grease_pencil_add(*AS_CALLED, type="EMPTY")
+            bpy.ops.object.mode_set(*AS_CALLED, mode="PAINT_GREASE_PENCIL")
+        yield 0.6
+        for _ in range(self.random.randint(1, 3)):
+            radius, start, wobble = (self.random.uniform(*span) for span in ((25, 120), (0, 6), (0, 0.35)))
+            yield from stroke(ring(self.spot(200), radius, 40, start, wobble))
+        yield from in_object_mode()
+        yield from self.call_operator("object", "gridmesh_from_strokes")
 
     def edit(self):
         yield from self.over_view()
@@ -284,7 +317,7 @@ class Play:
         *(click, transform) * 5,
         *(call_a_command, front_view, change_a_body) * 4,
         *(press_a_shortcut,) * 6,
-        *(redo, delete, duplicate, edit, edit_an_outline) * 3,
+        *(redo, delete, duplicate, edit, edit_an_outline, pencil) * 3,
         *(
             scribble,
             draw_across,

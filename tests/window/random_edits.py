@@ -80,23 +80,7 @@ class Editing(Play):
         yield from self.in_edit_mode() if kind == "mesh" else in_object_mode()
         if name == "gridmesh_join":
             yield from self.select_all()
-        done = set()
-        with stage.override():
-            operator = getattr(getattr(bpy.ops, kind), name)
-            if operator.poll():
-                try:
-                    done = operator(*AS_CALLED)
-                except RuntimeError as error:
-                    print(f"    {error}")
-            print(f"    {name}: {done}")
-        yield 0.6
-        last = bpy.context.window_manager.operators
-        if "FINISHED" in done and last and self.random.random() < 0.5:
-            self.change(last[-1].properties)
-            with stage.override():
-                if bpy.ops.ed.undo_redo.poll():
-                    bpy.ops.ed.undo_redo()
-            yield 0.6
+        yield from self.call_operator(kind, name)
 
     def cut(self):
         yield from in_object_mode()
