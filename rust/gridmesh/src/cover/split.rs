@@ -160,3 +160,95 @@ fn mean_edge(patch: &Patch) -> f64 {
     });
     sum / count.max(1) as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::cover::followers_of;
+    use crate::options::SketchOptions;
+    use crate::progress::Progress;
+    use crate::sketch::mesh_sketch;
+
+    /// A disk with thin spikes, and a hole; dense points of both.
+    fn spiked(spikes: usize) -> Vec<Vec<DVec2>> {
+        let point = |k: usize| {
+            let turn = k as f64 / 200.0;
+            let tip = (1.0 - (2.0 * (turn - turn.round())).abs() * 6.0).max(0.0);
+            (1.0 + 0.3 * tip) * DVec2::from_angle(TAU * turn / spikes as f64)
+        };
+        let ring = |n: usize, radius: f64| {
+            (0..n).map(move |k| radius * DVec2::from_angle(TAU * k as f64 / n as f64))
+        };
+        vec![(0..200 * spikes).map(point).collect(), ring(120, 0.4).collect()]
+    }
+
+    #[test]
+    fn tips_are_taken_in_by_triangles_that_are_sound() {
+        for (spikes, triangles) in [(5, 200), (5, 400), (7, 100), (7, 200)] {
+            let fine = spiked(spikes);
+            let options = SketchOptions { triangles: Some(triangles), ..SketchOptions::default() };
+            let mut patch = mesh_sketch(&fine[0], &fine[1..], &options, Progress::NONE).unwrap().patch;
+            let mut followers = followers_of(&patch, &fine);
+            let outside = |patch: &Patch, followers: &[Followers]| {
+                let needs = (0..2).flat_map(|k| needs_of(patch, k, &fine[k], &followers[k], 0.0));
+                needs.fold(0.0, f64::max)
+            };
+            let (before, plain) = (outside(&patch, &followers), patch.clone());
+            let shortest = SHORT * mean_edge(&patch);
+            taken_in(&mut patch, &fine, &mut followers, (0.0, 0.01));
+            let after = outside(&patch, &followers);
+            assert!(after < 0.5 * before, "{spikes} spikes: {before} and {after}");
+            // One vertex, one triangle and one boundary edge more for each split.
+            let splits = patch.vertices.len() - plain.vertices.len();
+            assert!(splits > 0);
+            assert_eq!(patch.triangles.len(), plain.triangles.len() + splits);
+            assert_eq!(
+                patch.loops.iter().map(|own| own.len()).sum::<usize>(),
+                plain.loops.iter().map(|own| own.len()).sum::<usize>() + splits
+            );
+            check(&patch, &plain, shortest);
+        }
+    }
+
+    /// Every triangle that is not of the patch before is well shaped, each loop is the boundary, and its arc lengths rise.
+    fn check(patch: &Patch, before: &Patch, shortest: f64) {
+        let mut sides: BTreeMap<[u32; 2], i32> = BTreeMap::new();
+        for triangle in &patch.triangles {
+            let corners = triangle.map(|v| patch.vertices[v as usize]);
+            let is_new = corners.map(|corner| !before.vertices.contains(&corner));
+            assert!(cotangent(corners) <= if is_new.contains(&true) { THINNEST } else { f64::MAX });
+            for i in 0..3 {
+                let [a, b] = [triangle[i], triangle[(i + 1) % 3]];
+                *sides.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
+                let length = corners[i].distance(corners[(i + 1) % 3]);
+                assert!(!(is_new[i] || is_new[(i + 1) % 3]) || length >= shortest, "{length}");
+            }
+        }
+        let rim = sides.values().filter(|&&uses| uses != 0).count();
+        assert_eq!(rim, patch.loops.iter().map(|own| own.len()).sum::<usize>());
+        for own in &patch.loops {
+            let n = own.len() as u32;
+            for i in 0..n {
+                let [a, b] = [own.start + i, own.start + (i + 1) % n];
+                assert_ne!(sides[&[a.min(b), a.max(b)]], 0);
+            }
+            let falls =
+                (0..own.arc.len()).filter(|&i| own.arc[i] >= own.arc[(i + 1) % own.arc.len()]).count();
+            assert_eq!(falls, 1, "arc lengths");
+            assert_eq!([own.arc.len(), own.source.len(), own.corner.len()], [own.len(); 3]);
+        }
+    }
+
+    #[test]
+    fn what_covers_enough_stays_as_it_is() {
+        let fine = spiked(5);
+        let options = SketchOptions { triangles: Some(200), ..SketchOptions::default() };
+        let mut patch = mesh_sketch(&fine[0], &fine[1..], &options, Progress::NONE).unwrap().patch;
+        let (before, mut followers) = (patch.clone(), followers_of(&patch, &fine));
+        taken_in(&mut patch, &fine, &mut followers, (0.0, 1.0));
+        assert_eq!((patch.vertices, patch.triangles), (before.vertices, before.triangles));
+    }
+}
