@@ -114,7 +114,7 @@ fn anneal(local: &mut Local, ground: Option<&Ground>, held: &[u32], progress: Pr
             annealer.net.relax(ground.filter(|_| sweep % PROJECTED == 0));
         }
     }
-    if cost(&annealer.net) < before {
+    if cost(&annealer.net) <= before {
         annealer.net.write(local);
     }
     // It would move the held ones, too.
