@@ -6,6 +6,7 @@ numpy only, no bpy: everything here runs in plain Python. Points are float64 in 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .bodies.nesting import nest
-from .bodies.outlines import Sketch, Stroke, StrokeError, area, prepare, project
+from .bodies.outlines import Plane, Sketch, Stroke, StrokeError, area, prepare, project
 from .native import MANIFEST, NATIVE_VERSION, NativeError, native  # noqa: F401 (known to callers from here)
 
 Progress = Callable[[float], object]
@@ -115,6 +116,19 @@ def reason_of(error: Any, sketch_options: dict[str, Any] | None = None) -> str:
     return TOO_THIN_FOR_QUADS if quads else TOO_THIN
 
 
+_PLACE = re.compile(r"( (?:at|near) )\((-?\d+\.\d+), (-?\d+\.\d+)\)")
+
+
+def in_space(reason: str, plane: Plane) -> str:
+    """What is said of a place in a drawing plane, which only the module knows, said of that in the world."""
+
+    def world(found: re.Match[str]) -> str:
+        place = plane.world(np.array([float(found[2]), float(found[3]), 0.0]))
+        return found[1] + "(" + ", ".join(f"{number:.6f}" for number in place + 0.0) + ")"
+
+    return _PLACE.sub(world, reason)
+
+
 def build(
     sketches: list[Sketch],
     sketch_options: dict[str, Any],
@@ -137,7 +151,7 @@ def build(
             if surface.kind == "cancelled":
                 raise CancelledError from surface
             reason = str(surface) if sketch_options.get("least", True) else reason_of(surface, sketch_options)
-            failures.append(Failure(sketch.stroke.label, reason))
+            failures.append(Failure(sketch.stroke.label, in_space(reason, sketch.plane)))
             continue
         bodies.append(
             Body(

@@ -15,6 +15,9 @@ from ..bodies.outlines import Stroke
 DIGITS = 308
 
 
+_CURVE = "one curve is {'points': [[x, y], ...]}, or a list with one list of points"
+
+
 class InputError(ValueError):
     """A file holds no curves. The message says why."""
 
@@ -51,13 +54,19 @@ def _integer(digits: str) -> int:
 def _json(value: Any) -> list[Any]:
     if isinstance(value, dict):
         if "points" not in value:
-            raise InputError("it has no 'points'")
-        value = [value["points"], *value.get("holes", [])]
+            raise InputError(f"it has no 'points'; {_CURVE}")
+        holes = value.get("holes", [])
+        if not isinstance(holes, list):
+            raise InputError(f"its 'holes' are {holes!r:.40}; they must be a list of curves")
+        value = [value["points"], *holes]
+    if not isinstance(value, list):
+        raise InputError(f"it holds {json.dumps(value):.40}; {_CURVE}")
     for points in value:
+        if not isinstance(points, list):
+            raise InputError(f"it has {json.dumps(points):.40} where a curve belongs; {_CURVE}")
         for point in points:
             if not isinstance(point, list):
-                hint = "one curve is {'points': [[x, y], ...]}, or a list with one list of points"
-                raise InputError(f"a curve has {point!r:.40} where a point [x, y] belongs; {hint}")
+                raise InputError(f"a curve has {point!r:.40} where a point [x, y] belongs; {_CURVE}")
             for number in point:
                 if type(number) not in (int, float, type(None)):  # numpy would take true and "1" for 1
                     raise InputError(f"a curve has {number!r:.40}, which is no number")
@@ -66,9 +75,20 @@ def _json(value: Any) -> list[Any]:
 
 def _csv(text: str) -> list[list[list[float]]]:
     found: list[list[list[float]]] = [[]]
-    for line in text.splitlines():
+    for row, line in enumerate(text.splitlines(), 1):
         if line.strip(" \t,;"):
-            found[-1].append([float(cell) for cell in line.split(",")])
+            found[-1].append(_point(row, line))
         elif found[-1]:
             found.append([])
     return [points for points in found if points]
+
+
+def _point(row: int, line: str) -> list[float]:
+    try:
+        point = [float(cell) for cell in line.split(",")]
+    except ValueError:
+        point = []
+    if len(point) != 2:
+        hint = "a row is x,y, with a point in decimals; no headings, quotes or other separators"
+        raise InputError(f"row {row} is {line.strip()!r:.40}; {hint}")
+    return point

@@ -82,10 +82,14 @@ def meshes(
 
 
 def pieces(ob: bpy.types.Object) -> list[bpy.types.Object]:
-    """Make an object of each piece of a mesh that hangs together; cavities stay with what is around them."""
+    """Make an object of each piece of a mesh that hangs together; cavities stay with what is around them.
+
+    Vertices and edges without faces are no pieces.
+    """
     _select([ob])
     bpy.ops.mesh.separate(type="LOOSE")
     found = sorted(bpy.context.selected_objects, key=lambda one: (one != ob, one.name))
+    found = [one for one in found if len(one.data.polygons)] or [ob]
     volumes = {one: _volume(one.data) for one in found}
     solid = sorted((one for one in found if volumes[one] >= 0), key=volumes.__getitem__)
     for cavity in [one for one in found if volumes[one] < 0]:

@@ -852,8 +852,8 @@ _LIBRARY = {
         "Größe der Zeichnung, 1,5 Kantenlängen); eine andere Achse angeben, oder ohne „Spiegeln“ vernetzen"
     ),
     "{} is {}; allowed: {}": "{0} ist {1}; erlaubt: {2}",
-    "about {} triangles were asked for; at most {} are supported, use a larger edge length": (
-        "rund {0} Dreiecke wurden verlangt; höchstens {1} werden unterstützt, eine größere Kantenlänge nehmen"
+    "about {} triangles were asked for; at most {} are supported, use fewer (or a larger edge length)": (
+        "rund {0} Dreiecke wurden verlangt; höchstens {1} werden unterstützt, weniger nehmen (oder eine größere Kantenlänge)"
     ),
     "no valid mesh was found: {} near ({}, {}); simplify the drawing there": (
         "kein gültiges Mesh gefunden: {0} bei ({1}, {2}); die Zeichnung dort vereinfachen"
@@ -928,6 +928,9 @@ _LIBRARY = {
     ),
     "the faces have no border; choose one connected region, not the whole of a closed mesh": (
         "die Flächen haben keinen Rand; ein zusammenhängendes Gebiet wählen, nicht ein geschlossenes Mesh als Ganzes"
+    ),
+    "the faces touch themselves or form a handle; choose a region like a sheet of paper": (
+        "die Flächen berühren sich selbst oder bilden einen Henkel; ein Gebiet wie ein Blatt Papier wählen"
     ),
     "the faces have {} borders or touch themselves; choose one connected region without holes": (
         "die Flächen haben {0} Ränder oder berühren sich selbst; ein zusammenhängendes Gebiet ohne Löcher wählen"

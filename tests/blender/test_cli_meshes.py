@@ -306,6 +306,23 @@ def test_a_cavity_of_the_only_mesh_stays_one(tmp_path):
     assert (2 - 1 / 6 - 1 / 8) * outside - 0.05 * outside < volume(whole) < (2 - 1 / 8) * outside
 
 
+def test_vertices_without_faces_are_no_pieces(tmp_path):
+    body = ball("Body", opened=False)
+    head = ball("Head", z=1.5, opened=False)
+    with bpy.context.temp_override(active_object=body, object=body, selected_editable_objects=[body, head]):
+        bpy.ops.object.join()
+    body.data.vertices.add(2)
+    body.data.edges.add(1)
+    body.data.edges[-1].vertices = [len(body.data.vertices) - 2, len(body.data.vertices) - 1]
+    path = save(tmp_path / "loose.blend")
+    ran = run("join", path, "-o", tmp_path / "one.ply")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert result["parts"] == 2
+    (whole,) = load(tmp_path / "one.ply").values()
+    assert not open_edges(whole)
+
+
 def test_open_meshes_are_not_joined(tmp_path):
     ball("Body", opened=False)
     ball("Head", z=1.3)

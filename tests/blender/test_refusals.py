@@ -117,6 +117,11 @@ CASES = {
     "straight line": (stroke(np.linspace([0, 0, 0], [1, 2, 3], 30)), {}, "straight line"),
     "there and back again": (stroke([[0, 0, 0], [1, 0, 0], [3, 0, 0], [2, 0, 0]]), {}, "straight line"),
     "figure eight": (stroke(SQUARE[[0, 2, 1, 3]]), {}, "layer 'Lines', stroke 1 of 1: .*(cross|no area)"),
+    "crossing, told in the world": (
+        stroke([[10, 5, 1], [12, 5, 3], [12, 5, 1], [10, 5, 2]]),
+        {},
+        "touch at \\(10.6666.., (4.99999.|5.00000.), 1.6666..\\)",
+    ),
     "NaN": (stroke(with_point(NAN)), {}, "point 6 of 64 is not a finite number"),
     "infinite": (stroke(with_point(INF)), {}, "point 6 of 64 is not a finite number"),
     "minus infinite": (stroke(with_point(-INF)), {}, "point 6 of 64 is not a finite number"),

@@ -128,11 +128,24 @@ def test_what_is_no_list_of_curves_says_so(text):
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [("[[0, 0], [1, 0], [0, 1]]", "one curve is"), (f"[[[0, 0], [1, 0], [1, {'9' * 5000}]]]", "5000 digits")],
+    [
+        ("[[0, 0], [1, 0], [0, 1]]", "one curve is"),
+        (f"[[[0, 0], [1, 0], [1, {'9' * 5000}]]]", "5000 digits"),
+        ("null", "it holds null; one curve is"),
+        ('{"points": 5}', "it has 5 where a curve belongs; one curve is"),
+        ('{"outline": []}', "it has no 'points'; one curve is"),
+        ('{"points": [[0, 0]], "holes": 1}', "its 'holes' are 1; they must be a list"),
+    ],
 )
 def test_what_is_wrong_is_said_in_words_of_the_format(text, said):
     with pytest.raises(inputs.InputError, match=said):
         inputs.curves(Path("a.json"), text.encode())
+
+
+@pytest.mark.parametrize("row", ["x,y", '"1","0"', "1;0", "1\t0", "1,5;0,5", "1,0,0", "1", "1,,0"])
+def test_a_row_that_is_no_point_is_named(row):
+    with pytest.raises(inputs.InputError, match=r"row 3 is .*; a row is x,y, with a point in decimals"):
+        inputs.curves(Path("a.csv"), f"0,0\n\n{row}\n".encode())
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])

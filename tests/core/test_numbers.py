@@ -121,7 +121,7 @@ def test_a_part_that_cannot_be_meshed_is_an_error_of_its_own():
         ({"triangles": 100, "quads": 100}, "not both"),
         ({"triangles": 0}, "triangles is 0"),
         ({"margin": -1.0}, "margin is -1"),
-        ({"margin": np.nan}, "margin is NaN"),
+        ({"margin": np.nan}, "margin is nan; allowed: a finite number of pixels, 0 or more"),
         ({"faint": 0.5}, "faint is 0.5"),
         ({"most": 0.0}, "most is 0"),
         ({"body": {"depth": 0.0}}, "depth is 0"),
@@ -129,21 +129,42 @@ def test_a_part_that_cannot_be_meshed_is_an_error_of_its_own():
     ],
 )
 def test_options_that_are_not_allowed_are_refused(options, words):
-    parts = [(ring(50), [])]
-    if "body" in options:
-        [refused], _ = gridmesh.mesh_cutout(parts, **options)
-        assert words in str(refused)
-        return
     with pytest.raises(gridmesh.GridMeshError, match=words):
-        gridmesh.mesh_cutout(parts, **options)
+        gridmesh.mesh_cutout([(ring(50), [])], **options)
+
+
+@pytest.mark.parametrize("name", ["margin", "cover", "faint", "most", "body"])
+def test_arguments_of_a_wrong_type_are_named(name):
+    with pytest.raises(TypeError, match=f"{name} is of type str; allowed: "):
+        gridmesh.mesh_cutout([(ring(50), [])], **{name: "wide"})
+    if name in {"margin", "faint", "most"}:
+        with pytest.raises(TypeError, match=f"{name} is of type bool"):
+            gridmesh.mesh_cutout([(ring(50), [])], **{name: True})
+
+
+@pytest.mark.parametrize("name", ["slack", "across", "beyond"])
+def test_arguments_of_a_wrong_type_are_named_by_covers_too(name):
+    with pytest.raises(TypeError, match=f"{name} is of type str; allowed: "):
+        gridmesh.cover_sketch(ring(50), **{name: "wide"})
 
 
 def test_what_is_no_part_is_refused():
-    for parts in (None, [None], [ring(50)], [(ring(50),)], [(ring(50), 3)]):
-        with pytest.raises(TypeError):
+    whole = (ring(50), [])
+    for parts, words in [
+        (None, "parts is of type NoneType; allowed: a sequence of"),
+        ([whole, None], "part 1 is of type NoneType; allowed: a pair"),
+        ([ring(50)], "part 0 is of type ndarray; allowed: a pair"),
+        ([whole, (ring(50),)], "part 1 is of type tuple; allowed: a pair"),
+        ([whole, (ring(50), 3)], "holes of part 1 is of type int"),
+        ([whole, (ring(50), ["x"])], "hole 0 of part 1 is of type str"),
+        ([whole, ("x", [])], "outline of part 1 is of type str"),
+    ]:
+        with pytest.raises(TypeError, match=words):
             gridmesh.mesh_cutout(parts)
     with pytest.raises(TypeError, match="no option deep"):
         gridmesh.mesh_cutout([(ring(50), [])], body={"deep": 1.0})
-    with pytest.raises(gridmesh.GridMeshError, match="no area"):
-        gridmesh.mesh_cutout([(np.zeros((5, 2)), [])])
+    with pytest.raises(TypeError, match="3 is no name of an option of inflate"):
+        gridmesh.mesh_cutout([whole], body={3: 1.0})
+    [refused], _ = gridmesh.mesh_cutout([(np.zeros((5, 2)), [])])
+    assert refused.kind == "too_few_points"
     assert gridmesh.mesh_cutout([]) == ([], None)

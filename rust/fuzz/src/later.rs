@@ -1,9 +1,14 @@
-//! Targets for joined bodies, holes with several loops, quads, bent lattices and pictures.
+//! Targets for joined bodies, holes with several loops, quads, bent lattices, pictures and their meshes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use gridmesh::body::inflate::InflateOptions;
+use gridmesh::body::surface::Surface;
 use gridmesh::cut::Polygons;
+use gridmesh::cutout::{CutoutOptions, CutoutRim, mesh_cutout};
+use gridmesh::drawing::combine;
+use gridmesh::error::Error;
 use gridmesh::fill::{
     BridgeOptions, Fill, FillOptions, Pair, bridge, bridge_pairs, fill_hole, fill_loops, look_apart,
 };
@@ -208,4 +213,99 @@ pub fn picture(data: &[u8]) {
         assert!(part.outline.len() >= 3 && part.outline.iter().all(|p| p.is_finite()));
         assert!(part.holes.iter().flatten().all(|p| p.is_finite()));
     }
+}
+
+/// Meshes of all parts of small pictures, and of drawings.
+pub fn cutout(data: &[u8]) {
+    let mut case = Case::new(data);
+    let parts = if case.chance() { traced(&mut case) } else { drawn(&mut case) };
+    let rim = match case.below(3) {
+        0 => CutoutRim::On,
+        1 => CutoutRim::Across,
+        _ => CutoutRim::Around { margin: 0.1 + 2.0 * case.share() },
+    };
+    let options = CutoutOptions {
+        number: 1 + 2 * case.below(200),
+        cells: cells(&mut case),
+        rim,
+        faint: 1.0 + case.share(),
+        body: case.chance().then(InflateOptions::default),
+        most: 1.0 + 20.0 * case.share(),
+    };
+    let Some(made) = bounded(|progress| mesh_cutout(&parts, &options, progress)) else { return };
+    assert_eq!(made.surfaces.len(), parts.len());
+    for (surface, part) in made.surfaces.iter().zip(&parts) {
+        match surface {
+            Ok(surface) => shown(surface, part, &options),
+            Err(error) => assert!(!matches!(error, Error::Internal { .. }), "{error}"),
+        }
+    }
+}
+
+/// Promises of the mesh of a part.
+fn shown(surface: &Surface, part: &combine::Part, options: &CutoutOptions) {
+    let n = surface.vertices.len();
+    assert!(surface.vertices.iter().all(|p| p.is_finite()) && surface.uv.iter().all(|p| p.is_finite()));
+    let is_quads = options.cells == CellShape::Quad;
+    assert_eq!((surface.triangles.is_empty(), surface.quads.is_empty()), (is_quads, !is_quads));
+    let faces = || surface.triangles.iter().map(|t| &t[..]).chain(surface.quads.iter().map(|q| &q[..]));
+    assert!(faces().flatten().all(|&v| (v as usize) < n));
+    let rims: usize = surface.silhouette.iter().map(Vec::len).sum();
+    assert_eq!(open_edges(faces()), if options.body.is_some() { 0 } else { rims });
+    let halves: Vec<[u32; 3]> =
+        faces().flat_map(|face| (2..face.len()).map(|k| [face[0], face[k - 1], face[k]])).collect();
+    let check = check_mesh(n, &halves);
+    assert_eq!((check.bad_edges, check.bad_vertices, check.bad_triangles), (0, 0, 0));
+    assert_eq!(check.components, 1);
+    if options.body.is_some() {
+        assert!(check.watertight && surface.report.watertight && surface.report.volume > 0.0);
+    } else {
+        assert_eq!(check.boundaries, surface.silhouette.len());
+        for t in surface.triangles.iter() {
+            let [a, b, c] = t.map(|v| surface.vertices[v as usize].truncate());
+            assert!((b - a).perp_dot(c - a) > 0.0, "an inverted triangle");
+        }
+    }
+    if options.rim == CutoutRim::On {
+        assert_eq!(surface.silhouette.len(), 1 + part.holes.len());
+        let size = part.outline.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        for &v in surface.silhouette.iter().flatten() {
+            let point = surface.vertices[v as usize].truncate();
+            let away = part.holes.iter().chain([&part.outline]).map(|ring| distance(ring, point));
+            assert!(away.fold(f64::INFINITY, f64::min) <= 1e-9 * size, "a rim beside the outline");
+        }
+    }
+}
+
+/// How far a point is from a ring.
+fn distance(ring: &[DVec2], point: DVec2) -> f64 {
+    let edges = ring.iter().zip(ring.iter().cycle().skip(1));
+    let away = edges.map(|(&a, &b)| {
+        let length = (b - a).length_squared();
+        let t = if length > 0.0 { ((point - a).dot(b - a) / length).clamp(0.0, 1.0) } else { 0.0 };
+        point.distance(a + t * (b - a))
+    });
+    away.fold(f64::INFINITY, f64::min)
+}
+
+/// The parts of a picture of few pixels, in which these are often alike.
+fn traced(case: &mut Case<'_>) -> Vec<combine::Part> {
+    let (width, height) = (1 + case.below(24), 1 + case.below(24));
+    let blocks: Vec<f64> = (0..64).map(|_| (2.0 * case.share() - 0.5).clamp(0.0, 1.0)).collect();
+    let values = (0..width * height).map(|k| blocks[8 * (k / width / 3) + k % width / 3] as f32).collect();
+    let Ok(picture) = Picture::new(width, height, values) else { return Vec::new() };
+    let options = TraceOptions { min_area: 4.0, margin: 2.0 * case.share(), ..TraceOptions::default() };
+    bounded(|progress| trace_image(&picture, &options, progress)).map_or(Vec::new(), |traced| traced.parts)
+}
+
+/// A few drawings, which may meet each other or be empty.
+fn drawn(case: &mut Case<'_>) -> Vec<combine::Part> {
+    let n = case.below(4);
+    let scale = if case.chance() { 1.0 } else { 16.0 };
+    let mut part = |k: usize| {
+        let shift = DVec2::new(6.0 * k as f64, 0.0);
+        let moved = |ring: Vec<DVec2>| ring.iter().map(|&p| scale * (p + shift)).collect();
+        combine::Part { outline: moved(case.polygon()), holes: case.holes().into_iter().map(moved).collect() }
+    };
+    (0..n).map(&mut part).collect()
 }

@@ -1,7 +1,7 @@
 //! What each fuzz target does with its bytes: reads a case from them, runs it, and checks every promise that holds for any input.
 //!
 //! ```sh
-//! cargo +nightly fuzz run --fuzz-dir rust/fuzz sketch     # bent, combine, cut, fill, join, picture, quads, regrid, several
+//! cargo +nightly fuzz run --fuzz-dir rust/fuzz sketch     # bent, combine, cut, cutout, fill, join, picture, quads, regrid, several
 //! ```
 //!
 //! The library's tests run the same functions on a fixed number of pseudorandom inputs (`rust/gridmesh/tests/fuzz.rs`); what
@@ -22,7 +22,7 @@ use gridmesh::progress::Progress;
 use gridmesh::sketch::mesh_sketch;
 
 use self::cases::Case;
-pub use self::later::{bent, join, picture, quads, several};
+pub use self::later::{bent, cutout, join, picture, quads, several};
 
 /// Reports after which a case is given up: bounds its work.
 const REPORTS: usize = 20_000;

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::input::Argument;
-use crate::sketch::drawing;
+use crate::sketch::drawing_named;
 use crate::surface::Surface;
 use crate::watch::Watch;
 use crate::{error, options};
@@ -48,7 +48,7 @@ use crate::{error, options};
 /// Raises
 /// ------
 /// GridMeshError
-///     If an option is not allowed, if the parts have no area, or when cancelled.
+///     If an option is not allowed, or when cancelled.
 /// TypeError
 ///     If an argument has a type that is not allowed.
 ///
@@ -69,7 +69,7 @@ use crate::{error, options};
 #[expect(clippy::too_many_arguments, reason = "the Python signature")]
 #[pyfunction]
 #[pyo3(
-    signature = (parts, *, triangles = None, quads = None, margin = 0.0, cover = true, faint = 1.0, most = 250.0, body = None, progress = None),
+    signature = (parts, *, triangles = None, quads = None, margin = None, cover = None, faint = None, most = None, body = None, progress = None),
     text_signature = "(parts, *, triangles=None, quads=None, margin=0.0, cover=True, faint=1.0, most=250.0, body=None, progress=None)"
 )]
 pub fn mesh_cutout(
@@ -77,14 +77,19 @@ pub fn mesh_cutout(
     parts: &Bound<'_, PyAny>,
     triangles: Option<&Bound<'_, PyAny>>,
     quads: Option<&Bound<'_, PyAny>>,
-    margin: f64,
-    cover: bool,
-    faint: f64,
-    most: f64,
-    body: Option<&Bound<'_, PyDict>>,
+    margin: Option<&Bound<'_, PyAny>>,
+    cover: Option<&Bound<'_, PyAny>>,
+    faint: Option<&Bound<'_, PyAny>>,
+    most: Option<&Bound<'_, PyAny>>,
+    body: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Py<PyList>, Option<&'static str>)> {
-    let mut chosen = CutoutOptions { faint, most, ..CutoutOptions::default() };
+    let mut chosen = CutoutOptions::default();
+    for (name, value, option) in [("faint", faint, &mut chosen.faint), ("most", most, &mut chosen.most)] {
+        if let Some(value) = value {
+            *option = Argument { name, value, allowed: "a finite number, at least 1" }.float()?;
+        }
+    }
     let number = |name, value| Argument { name, value, allowed: "a positive whole number" }.count();
     match (triangles, quads) {
         (Some(_), Some(value)) => {
@@ -97,12 +102,11 @@ pub fn mesh_cutout(
         }
         (None, None) => {}
     }
-    chosen.rim = match cover {
-        _ if margin != 0.0 => CutoutRim::Around { margin },
-        true => CutoutRim::Across,
-        false => CutoutRim::On,
-    };
-    if let Some(body) = body {
+    chosen.rim = rim(margin, cover)?;
+    if let Some(value) = body.filter(|body| !body.is_none()) {
+        let allowed = "a dict of keyword arguments of inflate, or None";
+        let body =
+            value.cast::<PyDict>().map_err(|_| Argument { name: "body", value, allowed }.wrong_type())?;
         let mut inflated = InflateOptions::default();
         options::read("inflate", Some(body), |name, value| options::set_inflate(&mut inflated, name, value))?;
         chosen.body = Some(inflated);
@@ -127,14 +131,33 @@ pub fn mesh_cutout(
     Ok((surfaces.unbind(), finer))
 }
 
+/// Where the boundaries lie.
+fn rim(margin: Option<&Bound<'_, PyAny>>, cover: Option<&Bound<'_, PyAny>>) -> PyResult<CutoutRim> {
+    let cover =
+        cover.map_or(Ok(true), |value| Argument { name: "cover", value, allowed: "True or False" }.bool())?;
+    if let Some(value) = margin {
+        let it = Argument { name: "margin", value, allowed: "a finite number of pixels, 0 or more" };
+        let margin = it.float()?;
+        if !(margin.is_finite() && margin >= 0.0) {
+            return Err(it.wrong_value());
+        }
+        if margin > 0.0 {
+            return Ok(CutoutRim::Around { margin });
+        }
+    }
+    Ok(if cover { CutoutRim::Across } else { CutoutRim::On })
+}
+
 fn read_parts(value: &Bound<'_, PyAny>) -> PyResult<Vec<Part>> {
     let all = Argument { name: "parts", value, allowed: "a sequence of (outline, holes)" };
-    let read = |part: PyResult<Bound<'_, PyAny>>| {
+    let read = |(k, part): (usize, PyResult<Bound<'_, PyAny>>)| {
         let part = part?;
+        let name = format!("part {k}");
+        let one = Argument { name: &name, value: &part, allowed: "a pair (outline, holes)" };
         let (outline, holes) =
-            part.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>().map_err(|_| all.wrong_type())?;
-        let drawing = drawing(&outline, Some(&holes))?;
+            part.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>().map_err(|_| one.wrong_type())?;
+        let drawing = drawing_named(&format!(" of part {k}"), &outline, Some(&holes))?;
         Ok(Part { outline: drawing.outline, holes: drawing.holes })
     };
-    value.try_iter().map_err(|_| all.wrong_type())?.map(read).collect()
+    value.try_iter().map_err(|_| all.wrong_type())?.enumerate().map(read).collect()
 }

@@ -94,7 +94,13 @@ pub fn join(
     if let Some(value) = border {
         options.border = border_of(value)?;
     }
-    let given = parts.try_iter()?.map(|part| read(&part?)).collect::<PyResult<Vec<_>>>()?;
+    let all = Argument {
+        name: "parts",
+        value: parts,
+        allowed: "a sequence of pairs (vertices, faces), or of bodies",
+    };
+    let each = parts.try_iter().map_err(|_| all.wrong_type())?.enumerate();
+    let given = each.map(|(k, part)| read(k, &part?)).collect::<PyResult<Vec<_>>>()?;
     let parts = given
         .iter()
         .map(|(vertices, corners, offsets)| Part { vertices, faces: Polygons { corners, offsets } })
@@ -121,7 +127,7 @@ fn border_of(value: &Bound<'_, PyAny>) -> PyResult<Border> {
 }
 
 /// Positions, corners and offsets of a part.
-fn read(part: &Bound<'_, PyAny>) -> PyResult<(Vec<DVec3>, Vec<u32>, Vec<u32>)> {
+fn read(k: usize, part: &Bound<'_, PyAny>) -> PyResult<(Vec<DVec3>, Vec<u32>, Vec<u32>)> {
     if let (Ok(vertices), Ok(triangles), Ok(quads)) =
         (part.getattr("vertices"), part.getattr("triangles"), part.getattr("quads"))
     {
@@ -137,8 +143,8 @@ fn read(part: &Bound<'_, PyAny>) -> PyResult<(Vec<DVec3>, Vec<u32>, Vec<u32>)> {
         }
         return Ok((as_positions(&held)?.into_owned(), corners, offsets));
     }
-    let allowed = "pairs (vertices, faces), or bodies";
-    let wrong = || Argument { name: "parts", value: part, allowed }.wrong_type();
+    let allowed = "a pair (vertices, faces), or a body";
+    let wrong = || Argument { name: &format!("part {k}"), value: part, allowed }.wrong_type();
     let (vertices, faces): (Bound<'_, PyAny>, Bound<'_, PyAny>) = part.extract().map_err(|_| wrong())?;
     let held = read_positions(&positions_argument(&vertices))?;
     let (corners, offsets) = polygons(&faces)?;

@@ -82,7 +82,9 @@ pub fn map_sketches(
     let watch = Watch::new(progress)?;
     let mut drawings = Vec::new();
     let mut unreadable = Vec::new();
-    for item in outlines.try_iter()? {
+    let allowed = "a sequence of outlines, or of pairs (outline, holes)";
+    let all = Argument { name: "outlines", value: outlines, allowed };
+    for item in outlines.try_iter().map_err(|_| all.wrong_type())? {
         match map_item(&item?) {
             Ok(drawing) => drawings.push(Some(drawing)),
             Err(err) => {

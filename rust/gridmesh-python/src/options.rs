@@ -17,7 +17,11 @@ pub fn read<'py>(
     mut set: impl FnMut(&str, &Bound<'py, PyAny>) -> PyResult<bool>,
 ) -> PyResult<()> {
     for (name, value) in given.into_iter().flat_map(|dict| dict.iter()) {
-        let name = name.cast::<PyString>()?.to_string();
+        let Ok(name) = name.cast::<PyString>() else {
+            let name = name.repr()?;
+            return Err(PyTypeError::new_err(format!("{name} is no name of an option of {function}()")));
+        };
+        let name = name.to_string();
         if !set(&name, &value)? {
             return Err(PyTypeError::new_err(format!(
                 "{function}() has no option {name}; see help(gridmesh.{function})"

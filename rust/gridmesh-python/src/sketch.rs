@@ -208,21 +208,26 @@ pub fn mesh_sketch(
 #[expect(clippy::too_many_arguments, reason = "the keyword-only options of the Python function")]
 #[pyfunction]
 #[pyo3(
-    signature = (outline, holes = None, *, slack = 0.0, across = false, beyond = None, progress = None, **options),
+    signature = (outline, holes = None, *, slack = None, across = None, beyond = None, progress = None, **options),
     text_signature = "(outline, holes=(), *, slack=0.0, across=False, beyond=None, progress=None, **options)"
 )]
 pub fn cover_sketch(
     py: Python<'_>,
     outline: &Bound<'_, PyAny>,
     holes: Option<&Bound<'_, PyAny>>,
-    slack: f64,
-    across: bool,
-    beyond: Option<f64>,
+    slack: Option<&Bound<'_, PyAny>>,
+    across: Option<&Bound<'_, PyAny>>,
+    beyond: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Patch> {
     let drawing = drawing(outline, holes)?;
     let chosen = chosen(py, "cover_sketch", options)?;
+    let length = |name, value| Argument { name, value, allowed: "a finite length, at least 0" }.float();
+    let slack = slack.map_or(Ok(0.0), |value| length("slack", value))?;
+    let beyond = beyond.filter(|value| !value.is_none()).map(|value| length("beyond", value)).transpose()?;
+    let across = across
+        .map_or(Ok(false), |value| Argument { name: "across", value, allowed: "True or False" }.bool())?;
     let rim = match beyond {
         _ if across => Rim::Across,
         Some(beyond) => Rim::Whole { slack, beyond },
@@ -254,13 +259,23 @@ fn kept(value: &Bound<'_, PyAny>) -> PyResult<Kept> {
 
 /// Reads an outline and its holes.
 pub fn drawing(outline: &Bound<'_, PyAny>, holes: Option<&Bound<'_, PyAny>>) -> PyResult<Drawing> {
+    drawing_named("", outline, holes)
+}
+
+/// The same; `of` follows the names in messages, as " of part 3".
+pub fn drawing_named(
+    of: &str,
+    outline: &Bound<'_, PyAny>,
+    holes: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Drawing> {
     let allowed = "an (n, 2) array of real numbers";
-    let outline = Argument { name: "outline", value: outline, allowed }.points()?;
+    let outline = Argument { name: &format!("outline{of}"), value: outline, allowed }.points()?;
     let mut rings: Vec<Vec<DVec2>> = Vec::new();
     if let Some(value) = holes {
-        let all = Argument { name: "holes", value, allowed: "a sequence of (k, 2) arrays of real numbers" };
+        let allowed_all = "a sequence of (k, 2) arrays of real numbers";
+        let all = Argument { name: &format!("holes{of}"), value, allowed: allowed_all };
         for ring in value.try_iter().map_err(|_| all.wrong_type())? {
-            let name = format!("hole {}", rings.len());
+            let name = format!("hole {}{of}", rings.len());
             rings.push(Argument { name: &name, value: &ring?, allowed }.points()?);
         }
     }

@@ -51,23 +51,18 @@ pub struct Cutout {
 /// them, gets more, as far as that is worth it; of two numbers asked for the smaller never leads to a larger step. Parts are done in parallel.
 ///
 /// # Errors
-/// [`Error::InvalidOption`] if an option is not allowed, [`Error::ZeroArea`] if the parts have none; [`Error::Cancelled`]. What
-/// refuses a single part ([`mesh_sketch`], [`inflate`]) is its item.
+/// [`Error::InvalidOption`] if an option is not allowed; [`Error::Cancelled`]. What refuses a single part ([`mesh_sketch`], [`inflate`]) is its item.
 pub fn mesh_cutout(parts: &[Part], options: &CutoutOptions, progress: Progress<'_>) -> Result<Cutout> {
     options.check()?;
-    let measures = Measures::of(parts);
     if parts.is_empty() {
         return Ok(Cutout { surfaces: Vec::new(), finer: None });
-    }
-    if measures.area <= 0.0 {
-        return Err(Error::ZeroArea { what: "picture".into() });
     }
     let rising = Rising::new(progress);
     let callback = |fraction: f64| rising.report(fraction);
     let search = Search {
         parts,
         options,
-        measures,
+        measures: Measures::of(parts),
         known: parts.iter().map(|_| Mutex::default()).collect(),
         progress: Progress::new(&callback),
     };
@@ -88,6 +83,7 @@ pub fn mesh_cutout(parts: &[Part], options: &CutoutOptions, progress: Progress<'
             *why.entry(Finer::Beside).or_default() += search.measures.areas[k];
         }
     }
+    search.progress.report(1.0)?;
     let finer = why.into_iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(finer, _)| finer);
     Ok(Cutout { surfaces: made.into_iter().map(|made| made.surface).collect(), finer })
 }

@@ -118,7 +118,7 @@ pub enum Error {
     },
     /// The mesh asked for is larger than is supported.
     #[error(
-        "about {triangles:.0} triangles were asked for; at most {limit:.0} are supported, use a larger edge length"
+        "about {triangles:.0} triangles were asked for; at most {limit:.0} are supported, use fewer (or a larger edge length)"
     )]
     TooLarge {
         /// Triangles asked for (estimated from the area).
@@ -338,7 +338,7 @@ pub enum Error {
     },
     /// A cut would have more edges or triangles than is supported.
     #[error(
-        "the cut would get about {number:.0} {what}; at most {limit:.0} are supported, use a larger edge length"
+        "the cut would get about {number:.0} {what}; at most {limit:.0} are supported, use fewer (or a larger edge length)"
     )]
     CutTooLarge {
         /// What there would be too many of: `edges along its lines` or `triangles in its caps`.

@@ -88,6 +88,11 @@ fn pictures_keep_their_promises() {
     run(targets::picture, 1500);
 }
 
+#[test]
+fn meshes_of_pictures_keep_their_promises() {
+    run(targets::cutout, 200);
+}
+
 /// A third triangle at an edge inside the region.
 #[test]
 fn what_hangs_on_a_region_keeps_its_edges_open() {

@@ -147,6 +147,30 @@ fn a_part_that_cannot_be_meshed_does_not_stop_the_others() {
 }
 
 #[test]
+fn what_cannot_be_meshed_takes_no_cells_from_the_others() {
+    let good = disk(40.0, [50.0, 50.0]);
+    let alone = mesh_cutout(std::slice::from_ref(&good), &CutoutOptions::default(), Progress::NONE).unwrap();
+    let larger_hole = Part { holes: vec![ring(40, 80.0, DVec2::splat(50.0))], ..good.clone() };
+    let vast = Part { outline: ring(20, 1e100, DVec2::ZERO), holes: vec![] };
+    let crossed = [[0.0, 0.0], [10.0, 10.0], [10.0, 0.0], [0.0, 10.0]].map(DVec2::from).to_vec();
+    let crossed = Part { outline: crossed, holes: vec![] };
+    for (bad, kind) in [
+        (larger_hole, "hole_misplaced"),
+        (vast, "extreme_size"),
+        (crossed, "self_intersecting"),
+        (Part::default(), "too_few_points"),
+    ] {
+        let refused = |cutout: &Cutout| cutout.surfaces[0].as_ref().map(|_| ()).map_err(Error::kind);
+        let both = [bad.clone(), good.clone()];
+        let both = mesh_cutout(&both, &CutoutOptions::default(), Progress::NONE).unwrap();
+        let faces = both.surfaces[1].as_ref().unwrap().triangles.len();
+        assert_eq!((refused(&both), faces), (Err(kind), cells(&alone)));
+        let one = mesh_cutout(&[bad], &CutoutOptions::default(), Progress::NONE).unwrap();
+        assert_eq!(refused(&one), Err(kind));
+    }
+}
+
+#[test]
 fn options_that_are_not_allowed_are_refused() {
     let parts = [disk(40.0, [50.0, 50.0])];
     let around = |margin| CutoutRim::Around { margin };
@@ -158,13 +182,15 @@ fn options_that_are_not_allowed_are_refused() {
         (CutoutOptions { most: 0.5, ..base() }, "most"),
         (CutoutOptions { rim: around(0.0), ..base() }, "margin"),
         (CutoutOptions { rim: around(f64::INFINITY), ..base() }, "margin"),
+        (
+            CutoutOptions { body: Some(InflateOptions { depth: 1e300, ..Default::default() }), ..base() },
+            "depth",
+        ),
     ] {
         let made = mesh_cutout(&parts, &options, Progress::NONE);
         assert!(matches!(made, Err(Error::InvalidOption { name, .. }) if name == wrong), "{wrong}");
     }
     assert!(mesh_cutout(&[], &base(), Progress::NONE).unwrap().surfaces.is_empty());
-    let none = mesh_cutout(&[Part::default()], &base(), Progress::NONE);
-    assert!(matches!(none, Err(Error::ZeroArea { .. })));
     let stop = |_: f64| false;
     assert!(matches!(mesh_cutout(&parts, &base(), Progress::new(&stop)), Err(Error::Cancelled)));
 }

@@ -1,5 +1,7 @@
 //! What the mesh of a part of a picture may lack, and what it is worth to lack less.
 
+use glam::DVec2;
+
 use crate::cover::Covering;
 use crate::cutout::options::{CutoutOptions, CutoutRim, Finer};
 use crate::drawing::combine::Part;
@@ -58,6 +60,9 @@ const BETWEEN: [f64; 2] = [0.004, 0.006];
 /// allowed less.
 const PIXELS: f64 = 0.03;
 
+/// Drawings larger than this are refused.
+const LARGEST: f64 = 1e30;
+
 /// What the mesh of a part may lack.
 pub(super) struct Allowed {
     /// The area of the part.
@@ -103,7 +108,7 @@ impl Lacks {
 
 /// The measures of the parts of a picture.
 pub(super) struct Measures {
-    /// By part, its area: that of its outline without its holes; 0 if that is no number.
+    /// By part, its area: that of its outline without its holes; 0 if that is no area of a drawing that can be meshed.
     pub(super) areas: Vec<f64>,
     /// By part, the length of its contours.
     rims: Vec<f64>,
@@ -114,18 +119,26 @@ pub(super) struct Measures {
 
 impl Measures {
     pub(super) fn of(parts: &[Part]) -> Self {
-        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
+        let counted = |part: &Part, value: f64| {
+            let (low, high) = part
+                .outline
+                .iter()
+                .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+            if value > 0.0 && (high - low).max_element() <= LARGEST { value } else { 0.0 }
+        };
         let area = |part: &Part| {
             let holes: f64 = part.holes.iter().map(|hole| signed_area(hole).abs()).sum();
-            finite(signed_area(&part.outline).abs() - holes)
+            counted(part, signed_area(&part.outline).abs() - holes)
         };
         let rim = |part: &Part| {
             let holes: f64 = part.holes.iter().map(|hole| perimeter(hole)).sum();
-            finite(perimeter(&part.outline) + holes)
+            counted(part, perimeter(&part.outline) + holes)
         };
         let areas: Vec<f64> = parts.iter().map(area).collect();
         let rims: Vec<f64> = parts.iter().map(rim).collect();
-        Self { area: areas.iter().sum(), rim: rims.iter().sum(), areas, rims }
+        let area: f64 = areas.iter().sum();
+        // Without any, each part is refused for a reason of its own, whatever its share.
+        Self { area: if area > 0.0 { area } else { 1.0 }, rim: rims.iter().sum(), areas, rims }
     }
 
     /// What the mesh of a part may lack: of the share of the picture that may be lost by a mesh of `number` cells in all as much as

@@ -78,6 +78,9 @@ impl CutoutOptions {
                 return Err(Error::InvalidOption { name, value: told(value), allowed: at_least_1 });
             }
         }
+        if let Some(body) = &self.body {
+            body.check()?;
+        }
         match self.rim {
             CutoutRim::Around { margin } if !(margin.is_finite() && margin > 0.0) => {
                 let allowed = "a finite number of pixels above 0";

@@ -90,6 +90,9 @@ pub(super) fn not_a_disk(faces: &usize, borders: &usize, f: &mut fmt::Formatter<
         (_, 0) => {
             write!(f, "the faces have no border; choose one connected region, not the whole of a closed mesh")
         }
+        (_, 1) => {
+            write!(f, "the faces touch themselves or form a handle; choose a region like a sheet of paper")
+        }
         _ => write!(
             f,
             "the faces have {borders} borders or touch themselves; choose one connected region without holes"

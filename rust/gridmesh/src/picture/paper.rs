@@ -18,6 +18,9 @@ const ROUNDS: usize = 8;
 /// Blocks darker than this times the fit are drawn on.
 const DRAWN: f64 = 0.93;
 
+/// Paper that is darker than this in a channel is compared as if it had this much: what has no light at all tells nothing.
+const LEAST: f64 = 0.05;
+
 /// Of a picture of this contrast or less, nothing is drawn: the noise of a camera.
 const CONTRAST: f64 = 0.06;
 
@@ -52,8 +55,9 @@ fn darker(width: usize, height: usize, value: impl Fn(usize, usize) -> f32) -> R
         let channel = Picture::new(width, height, (0..width * height).map(|k| value(k, c)).collect())?;
         let light = Light::fit(&channel);
         for (k, (drawn, &value)) in drawn.iter_mut().zip(channel.values()).enumerate() {
-            let paper = light.at((k % width) as f64, (k / width) as f64).max(0.05);
-            *drawn = drawn.max((1.0 - f64::from(value) / paper).clamp(0.0, 1.0) as f32);
+            let paper = light.at((k % width) as f64, (k / width) as f64);
+            let (least, short) = (paper.max(LEAST), (LEAST - paper).max(0.0) / LEAST);
+            *drawn = drawn.max((1.0 - f64::from(value) / least - short).clamp(0.0, 1.0) as f32);
         }
     }
     stretch(Picture::new(width, height, drawn)?)
@@ -223,6 +227,16 @@ mod tests {
         let dark: Vec<[f32; 3]> = sheet([0.2; 3], 95.0);
         let covered = coverage(300, 200, &dark).unwrap();
         assert!(covered.values()[100 * 300 + 150] >= 0.5 && covered.values()[0] < 0.5);
+    }
+
+    #[test]
+    fn pure_colors_are_seen_on_black() {
+        let inside = |k: usize| ((k % 300) as f64 - 150.0).hypot((k / 300) as f64 - 100.0) < 50.0;
+        for color in [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.8, 0.1, 0.1]] {
+            let pixels: Vec<_> = (0..60_000).map(|k| if inside(k) { color } else { [0.0; 3] }).collect();
+            let covered = coverage(300, 200, &pixels).unwrap();
+            assert!(covered.values().iter().enumerate().all(|(k, &v)| (v >= 0.5) == inside(k)), "{color:?}");
+        }
     }
 
     #[test]
