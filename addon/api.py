@@ -116,7 +116,7 @@ def reason_of(error: Any, sketch_options: dict[str, Any] | None = None) -> str:
     return TOO_THIN_FOR_QUADS if quads else TOO_THIN
 
 
-_PLACE = re.compile(r"( (?:at|near) )\((-?\d+\.\d+), (-?\d+\.\d+)\)")
+_PLACE = re.compile(r"\b(at|near)\s\((-?\d+\.\d+),\s(-?\d+\.\d+)\)")
 
 
 def in_space(reason: str, plane: Plane) -> str:
@@ -124,7 +124,7 @@ def in_space(reason: str, plane: Plane) -> str:
 
     def world(found: re.Match[str]) -> str:
         place = plane.world(np.array([float(found[2]), float(found[3]), 0.0]))
-        return found[1] + "(" + ", ".join(f"{number:.6f}" for number in place + 0.0) + ")"
+        return found[1] + " (" + ", ".join(f"{number:.6f}" for number in place + 0.0) + ")"
 
     return _PLACE.sub(world, reason)
 

@@ -21,6 +21,7 @@ from ..fill import filling
 from ..fill.editmesh import EditMesh
 from ..join import joining, uniting
 from ..regrid import regridding
+from ..text.messages import counted
 from . import jobs, loading, outputs, params
 from .loading import LoadError
 from .outputs import placed
@@ -123,9 +124,11 @@ def fill(source: Path, pattern: str | None, options: dict[str, Any], *, scripts:
         raise MakeError("holes", "; ".join(reasons))
     notes = notes + reasons + filling.warnings_of(reports)
     if larger:
-        notes.append(f"{larger} holes left open: hidden, or with more than max_edges edges")
+        notes.append(f"{counted(larger, 'hole')} left open: hidden, or with more than max_edges edges")
     if outer:
-        notes.append(f"{outer} outer borders of flat sheets left open")
+        touching = source.suffix.lower() == ".obj" and not options.get("weld")
+        hint = "; weld joins sheets that only touch" if touching else ""
+        notes.append(f"{counted(outer, 'outer border')} of flat sheets left open{hint}")
     return Made(found, _numbers("holes", len(reports), reports), notes)
 
 

@@ -1016,6 +1016,7 @@ _LIBRARY_PARTS = {
     "hole {}": "Loch {0}",
     "loop": "Schleife",
     "mesh": "Mesh",
+    "set of bones": "Satz von Knochen",
     "other outline": "Der andere Umriss",
     "outline": "Umriss",
     "stroke": "Strich",

@@ -24,6 +24,11 @@ def test_bad_sketches_are_refused_with_their_kind(name):
     refused(BAD[name]["kind"], gridmesh.mesh_sketch, BAD[name]["points"])
 
 
+def test_values_are_shown_in_few_digits():
+    patch = gridmesh.mesh_sketch(circle(), triangles=100)
+    assert "curve is 1e300; " in refused("invalid_option", gridmesh.inflate, patch, curve=[0, 1e300])
+
+
 def test_a_crossing_names_its_two_segments():
     message = refused("self_intersecting", gridmesh.mesh_sketch, [[0, 0], [2, 2], [2, 0], [0, 2.5]])
     assert "segments 0 and 2" in message

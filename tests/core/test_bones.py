@@ -170,3 +170,24 @@ def test_a_ring_is_bent_without_folds_where_it_is_thin(degrees, aside):
     is_partition(weights)
     moved = bent(patch.vertices, weights, [0, np.radians(degrees)], [[0, 0], [0, top]])
     assert folded(moved, patch.triangles) == 0
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1e12, 1e25])
+def test_any_size_has_the_same_weights(scale):
+    patch = bar()
+    weights = gridmesh.bone_weights(patch.vertices, patch.triangles, TWO)
+    scaled = gridmesh.bone_weights(patch.vertices * scale, patch.triangles, np.array(TWO) * scale)
+    assert np.abs(scaled - weights).max() < 1e-6
+
+
+def test_what_is_too_large_says_what_is_allowed():
+    patch = bar()
+    with pytest.raises(
+        gridmesh.GridMeshError, match=r"set of bones is 1\.000e300 across; allowed: "
+    ) as caught:
+        gridmesh.bone_weights(patch.vertices, patch.triangles, [[[1e300, 0], [0, 0]]])
+    assert caught.value.kind == "extreme_size"
+    with pytest.raises(gridmesh.GridMeshError, match=r"the mesh is 1.6.*e101 across; allowed: "):
+        gridmesh.bone_weights(patch.vertices * 1e100, patch.triangles, TWO)
+    with pytest.raises(gridmesh.GridMeshError, match="reach is 1e300; allowed: a number from 0.01 to 100"):
+        gridmesh.bone_weights(patch.vertices, patch.triangles, TWO, reach=1e300)

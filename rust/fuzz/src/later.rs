@@ -225,12 +225,12 @@ pub fn cutout(data: &[u8]) {
         _ => CutoutRim::Around { margin: 0.1 + 2.0 * case.share() },
     };
     let options = CutoutOptions {
-        number: 1 + 2 * case.below(200),
+        number: 1 + case.below(120),
         cells: cells(&mut case),
         rim,
         faint: 1.0 + case.share(),
         body: case.chance().then(InflateOptions::default),
-        most: 1.0 + 20.0 * case.share(),
+        most: 1.0 + 8.0 * case.share(),
     };
     let Some(made) = bounded(|progress| mesh_cutout(&parts, &options, progress)) else { return };
     assert_eq!(made.surfaces.len(), parts.len());

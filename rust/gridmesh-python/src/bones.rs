@@ -34,7 +34,7 @@ use crate::watch::Watch;
 /// Raises
 /// ------
 /// GridMeshError
-///     "not_finite", "index_out_of_range", "invalid_option", "invalid_shape", "solver", "cancelled".
+///     "not_finite", "extreme_size", "index_out_of_range", "invalid_option", "invalid_shape", "solver", "cancelled".
 /// TypeError
 ///     If an argument has a type that is not allowed.
 ///

@@ -338,7 +338,7 @@ pub enum Error {
     },
     /// A cut would have more edges or triangles than is supported.
     #[error(
-        "the cut would get about {number:.0} {what}; at most {limit:.0} are supported, use fewer (or a larger edge length)"
+        "the cut would get about {number:.0} {what}; at most {limit:.0} are supported, use a larger edge length"
     )]
     CutTooLarge {
         /// What there would be too many of: `edges along its lines` or `triangles in its caps`.

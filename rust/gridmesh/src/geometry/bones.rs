@@ -11,8 +11,11 @@ use self::heat::Heat;
 use self::ways::Ways;
 use super::disjoint::Disjoint;
 use super::march::{Around, march};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, told};
 use crate::progress::Progress;
+
+/// Coordinates larger than this leave the range in which distances are computed.
+const LARGEST: f64 = 1e30;
 
 /// Options of [`bone_weights`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +56,7 @@ const ROUNDS: usize = 8;
 /// meets follow the bone that is nearest to them as a whole. O(b n log n) in practice.
 ///
 /// # Errors
-/// [`Error::NotFinite`], [`Error::IndexOutOfRange`], [`Error::InvalidOption`] (also without bones), [`Error::Solver`], [`Error::Cancelled`].
+/// [`Error::NotFinite`], [`Error::ExtremeSize`], [`Error::IndexOutOfRange`], [`Error::InvalidOption`] (also without bones), [`Error::Solver`], [`Error::Cancelled`].
 ///
 /// Source: the heat equilibrium of Baran and Popović, *Automatic rigging and animation of 3D characters*, 2007, with a
 /// heat transfer that depends on the limb's width alone and distances within the drawing.
@@ -118,6 +121,15 @@ fn check(
     if let Some(bone) = bones.iter().position(|ends| !ends.iter().all(|p| p.is_finite())) {
         return Err(Error::NotFinite { what: "bones".to_owned(), point: bone });
     }
+    let far =
+        |points: &mut dyn Iterator<Item = &DVec2>| points.map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    for (what, size) in
+        [("mesh", far(&mut vertices.iter())), ("set of bones", far(&mut bones.iter().flatten()))]
+    {
+        if size > LARGEST {
+            return Err(Error::ExtremeSize { what: what.to_owned(), size });
+        }
+    }
     if let Some(&v) = triangles.iter().flatten().find(|&&v| v as usize >= vertices.len()) {
         let (what, index) = ("triangles".to_owned(), v as i32);
         return Err(Error::IndexOutOfRange { what, index, vertices: vertices.len() });
@@ -130,7 +142,7 @@ fn check(
         return invalid("most", options.most.to_string(), "1 or more bones for a vertex");
     }
     if !(0.01..=100.0).contains(&options.reach) {
-        return invalid("reach", options.reach.to_string(), "a number from 0.01 to 100");
+        return invalid("reach", told(options.reach), "a number from 0.01 to 100");
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec2;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, told};
 
 /// Values that a curve may take after its first, which is 0.
 const RANGE: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
@@ -120,10 +120,10 @@ pub(crate) fn check(values: &[f64]) -> Result<()> {
         return refuse(format!("{} values", values.len()), "two values or more, the first of them 0");
     }
     if values[0] != 0.0 {
-        return refuse(format!("{} at first", values[0]), "0 at first, for the body is closed there");
+        return refuse(format!("{} at first", told(values[0])), "0 at first, for the body is closed there");
     }
     match values[1..].iter().find(|value| !RANGE.contains(value)) {
-        Some(value) => refuse(value.to_string(), "numbers from 0.000001 to 1000000 after the first"),
+        Some(value) => refuse(told(*value), "numbers from 0.000001 to 1000000 after the first"),
         None => Ok(()),
     }
 }

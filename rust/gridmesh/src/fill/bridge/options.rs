@@ -1,6 +1,6 @@
 //! What can be chosen about a bridge.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, told};
 use crate::fill::options::{FillOptions, Smooth};
 use crate::options::CellShape;
 
@@ -31,7 +31,7 @@ impl BridgeOptions {
         }
         if !self.twist.is_finite() {
             let allowed = "a finite angle in radians";
-            return Err(Error::InvalidOption { name: "twist", value: self.twist.to_string(), allowed });
+            return Err(Error::InvalidOption { name: "twist", value: told(self.twist), allowed });
         }
         let rest = FillOptions {
             cells: self.cells,
