@@ -29,6 +29,19 @@ def test_values_are_shown_in_few_digits():
     assert "curve is 1e300; " in refused("invalid_option", gridmesh.inflate, patch, curve=[0, 1e300])
 
 
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: gridmesh.join(5), "parts is of type int; allowed: a sequence of pairs"),
+        (lambda: gridmesh.join([([[0, 0, 0]], [[0, 0, 0]]), 5]), "part 1 is of type int; allowed: a pair"),
+        (lambda: gridmesh.map_sketches(5), "outlines is of type int; allowed: a sequence of outlines"),
+    ],
+)
+def test_what_is_no_sequence_is_named(call, words):
+    with pytest.raises(TypeError, match=words):
+        call()
+
+
 def test_a_crossing_names_its_two_segments():
     message = refused("self_intersecting", gridmesh.mesh_sketch, [[0, 0], [2, 2], [2, 0], [0, 2.5]])
     assert "segments 0 and 2" in message

@@ -189,5 +189,5 @@ def test_what_is_too_large_says_what_is_allowed():
     assert caught.value.kind == "extreme_size"
     with pytest.raises(gridmesh.GridMeshError, match=r"the mesh is 1.6.*e101 across; allowed: "):
         gridmesh.bone_weights(patch.vertices * 1e100, patch.triangles, TWO)
-    with pytest.raises(gridmesh.GridMeshError, match="reach is 1e300; allowed: a number from 0.01 to 100"):
+    with pytest.raises(gridmesh.GridMeshError, match=r"reach is 1e300; allowed: a number from 0.01 to 100"):
         gridmesh.bone_weights(patch.vertices, patch.triangles, TWO, reach=1e300)

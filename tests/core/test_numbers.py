@@ -148,6 +148,14 @@ def test_arguments_of_a_wrong_type_are_named_by_covers_too(name):
         gridmesh.cover_sketch(ring(50), **{name: "wide"})
 
 
+def test_progress_rises_to_one():
+    told = []
+    gridmesh.mesh_cutout([(ring(50), []), (ring(20) + 100, [])], progress=told.append)
+    assert told[0] == 0
+    assert told[-1] == 1
+    assert told == sorted(told)
+
+
 def test_what_is_no_part_is_refused():
     whole = (ring(50), [])
     for parts, words in [

@@ -473,3 +473,21 @@ def test_thin_blurred_tips_are_not_longer_than_they_are():
     traced = gridmesh.trace_image(np.rint(255 * alpha).astype(np.uint8))
     end = around(np.array([[20.6, 0.0]]), 0.4, [61.2, 59.1])[0]
     assert max(((outline - end) @ [np.cos(0.4), np.sin(0.4)]).max() for outline, _ in traced) < 1.0
+
+
+def test_a_ring_of_pixels_that_touch_at_corners_stays_around_its_hole():
+    rows = [
+        "......#...",
+        ".....#.#..",
+        "......#...",
+        "....##....",
+        "..##..##..",
+    ]
+    image = np.pad(np.array([[c == "#" for c in row] for row in rows]), 2)
+    for smooth in (0.0, 1.0, 2.0):
+        for outline, holes in gridmesh.trace_image(image, min_area=0, smooth=smooth):
+            gridmesh.thickness(outline, holes)  # reads both, and refuses what meets itself
+    noise = np.random.default_rng(2)
+    for _ in range(10):
+        for outline, holes in gridmesh.trace_image(noise.random((100, 100)) < 0.4, min_area=0):
+            gridmesh.thickness(outline, holes)

@@ -187,7 +187,7 @@ fn refine(
             line
         })
         .collect();
-    apart::separate(&mut lines, progress.part(0.7, 1.0))?;
+    apart::separate(&mut lines, &counts, progress.part(0.7, 1.0))?;
     let mut points = lines.into_iter().map(apart::Line::into_points);
     let part = |count: usize| Part {
         outline: points.next().unwrap_or_default(),

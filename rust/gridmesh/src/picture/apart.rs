@@ -1,8 +1,9 @@
-//! Contours that do not meet: where refined lines cross, they go back to their crossings, which never do.
+//! Contours that do not meet: where refined lines cross, or a hole is no longer inside, they go back to their crossings, which never do.
 
 use glam::DVec2;
 
 use crate::error::Result;
+use crate::geometry::polygon::signed_area;
 use crate::geometry::segments::{SegmentGrid, orientation, segments_meet};
 use crate::picture::heights::Sample;
 use crate::progress::Progress;
@@ -66,6 +67,22 @@ impl Line {
         changed
     }
 
+    /// Goes back to all of its crossings; whether it was not there.
+    fn go_back(&mut self) -> bool {
+        if self.back.iter().all(|&back| back) {
+            return false;
+        }
+        self.back.fill(true);
+        self.rebuild();
+        true
+    }
+
+    /// Whether it runs around what it surrounds the other way than its crossings.
+    fn is_turned(&self) -> bool {
+        let points: Vec<DVec2> = self.points.iter().map(|&(_, point)| point).collect();
+        (signed_area(&points) > 0.0) != (signed_area(&self.raw) > 0.0)
+    }
+
     fn rebuild(&mut self) {
         let mut kept = self.kept.iter().peekable();
         self.points.clear();
@@ -80,8 +97,77 @@ impl Line {
     }
 }
 
+/// Changes lines until none meets itself or another, and holes lie inside their outlines.
+///
+/// counts : how many of them, in turn, are an outline and its holes.
+pub fn separate(lines: &mut [Line], counts: &[usize], progress: Progress<'_>) -> Result<()> {
+    loop {
+        untangle(lines, progress)?;
+        // Two lines can pass each other as a whole, as where a ring is a pixel wide and pixels touch at corners alone.
+        let mut changed = false;
+        for line in misplaced(lines, counts) {
+            changed |= lines[line].go_back();
+        }
+        if !changed {
+            return Ok(());
+        }
+    }
+}
+
+/// Lines that are turned, and holes outside of their outlines with these.
+fn misplaced(lines: &[Line], counts: &[usize]) -> Vec<usize> {
+    let mut found: Vec<usize> = (0..lines.len()).filter(|&k| lines[k].is_turned()).collect();
+    let mut first = 0;
+    for &count in counts {
+        if count > 1 {
+            let rows = Rows::new(&lines[first]);
+            let outside = (first + 1..first + count).filter(|&hole| !rows.surround(lines[hole].points[0].1));
+            let before = found.len();
+            found.extend(outside);
+            if found.len() > before {
+                found.push(first);
+            }
+        }
+        first += count;
+    }
+    found
+}
+
+/// The segments of a line by the rows of pixels that they pass.
+struct Rows<'a> {
+    line: &'a Line,
+    first: f64,
+    rows: Vec<Vec<usize>>,
+}
+
+impl<'a> Rows<'a> {
+    fn new(line: &'a Line) -> Self {
+        let heights = || line.points.iter().map(|(_, point)| point.y.floor());
+        let (first, last) =
+            (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
+        let mut rows = vec![Vec::new(); (last - first) as usize + 1];
+        for i in 0..line.points.len() {
+            let [a, b] = line.segment(i).map(|point| (point.y.floor() - first) as usize);
+            rows[a.min(b)..=a.max(b)].iter_mut().for_each(|row| row.push(i));
+        }
+        Self { line, first, rows }
+    }
+
+    /// Whether a point lies inside the line.
+    fn surround(&self, point: DVec2) -> bool {
+        let row = point.y.floor() - self.first;
+        let Some(row) = (row >= 0.0).then(|| self.rows.get(row as usize)).flatten() else { return false };
+        let is_crossed = |&&i: &&usize| {
+            let [a, b] = self.line.segment(i);
+            let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
+            low.y <= point.y && point.y < high.y && orientation(low, high, point) > 0.0
+        };
+        row.iter().filter(is_crossed).count() % 2 == 1
+    }
+}
+
 /// Changes lines until none meets itself or another.
-pub fn separate(lines: &mut [Line], progress: Progress<'_>) -> Result<()> {
+fn untangle(lines: &mut [Line], progress: Progress<'_>) -> Result<()> {
     let mut around = AROUND;
     for round in 0.. {
         progress.report(1.0 - 1.0 / f64::from(round + 1))?;
@@ -167,12 +253,29 @@ mod tests {
         };
         let (left, right) = (square(0.0), square(4.1));
         let mut lines = vec![moved(&left, 3, 0.4), moved(&right, 1, 0.3)];
-        separate(&mut lines, Progress::NONE).unwrap();
+        separate(&mut lines, &[1, 1], Progress::NONE).unwrap();
         assert!(conflicts(&lines, Progress::NONE, 0.0).unwrap().is_empty());
         assert_eq!(lines[0].points[3].1, left[3]);
         // What is far from the conflict stays refined.
         let mut one = vec![moved(&left, 3, 0.05)];
-        separate(&mut one, Progress::NONE).unwrap();
+        separate(&mut one, &[1], Progress::NONE).unwrap();
         assert_ne!(one[0].points[3].1, left[3]);
+    }
+
+    #[test]
+    fn a_hole_that_is_left_outside_goes_back_with_its_outline() {
+        let square =
+            |from: f64, to: f64| [(from, from), (to, from), (to, to), (from, to)].map(DVec2::from).to_vec();
+        let (outer, mut inner) = (square(0.0, 4.0), square(1.0, 3.0));
+        inner.reverse();
+        // The outline became a sliver beside the hole.
+        let moved = [(0.0, 0.0), (0.9, 0.0), (0.9, 0.5), (0.0, 4.0)].map(DVec2::from);
+        let line = |raw: &[DVec2], moved: &[DVec2]| {
+            let sample = |(crossing, &at)| Sample { crossing, at, exact: true, corner: false };
+            Line::new(raw.to_vec(), moved.iter().enumerate().map(sample).collect())
+        };
+        let mut lines = vec![line(&outer, &moved), line(&inner, &inner)];
+        separate(&mut lines, &[2], Progress::NONE).unwrap();
+        assert_eq!(lines.into_iter().map(Line::into_points).collect::<Vec<_>>(), [outer, inner]);
     }
 }

@@ -94,7 +94,8 @@ impl Grid {
             let samples = raw.iter().enumerate().map(sample).collect();
             lines.push(apart::Line::new(raw, simplify::simplify(samples)));
         }
-        apart::separate(&mut lines, progress.part(0.8, 1.0))?;
+        let counts: Vec<usize> = found.iter().map(|island| island.contours.len()).collect();
+        apart::separate(&mut lines, &counts, progress.part(0.8, 1.0))?;
         let placed = |line: apart::Line| -> Vec<DVec2> {
             line.into_points().into_iter().map(|point| self.origin + self.spacing * point).collect()
         };
