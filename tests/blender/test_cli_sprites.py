@@ -298,6 +298,24 @@ def test_a_killed_run_is_resumed_to_the_same_bytes(tmp_path):
     assert all_files(tmp_path / "b" / "out") == whole
 
 
+@pytest.mark.parametrize(
+    ("params", "words"),
+    [
+        ({"triangles": 0}, "triangles is 0; allowed: 1 or more"),
+        ({"min_area": 1e9}, "all of its 2 islands are smaller than the least area; lower min_area"),
+    ],
+)
+def test_refusals_name_parameters(tmp_path, params, words):
+    (tmp_path / "a.png").write_bytes(png(two_parts()))
+    words_of = [
+        word for name, value in params.items() for word in (f"--{name.replace('_', '-')}", f"{value:g}")
+    ]
+    ran = run("sprites", tmp_path / "a.png", "-o", tmp_path / "a.glb", *words_of)
+    assert ran.returncode == 1
+    (result,) = results(tmp_path).values()
+    assert result["message"] == words
+
+
 def test_what_does_not_fit_is_refused_before_the_first_runs(tmp_path):
     (tmp_path / "a.png").write_bytes(png(disk()))
     for change in (
