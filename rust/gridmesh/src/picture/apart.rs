@@ -58,11 +58,28 @@ impl Line {
         let n = self.raw.len();
         let first = self.points[segment].0;
         let last = self.points[(segment + 1) % self.points.len()].0;
-        let length = ((last + n - first) % n + 2 * around).min(n - 1);
+        self.mark_from(first, (last + n - first) % n, around)
+    }
+
+    /// Marks a crossing, so many after it, and so many around these; whether any was not yet marked.
+    fn mark_from(&mut self, first: usize, more: usize, around: usize) -> bool {
+        let n = self.raw.len();
+        let length = (more + 2 * around).min(n - 1);
         let mut changed = false;
         for k in 0..=length {
             let at = (first + 2 * n - around.min(n) + k) % n;
             changed |= !std::mem::replace(&mut self.back[at], true);
+        }
+        changed
+    }
+
+    /// Goes back to the crossings around the one that is nearest to a place; whether it was not there.
+    fn go_back_near(&mut self, place: DVec2, around: usize) -> bool {
+        let away = |k: &usize| self.raw[*k].distance_squared(place);
+        let nearest = (0..self.raw.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        let changed = nearest.is_some_and(|nearest| self.mark_from(nearest, 0, around));
+        if changed {
+            self.rebuild();
         }
         changed
     }
@@ -101,32 +118,39 @@ impl Line {
 ///
 /// counts : how many of them, in turn, are an outline and its holes.
 pub fn separate(lines: &mut [Line], counts: &[usize], progress: Progress<'_>) -> Result<()> {
+    let longest = lines.iter().map(|line| line.raw.len()).max().unwrap_or(0);
+    let mut around = AROUND;
     loop {
         untangle(lines, progress)?;
         // Two lines can pass each other as a whole, as where a ring is a pixel wide and pixels touch at corners alone.
         let mut changed = false;
-        for line in misplaced(lines, counts) {
-            changed |= lines[line].go_back();
+        for line in lines.iter_mut().filter(|line| line.is_turned()) {
+            changed |= line.go_back();
         }
-        if !changed {
+        let outside = outside(lines, counts);
+        for &[outline, hole] in &outside {
+            changed |= lines[hole].go_back();
+            let place = lines[hole].raw[0];
+            changed |= lines[outline].go_back_near(place, around);
+        }
+        if !changed && (outside.is_empty() || around > longest) {
             return Ok(());
         }
+        around *= 2;
     }
 }
 
-/// Lines that are turned, and holes outside of their outlines with these.
-fn misplaced(lines: &[Line], counts: &[usize]) -> Vec<usize> {
-    let mut found: Vec<usize> = (0..lines.len()).filter(|&k| lines[k].is_turned()).collect();
+/// Outlines, with each hole that does not lie inside.
+fn outside(lines: &[Line], counts: &[usize]) -> Vec<[usize; 2]> {
+    let mut found = Vec::new();
     let mut first = 0;
     for &count in counts {
         if count > 1 {
             let rows = Rows::new(&lines[first]);
-            let outside = (first + 1..first + count).filter(|&hole| !rows.surround(lines[hole].points[0].1));
-            let before = found.len();
-            found.extend(outside);
-            if found.len() > before {
-                found.push(first);
-            }
+            let holes = first + 1..first + count;
+            found.extend(
+                holes.filter(|&hole| !rows.surround(lines[hole].points[0].1)).map(|hole| [first, hole]),
+            );
         }
         first += count;
     }
