@@ -117,6 +117,7 @@ def reason_of(error: Any, sketch_options: dict[str, Any] | None = None) -> str:
 
 
 _PLACE = re.compile(r"\b(at|near)\s\((-?\d+\.\d+),\s(-?\d+\.\d+)\)")
+"""Where the module says that something of a drawing is."""
 
 
 def in_space(reason: str, plane: Plane) -> str:

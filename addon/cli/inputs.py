@@ -16,6 +16,7 @@ DIGITS = 308
 
 
 _CURVE = "one curve is {'points': [[x, y], ...]}, or a list with one list of points"
+"""How curves are written in JSON."""
 
 
 class InputError(ValueError):
