@@ -53,6 +53,12 @@ impl Line {
         [self.points[i].1, self.points[(i + 1) % self.points.len()].1]
     }
 
+    /// The least and largest coordinates.
+    fn bounds(&self) -> (DVec2, DVec2) {
+        let start = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        self.points.iter().fold(start, |(low, high), &(_, point)| (low.min(point), high.max(point)))
+    }
+
     /// Marks the crossings around a segment; whether any was not yet marked.
     fn mark(&mut self, segment: usize, around: usize) -> bool {
         let n = self.raw.len();
@@ -114,7 +120,7 @@ impl Line {
     }
 }
 
-/// Changes lines until none meets itself or another, and holes lie inside their outlines.
+/// Changes lines until none meets itself or another, and holes lie inside their outlines, beside each other.
 ///
 /// counts : how many of them, in turn, are an outline and its holes.
 pub fn separate(lines: &mut [Line], counts: &[usize], progress: Progress<'_>) -> Result<()> {
@@ -127,30 +133,47 @@ pub fn separate(lines: &mut [Line], counts: &[usize], progress: Progress<'_>) ->
         for line in lines.iter_mut().filter(|line| line.is_turned()) {
             changed |= line.go_back();
         }
-        let outside = outside(lines, counts);
-        for &[outline, hole] in &outside {
+        let misplaced = misplaced(lines, counts);
+        for &[around_it, hole] in &misplaced {
             changed |= lines[hole].go_back();
             let place = lines[hole].raw[0];
-            changed |= lines[outline].go_back_near(place, around);
+            changed |= lines[around_it].go_back_near(place, around);
         }
-        if !changed && (outside.is_empty() || around > longest) {
+        if !changed && (misplaced.is_empty() || around > longest) {
             return Ok(());
         }
         around *= 2;
     }
 }
 
-/// Outlines, with each hole that does not lie inside.
-fn outside(lines: &[Line], counts: &[usize]) -> Vec<[usize; 2]> {
+/// Outlines, with each hole that does not lie inside, and holes, with each that does.
+fn misplaced(lines: &[Line], counts: &[usize]) -> Vec<[usize; 2]> {
+    let place = |line: usize| lines[line].points[0].1;
     let mut found = Vec::new();
     let mut first = 0;
-    for &count in counts {
+    for &count in counts.iter().filter(|&&count| count > 0) {
+        let holes = first + 1..first + count;
+        let mut by_height: Vec<usize> = holes.clone().collect();
+        by_height.sort_by(|&a, &b| place(a).y.total_cmp(&place(b).y));
         if count > 1 {
             let rows = Rows::new(&lines[first]);
-            let holes = first + 1..first + count;
-            found.extend(
-                holes.filter(|&hole| !rows.surround(lines[hole].points[0].1)).map(|hole| [first, hole]),
-            );
+            found.extend(holes.clone().filter(|&hole| !rows.surround(place(hole))).map(|hole| [first, hole]));
+        }
+        for hole in holes {
+            let (low, high) = lines[hole].bounds();
+            let from = by_height.partition_point(|&other| place(other).y < low.y);
+            let is_beside = |other: usize| (low.x..=high.x).contains(&place(other).x);
+            let others = by_height[from..].iter().copied().take_while(|&other| place(other).y <= high.y);
+            let others: Vec<usize> = others.filter(|&other| other != hole && is_beside(other)).collect();
+            if !others.is_empty() {
+                let rows = Rows::new(&lines[hole]);
+                found.extend(
+                    others
+                        .into_iter()
+                        .filter(|&other| rows.surround(place(other)))
+                        .map(|other| [hole, other]),
+                );
+            }
         }
         first += count;
     }
@@ -166,9 +189,8 @@ struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     fn new(line: &'a Line) -> Self {
-        let heights = || line.points.iter().map(|(_, point)| point.y.floor());
-        let (first, last) =
-            (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
+        let (first, last) = line.bounds();
+        let (first, last) = (first.y.floor(), last.y.floor());
         let mut rows = vec![Vec::new(); (last - first) as usize + 1];
         for i in 0..line.points.len() {
             let [a, b] = line.segment(i).map(|point| (point.y.floor() - first) as usize);
@@ -301,5 +323,20 @@ mod tests {
         let mut lines = vec![line(&outer, &moved), line(&inner, &inner)];
         separate(&mut lines, &[2], Progress::NONE).unwrap();
         assert_eq!(lines.into_iter().map(Line::into_points).collect::<Vec<_>>(), [outer, inner]);
+    }
+
+    #[test]
+    fn a_hole_that_comes_to_lie_within_another_goes_back() {
+        let square = |from: f64, to: f64, dx: f64| {
+            [(from, from), (from, to), (to, to), (to, from)].map(|(x, y)| DVec2::new(x + dx, y)).to_vec()
+        };
+        let mut outer = square(-9.0, 19.0, 0.0);
+        outer.reverse();
+        let (large, small) = (square(0.0, 8.0, 0.0), square(3.0, 5.0, 6.0));
+        let sample = |(crossing, &at): (usize, &DVec2)| Sample { crossing, at, exact: true, corner: false };
+        let moved: Vec<Sample> = square(3.0, 5.0, 0.0).iter().enumerate().map(sample).collect();
+        let mut lines = vec![Line::raw(outer), Line::raw(large), Line::new(small.clone(), moved)];
+        separate(&mut lines, &[3], Progress::NONE).unwrap();
+        assert_eq!(lines[2].clone().into_points(), small);
     }
 }
