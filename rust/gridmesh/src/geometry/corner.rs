@@ -108,17 +108,23 @@ impl Corner {
             Ideal::Next => (-2.0 * a, 2.0),
             Ideal::Last => (-2.0 * b, 2.0),
         };
-        let mut area = cross.length();
-        let mut facing = cross * (1.0 / area);
-        if cross.dot(normal) <= 0.0 {
+        let length = cross.length();
+        let least = THINNEST * sides;
+        // One division does for both, but where the area counts as another.
+        let over = 1.0 / length;
+        let (mut facing, mut inverse) = (cross * over, over);
+        let height = cross.dot(normal);
+        if height <= 0.0 {
             facing = normal;
-            area = cross.dot(normal);
+            inverse = 1.0 / height.max(least);
+        } else if length.is_nan() || length < least {
+            inverse = 1.0 / least;
         }
         Self {
             sides,
             lengthening,
             curvature,
-            inverse: 1.0 / area.max(THINNEST * sides),
+            inverse,
             widening: (a - b).cross(facing),
             share: 1.0 / ideal.best(),
         }

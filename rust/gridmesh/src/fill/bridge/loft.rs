@@ -82,7 +82,8 @@ impl Rail {
     fn segment(&self, around: f64) -> (usize, f64) {
         let n = self.points.len();
         let start = self.around[0];
-        let within = around - (around - start).floor();
+        let off = around - start;
+        let within = if (0.0..1.0).contains(&off) { around } else { around - off.floor() };
         let part = (((within - start) * n as f64) as usize).min(n - 1);
         let mut k = self.index[part] as usize;
         while k + 1 < n && self.around[k + 1] <= within {

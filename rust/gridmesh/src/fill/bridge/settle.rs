@@ -50,7 +50,11 @@ pub(super) fn settle(
             }
             work.star(v, &mut mover.star);
             let spot = &mut spots[v - work.n];
-            if mover.moved(&mut flat[v], spot, positions, v) > RESTS {
+            let gain = match work.corners {
+                None => mover.moved::<false>(&mut flat[v], spot, positions, v),
+                Some(_) => mover.moved::<true>(&mut flat[v], spot, positions, v),
+            };
+            if gain > RESTS {
                 all_rest = false;
                 awake[v] = true;
                 mover.star.iter().flat_map(|&(i, j, _)| [i, j]).for_each(|w| awake[w as usize] = true);
@@ -74,15 +78,23 @@ struct Mover<'a> {
 
 impl Mover<'_> {
     /// Moves a vertex; how much less bad its faces are then.
-    fn moved(&mut self, flat: &mut DVec2, spot: &mut Spot, positions: &mut [DVec3], v: usize) -> f64 {
+    fn moved<const QUADS: bool>(
+        &mut self,
+        flat: &mut DVec2,
+        spot: &mut Spot,
+        positions: &mut [DVec3],
+        v: usize,
+    ) -> f64 {
         let here = positions[v];
+        // Known to the compiler where it is the only one.
+        let kind = |ideal: Ideal| if QUADS { ideal } else { Ideal::Equilateral };
         let sides = |from: DVec3, i: u32, j: u32, positions: &[DVec3]| {
             let (a, b) = (positions[i as usize] - from, positions[j as usize] - from);
             [a, b, a.cross(b)]
         };
         self.seen.clear();
         self.seen.extend(self.star.iter().map(|&(i, j, _)| sides(here, i, j, positions)));
-        let own = self.star.iter().zip(&self.seen).filter(|((.., ideal), _)| ideal.is_own());
+        let own = self.star.iter().zip(&self.seen).filter(|((.., ideal), _)| kind(*ideal).is_own());
         let sum = own.map(|(_, [.., cross])| *cross).sum::<DVec3>();
         let mut normal = spot.along.cross(spot.across).normalize_or_zero();
         if normal.dot(sum) < 0.0 {
@@ -94,11 +106,9 @@ impl Mover<'_> {
         let e = spot.along.normalize();
         let f = normal.cross(e);
         let mut model = Quadratic::default();
-        let mut near = f64::INFINITY;
         let mut present = 0.0;
         for (&(.., ideal), &seen) in self.star.iter().zip(&self.seen) {
-            near = near.min(seen[0].length_squared());
-            let corner = Corner::crossed(ideal, seen, normal);
+            let corner = Corner::crossed(kind(ideal), seen, normal);
             let badness = corner.badness();
             let weight = badness.powi(POWER);
             present += weight * badness;
@@ -114,6 +124,7 @@ impl Mover<'_> {
         if -0.5 * model.gradient.dot(step) * GAINED < 0.5 * RESTS {
             return 0.0;
         }
+        let near = self.seen.iter().map(|[a, ..]| a.length_squared()).fold(f64::INFINITY, f64::min);
         let mut step = (BEYOND * step).clamp_length_max(near.sqrt());
         for _ in 0..HALVINGS {
             let height = step.y / q.y;
@@ -122,7 +133,7 @@ impl Mover<'_> {
                 let found = self.loft.at(there.x, there.y);
                 let mut sum = 0.0;
                 for &(i, j, ideal) in &self.star {
-                    let corner = Corner::crossed(ideal, sides(found.point, i, j, positions), normal);
+                    let corner = Corner::crossed(kind(ideal), sides(found.point, i, j, positions), normal);
                     sum += corner.badness().powi(POWER + 1);
                     if sum >= present {
                         break;

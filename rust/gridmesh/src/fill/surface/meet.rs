@@ -152,8 +152,11 @@ pub(crate) fn count_meetings(
     let finite = |t: &&[u32; 3]| t.iter().all(|&v| position(v).is_finite());
     let mut new = new.iter().filter(finite).copied().collect::<Vec<_>>();
     let old = old.iter().filter(finite).copied().collect::<Vec<_>>();
-    if apart && new.len() >= MANY {
+    if apart {
         new = touching_boxes(&position, &new, &old);
+    }
+    if new.is_empty() {
+        return Ok((0, None));
     }
     let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
     let mut ids = new.iter().chain(&old).flatten().copied().collect::<Vec<_>>();
@@ -273,12 +276,18 @@ fn touching_boxes(
     old: &[[u32; 3]],
 ) -> Vec<[u32; 3]> {
     let around = |t: &[u32; 3]| Box3::around(t.map(position));
+    if old.is_empty() {
+        return vec![];
+    }
     let tree = RTree::bulk_load(old.iter().map(|t| boxed(&around(t), 0)).collect());
     let touches = |t: &&[u32; 3]| {
         let own = around(t);
         let envelope = AABB::from_corners(own.low.into(), own.high.into());
         tree.locate_in_envelope_intersecting(envelope).next().is_some()
     };
+    if new.len() < MANY {
+        return new.iter().filter(touches).copied().collect();
+    }
     new.par_iter().filter(touches).copied().collect()
 }
 
