@@ -126,8 +126,9 @@ impl Line {
 pub fn separate(lines: &mut [Line], counts: &[usize], progress: Progress<'_>) -> Result<()> {
     let longest = lines.iter().map(|line| line.raw.len()).max().unwrap_or(0);
     let mut around = AROUND;
-    loop {
-        untangle(lines, progress)?;
+    let done = |round: i32| 1.0 - 0.25f64.powi(round);
+    for round in 0.. {
+        untangle(lines, progress.part(done(round), done(round + 1)))?;
         // Two lines can pass each other as a whole, as where a ring is a pixel wide and pixels touch at corners alone.
         let mut changed = false;
         for line in lines.iter_mut().filter(|line| line.is_turned()) {
@@ -140,10 +141,11 @@ pub fn separate(lines: &mut [Line], counts: &[usize], progress: Progress<'_>) ->
             changed |= lines[around_it].go_back_near(place, around);
         }
         if !changed && (misplaced.is_empty() || around > longest) {
-            return Ok(());
+            break;
         }
         around *= 2;
     }
+    Ok(())
 }
 
 /// Outlines, with each hole that does not lie inside, and holes, with each that does.
