@@ -76,9 +76,7 @@ class MESH_OT_gridmesh_bridge(PatchFaces, bpy.types.Operator):  # noqa: N801
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Ask for a mesh in Edit Mode."""
-        return cls.can_edit(
-            context, told("Edit a mesh and select two or more loops of open edges", "tooltips")
-        )
+        return cls.can_edit(context, "Edit a mesh and select two or more loops of open edges")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the loops, join them as arrays, and only then change the meshes."""

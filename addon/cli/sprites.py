@@ -18,16 +18,13 @@ from ..pictures import images, placing
 from ..pictures.cutouts import Cutout, cut_out
 from ..pictures.formats import gltf, godot, rig, spine
 from ..pictures.formats.sheet import Sheet
-from ..pictures.tracing import Options, PictureError
+from ..pictures.tracing import Options
 from ..text.messages import counted
 from . import files, loading, outputs, params
 from .making import MakeError
 
 _OPAQUE = 252
 """Pixels with less alpha are seen through."""
-
-_PARAMETERS = {"Triangles of Each Side": "triangles", "Least Area": "min_area"}
-"""By name of a property, the parameter."""
 
 
 class MadeSprite:
@@ -124,10 +121,7 @@ def sprites(source: Path, _pattern: str | None, options: dict[str, Any], *, scri
         triangles=options.get("triangles", params.SPRITE_TRIANGLES),
         body=None if flat else body,
     )
-    try:
-        cutout = cut_out(pixels, chosen)
-    except PictureError as error:
-        raise PictureError(_of_parameters(str(error))) from error
+    cutout = cut_out(pixels, chosen)
     height, width = pixels.shape[:2]
     name = source.stem.encode("utf-8", "replace").decode()  # of a file, which may be no text
     ending = source.suffix.lower()
@@ -136,13 +130,6 @@ def sprites(source: Path, _pattern: str | None, options: dict[str, Any], *, scri
     if "bones" in options and flat:
         sheet = replace(sheet, rig=_rig(Path(options["bones"]), sheet))
     return MadeSprite(source, sheet, chosen, options.get("unit", params.SPRITE_UNIT))
-
-
-def _of_parameters(text: str) -> str:
-    """What is said of properties in Blender, said of the parameters."""
-    for name, parameter in _PARAMETERS.items():
-        text = text.replace(name, parameter)
-    return text
 
 
 def _rig(path: Path, sheet: Sheet) -> rig.Rig:

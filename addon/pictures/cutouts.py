@@ -158,7 +158,7 @@ def _widened(
 
 def _nothing(dropped: int) -> str:
     if dropped:
-        return f"all of its {dropped} islands are smaller than the least area; lower Least Area"
+        return f"all of its {dropped} islands are smaller than the least area; lower it"
     return "nothing in it is covered; choose another background or a lower threshold"
 
 
@@ -182,7 +182,7 @@ def _asked(parts: list[Any], options: Options) -> tuple[int, str, float]:
     cells = "triangles" if options.quads is None else "quads"
     number = options.triangles if options.quads is None else options.quads
     if number <= 0:
-        raise PictureError(f"{cells.capitalize()} of Each Side is {number}; allowed: 1 or more")
+        raise PictureError(f"{cells} is {number}; allowed: 1 or more")
     return number, cells, float(np.sqrt(sum(map(_drawn, parts)) / number / FACE_AREA[cells]))
 
 

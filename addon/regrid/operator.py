@@ -34,9 +34,7 @@ class MESH_OT_gridmesh_regrid(PatchFaces, bpy.types.Operator):  # noqa: N801
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Ask for a mesh in Edit Mode."""
-        return cls.can_edit(
-            context, told("Edit a mesh and select faces, or a closed loop of edges", "tooltips")
-        )
+        return cls.can_edit(context, "Edit a mesh and select faces, or a closed loop of edges")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the areas, mesh them as arrays, and only then change the meshes."""

@@ -1243,13 +1243,13 @@ _LIBRARY_PARTS = {
     "it has {} by {} pixels; allowed: 1 to {} pixels in all, scale it": (
         "es hat {0} mal {1} Pixel; erlaubt: insgesamt 1 bis {2} Pixel, das Bild verkleinern"
     ),
-    "all of its {} islands are smaller than the least area; lower Least Area": (
-        "alle {0} Inseln sind kleiner als die kleinste Fläche; „Kleinste Fläche“ verringern"
+    "all of its {} islands are smaller than the least area; lower it": (
+        "alle {0} Inseln sind kleiner als die kleinste Fläche; diese verringern"
     ),
     "nothing in it is covered; choose another background or a lower threshold": (
         "nichts darin ist bedeckt; einen anderen Hintergrund oder eine niedrigere Schwelle wählen"
     ),
-    "{} of Each Side is {}; allowed: 1 or more": "„{0} jeder Seite“ ist {1}; erlaubt: 1 oder mehr",
+    "{} is {}; allowed: 1 or more": "{0} ist {1}; erlaubt: 1 oder mehr",
     "it shows no picture; select an image empty or an image plane": (
         "es zeigt kein Bild; ein Bild-Empty oder eine Bildebene auswählen"
     ),

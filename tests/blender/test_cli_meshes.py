@@ -284,6 +284,17 @@ def test_all_meshes_of_a_file_become_one(tmp_path):
         assert volumes[0] < volume(whole) < volumes[1]
 
 
+def joined_of_two(path, tmp_path):
+    """The closed mesh that the command makes of a file with two parts."""
+    ran = run("join", path, "-o", tmp_path / "one.ply")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    (result,) = results(tmp_path).values()
+    assert result["parts"] == 2
+    (whole,) = load(tmp_path / "one.ply").values()
+    assert not open_edges(whole)
+    return whole
+
+
 def test_a_cavity_of_the_only_mesh_stays_one(tmp_path):
     hollow = ball("Hollow", opened=False)
     inner = ball("Inner", opened=False)
@@ -296,12 +307,7 @@ def test_a_cavity_of_the_only_mesh_stays_one(tmp_path):
     ):
         bpy.ops.object.join()
     path = save(tmp_path / "hollow.blend")
-    ran = run("join", path, "-o", tmp_path / "one.ply")
-    assert ran.returncode == 0, ran.stdout + ran.stderr
-    (result,) = results(tmp_path).values()
-    assert result["parts"] == 2
-    (whole,) = load(tmp_path / "one.ply").values()
-    assert not open_edges(whole)
+    whole = joined_of_two(path, tmp_path)
     # What two balls have in common is a sixth of one here, or less.
     assert (2 - 1 / 6 - 1 / 8) * outside - 0.05 * outside < volume(whole) < (2 - 1 / 8) * outside
 
@@ -314,13 +320,7 @@ def test_vertices_without_faces_are_no_pieces(tmp_path):
     body.data.vertices.add(2)
     body.data.edges.add(1)
     body.data.edges[-1].vertices = [len(body.data.vertices) - 2, len(body.data.vertices) - 1]
-    path = save(tmp_path / "loose.blend")
-    ran = run("join", path, "-o", tmp_path / "one.ply")
-    assert ran.returncode == 0, ran.stdout + ran.stderr
-    (result,) = results(tmp_path).values()
-    assert result["parts"] == 2
-    (whole,) = load(tmp_path / "one.ply").values()
-    assert not open_edges(whole)
+    joined_of_two(save(tmp_path / "loose.blend"), tmp_path)
 
 
 def test_open_meshes_are_not_joined(tmp_path):

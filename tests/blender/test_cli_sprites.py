@@ -302,10 +302,10 @@ def test_a_killed_run_is_resumed_to_the_same_bytes(tmp_path):
     ("params", "words"),
     [
         ({"triangles": 0}, "triangles is 0; allowed: 1 or more"),
-        ({"min_area": 1e9}, "all of its 2 islands are smaller than the least area; lower min_area"),
+        ({"min_area": 1e9}, "all of its 2 islands are smaller than the least area; lower it"),
     ],
 )
-def test_refusals_name_parameters(tmp_path, params, words):
+def test_refusals_name_no_labels_of_blender(tmp_path, params, words):
     (tmp_path / "a.png").write_bytes(png(two_parts()))
     words_of = [
         word for name, value in params.items() for word in (f"--{name.replace('_', '-')}", f"{value:g}")

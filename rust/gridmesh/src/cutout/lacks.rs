@@ -1,11 +1,10 @@
 //! What the mesh of a part of a picture may lack, and what it is worth to lack less.
 
-use glam::DVec2;
-
 use crate::cover::Covering;
 use crate::cutout::options::{CutoutOptions, CutoutRim, Finer};
 use crate::drawing::combine::Part;
-use crate::geometry::polygon::{perimeter, signed_area};
+use crate::drawing::curve::bounds;
+use crate::geometry::polygon::{SIZES, perimeter, signed_area};
 
 /// Binary logarithm of the times as many cells that a mesh may have to cut off no more than it may; the more it cuts off
 /// the more may be spent.
@@ -59,9 +58,6 @@ const BETWEEN: [f64; 2] = [0.004, 0.006];
 /// Width, in pixels, of the seam along an outline in which pixels lie on the other side as it is: small pictures are
 /// allowed less.
 const PIXELS: f64 = 0.03;
-
-/// Drawings larger than this are refused.
-const LARGEST: f64 = 1e30;
 
 /// What the mesh of a part may lack.
 pub(super) struct Allowed {
@@ -120,11 +116,8 @@ pub(super) struct Measures {
 impl Measures {
     pub(super) fn of(parts: &[Part]) -> Self {
         let counted = |part: &Part, value: f64| {
-            let (low, high) = part
-                .outline
-                .iter()
-                .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
-            if value > 0.0 && (high - low).max_element() <= LARGEST { value } else { 0.0 }
+            let (low, high) = bounds(&part.outline);
+            if value > 0.0 && SIZES.contains(&(high - low).max_element()) { value } else { 0.0 }
         };
         let area = |part: &Part| {
             let holes: f64 = part.holes.iter().map(|hole| signed_area(hole).abs()).sum();

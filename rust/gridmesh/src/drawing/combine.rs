@@ -8,7 +8,7 @@ use i_overlay::float::overlay::FloatOverlay;
 use crate::drawing::curve::bounds;
 use crate::drawing::union::{SOLVER, outer_outline};
 use crate::error::{Error, Result};
-use crate::geometry::polygon::signed_area;
+use crate::geometry::polygon::{SIZES, signed_area};
 
 /// What becomes of two drawings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +86,7 @@ pub fn combine(
 
 /// The boolean works in units of the first drawing, where the other must have finite squares.
 fn check_size(what: &str, size: f64) -> Result<()> {
-    match (1e-30..=1e30).contains(&size) {
+    match SIZES.contains(&size) {
         true => Ok(()),
         false => Err(Error::ExtremeSize { what: what.to_owned(), size }),
     }

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::drawing::spikes::{SAME, drop_spikes};
 use crate::error::{Error, Result};
+use crate::geometry::polygon::SIZES;
 use crate::geometry::segments::{SegmentGrid, orientation, segments_meet};
 
 /// On which side of a contour the patch lies: always on its left.
@@ -65,8 +66,7 @@ impl ClosedCurve {
             let (low, high) = bounds(input);
             (high - low).max_element()
         };
-        // Results are proved as rounded to `f32` too, whose numbers end at 1e-38 and 1e38.
-        if size > 0.0 && !(1e-30..=1e30).contains(&size) {
+        if size > 0.0 && !SIZES.contains(&size) {
             return Err(Error::ExtremeSize { what: what.to_owned(), size });
         }
         let reversed = (doubled_area(&order, input) < 0.0) != (winding == Winding::Clockwise);

@@ -11,11 +11,9 @@ use self::heat::Heat;
 use self::ways::Ways;
 use super::disjoint::Disjoint;
 use super::march::{Around, march};
+use super::polygon::SIZES;
 use crate::error::{Error, Result, told};
 use crate::progress::Progress;
-
-/// Coordinates larger than this leave the range in which distances are computed.
-const LARGEST: f64 = 1e30;
 
 /// Options of [`bone_weights`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +124,7 @@ fn check(
     for (what, size) in
         [("mesh", far(&mut vertices.iter())), ("set of bones", far(&mut bones.iter().flatten()))]
     {
-        if size > LARGEST {
+        if size > *SIZES.end() {
             return Err(Error::ExtremeSize { what: what.to_owned(), size });
         }
     }

@@ -1,6 +1,11 @@
 //! Measures of closed lines in the plane.
 
+use std::ops::RangeInclusive;
+
 use glam::DVec2;
+
+/// Sizes of drawings that are meshed: results are proved as rounded to `f32` too, whose numbers end at 1e-38 and 1e38.
+pub(crate) const SIZES: RangeInclusive<f64> = 1e-30..=1e30;
 
 /// The area that a closed line encloses: positive if it runs counter-clockwise.
 pub(crate) fn signed_area(points: &[DVec2]) -> f64 {

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::drawing::curve::bounds;
 use crate::error::Result;
 use crate::geometry::polygon::signed_area;
 use crate::geometry::segments::{SegmentGrid, orientation, segments_meet};
@@ -53,10 +54,8 @@ impl Line {
         [self.points[i].1, self.points[(i + 1) % self.points.len()].1]
     }
 
-    /// The least and largest coordinates.
-    fn bounds(&self) -> (DVec2, DVec2) {
-        let start = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        self.points.iter().fold(start, |(low, high), &(_, point)| (low.min(point), high.max(point)))
+    fn places(&self) -> Vec<DVec2> {
+        self.points.iter().map(|&(_, point)| point).collect()
     }
 
     /// Marks the crossings around a segment; whether any was not yet marked.
@@ -102,8 +101,7 @@ impl Line {
 
     /// Whether it runs around what it surrounds the other way than its crossings.
     fn is_turned(&self) -> bool {
-        let points: Vec<DVec2> = self.points.iter().map(|&(_, point)| point).collect();
-        (signed_area(&points) > 0.0) != (signed_area(&self.raw) > 0.0)
+        (signed_area(&self.places()) > 0.0) != (signed_area(&self.raw) > 0.0)
     }
 
     fn rebuild(&mut self) {
@@ -162,7 +160,7 @@ fn misplaced(lines: &[Line], counts: &[usize]) -> Vec<[usize; 2]> {
             found.extend(holes.clone().filter(|&hole| !rows.surround(place(hole))).map(|hole| [first, hole]));
         }
         for hole in holes {
-            let (low, high) = lines[hole].bounds();
+            let (low, high) = bounds(&lines[hole].places());
             let from = by_height.partition_point(|&other| place(other).y < low.y);
             let is_beside = |other: usize| (low.x..=high.x).contains(&place(other).x);
             let others = by_height[from..].iter().copied().take_while(|&other| place(other).y <= high.y);
@@ -191,7 +189,7 @@ struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     fn new(line: &'a Line) -> Self {
-        let (first, last) = line.bounds();
+        let (first, last) = bounds(&line.places());
         let (first, last) = (first.y.floor(), last.y.floor());
         let mut rows = vec![Vec::new(); (last - first) as usize + 1];
         for i in 0..line.points.len() {
