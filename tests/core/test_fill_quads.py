@@ -302,3 +302,20 @@ def test_holes_that_touch_are_closed_together() -> None:
         own = {edge for edge in own if max(edge) < len(vertices)}
         assert not own & seen
         seen |= own
+
+
+def test_a_quad_around_the_hole_with_a_diagonal_across_the_loop_is_no_part_of_the_patch() -> None:
+    """Both the patch and what lies around it have an edge between the same vertices of the loop: few quads, bent as finer ones, ended in a panic."""
+    at = [(4, 8), (4, 9), (5, 7), (5, 8), (6, 7), (6, 8), (6, 9), (7, 6), (7, 7), (7, 8), (8, 4)]
+    at += [(8, 5), (8, 6), (8, 7), (9, 3), (9, 4), (9, 5), (9, 6), (9, 7), (9, 8), (10, 5), (10, 7)]
+    plane = np.array(at, dtype=float)
+    heights = 0.5 * np.sin(0.55 * plane[:, 0] - 3.5) * np.cos(0.35 * plane[:, 1] - 2.5)
+    vertices = np.column_stack([plane, heights])
+    faces = [[11, 16, 12], [12, 17, 13], [16, 20, 17], [18, 21, 19], [11, 12, 7], [12, 13, 8], [14, 15, 10]]
+    faces = np.array([*faces, [17, 18, 13]])
+    loop = [0, 1, 3, 5, 6, 9, 8, 13, 18, 17, 12, 16, 11, 7, 4, 2]
+    for polygons in ([0, 0, 1, 1, 2, 2, 3, 3], [0, 1, 2, 3, 4, 5, 6, 1]):
+        fill = gridmesh.fill_hole(
+            vertices, faces, loop, smooth="curvature", cells="quads", polygons=np.array(polygons)
+        )
+        check_quad_fill(vertices, faces, fill)

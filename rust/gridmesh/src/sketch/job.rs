@@ -46,8 +46,8 @@ pub(crate) enum Effort {
     Full,
     /// One.
     Once,
-    /// One, whose search takes so many states at most and is given up where there is little hope: now and then it ends with a
-    /// patch where all placements have none.
+    /// One, and a few shifts of it where it has a boundary but no patch; the search takes so many states at most and is given up where
+    /// there is little hope. Now and then it ends with a patch where all placements have none.
     Quick(u64),
 }
 
@@ -188,10 +188,13 @@ impl Job<'_> {
         }
         self.lap("boundary", started);
         // Where no angle gives a boundary a shift does not either.
-        let shifts = match effort {
-            Effort::Full if is_passable && bent.is_none() => self.shifts(&lattices),
-            _ => Vec::new(),
-        };
+        let mut shifts = self.shifts(&lattices);
+        shifts.truncate(match effort {
+            Effort::Full if is_passable && bent.is_none() => usize::MAX,
+            // Placements in jagged lines fail by chance.
+            Effort::Quick(_) if !outlines.is_empty() => QUICK_SHIFTS,
+            _ => 0,
+        });
         let part_of = |k: usize| 0.4 + 0.5 * k as f64 / shifts.len() as f64;
         let mut shifts = shifts.iter().copied().enumerate();
         let mut outlines = outlines.into_iter();
@@ -419,6 +422,9 @@ impl Job<'_> {
 
 /// Straight lattices are not tried where the cost of the first is so many times that of a bent one.
 const MUCH: f64 = 1.2;
+
+/// Shifts of the lattice that are tried with little effort.
+const QUICK_SHIFTS: usize = 2;
 
 /// After so many states no more shifts of the lattice are tried: half a second. Of 1416 outlines that took long at 500 triangles
 /// none had its patch later.

@@ -24,15 +24,20 @@ const STATES: f64 = 10.0;
 const LEAPS: usize = 2;
 const LEAP: i32 = 9;
 
+/// No number beyond so many times the one asked for, or the first that is not hopeless, is tried, nor one beyond the second if that
+/// is more: nobody waits for a mesh of half a million faces who asked for two thousand.
+const MOST_TIMES: f64 = 40.0;
+const MOST_AT_LEAST: f64 = 20_000.0;
+
 /// Sizes are tried in steps of this factor.
 const STEP: f64 = 1.1;
 
 impl Job<'_> {
     /// The error for a drawing that has no patch of the size asked for: the least number of
-    /// triangles that works, searched in steps of a tenth, one placement each.
+    /// triangles that works, searched in steps of a tenth, a placement or a few each.
     ///
     /// The search ends where a mesh is found, at the largest size there is, where a finer mesh would not be
-    /// symmetric though that was asked for, or after a bounded amount of work.
+    /// symmetric though that was asked for, at [`MOST_TIMES`] the number, or after a bounded amount of work.
     pub(super) fn least_that_works(
         &mut self,
         asked: f64,
@@ -49,6 +54,7 @@ impl Job<'_> {
         let mut work = WORK + 4.0 * asked;
         let mut fails = self.last_hopeless(last, at);
         let (mut works, first) = (None, fails);
+        let farthest = steps((MOST_TIMES * at(first) as f64).max(MOST_AT_LEAST));
         let mut leaps = LEAPS;
         let ahead_of = |job: &Self, step: i32| at(step) as f64 + EDGE * job.boundary_edges(at(step));
         while works.is_none() && fails < last {
@@ -59,8 +65,9 @@ impl Job<'_> {
                 leaps -= 1;
                 work = WORK.max(ahead_of(self, step).min(MOST_OF_LEAP));
             }
+            step = step.min(farthest);
             let ahead = ahead_of(self, step);
-            if work < ahead {
+            if work < ahead || step <= fails {
                 return Ok(Error::TooCoarse {
                     triangles,
                     cells: self.options.cells.plural(),

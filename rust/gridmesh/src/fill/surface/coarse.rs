@@ -59,12 +59,14 @@ impl Finer {
     fn of(work: &Patchwork, positions: &mut Vec<DVec3>) -> Result<Finer> {
         let (n, end, n_patch) = (work.n, work.end, work.n_patch);
         let mut own = vec![0; work.len()];
-        // For each edge, at either end: whether it is one of the patch, and the vertex in its middle.
-        let mut inside = vec![false; work.near.len()];
-        for t in 0..n_patch {
-            work.slots(t).into_iter().flatten().for_each(|slot| inside[slot as usize] = true);
+        // For each edge, at either end, and for the patch and its surroundings: whether it is one of them, and the vertex in its middle.
+        // Both may have an edge between the same vertices of the loop, as where that of two triangles of a quad is.
+        let mut has = [vec![false; work.near.len()], vec![false; work.near.len()]];
+        for t in 0..work.triangles.len() {
+            let has = &mut has[usize::from(t >= n_patch)];
+            work.slots(t).into_iter().flatten().for_each(|slot| has[slot as usize] = true);
         }
-        let mut middle = vec![NONE; work.near.len()];
+        let mut middle = [vec![NONE; work.near.len()], vec![NONE; work.near.len()]];
         let mut all = Vec::with_capacity(4 * positions.len());
         for v in 0..n {
             let after = work.after(v);
@@ -74,7 +76,9 @@ impl Finer {
             };
             own[v] = all.len() as u32;
             all.push(positions[v]);
-            (middle[first], middle[second]) = (all.len() as u32, all.len() as u32);
+            for middle in &mut middle {
+                (middle[first], middle[second]) = (all.len() as u32, all.len() as u32);
+            }
             all.push(positions[v].midpoint(positions[after]));
         }
         let mut ends = [0; 2];
@@ -87,10 +91,10 @@ impl Finer {
             for v in 0..work.len() {
                 for slot in work.range(v) {
                     let u = work.near[slot] as usize;
-                    if middle[slot] == NONE && u > v && inside[slot] == (part == 0) {
-                        middle[slot] = all.len() as u32;
+                    if middle[part][slot] == NONE && u > v && has[part][slot] {
+                        middle[part][slot] = all.len() as u32;
                         if let Some(other) = work.slot(u, v) {
-                            middle[other] = all.len() as u32;
+                            middle[part][other] = all.len() as u32;
                         }
                         all.push(positions[v].midpoint(positions[u]));
                     }
@@ -101,6 +105,7 @@ impl Finer {
         let mut triangles = Vec::with_capacity(4 * work.triangles.len());
         for (t, corners) in work.triangles.iter().enumerate() {
             let [a, b, c] = corners.map(|v| own[v as usize]);
+            let middle = &middle[usize::from(t >= n_patch)];
             let [bc, ca, ab] = work.slots(t).map(|[slot, _]| middle[slot as usize]);
             triangles.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
         }
