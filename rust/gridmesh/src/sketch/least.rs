@@ -54,7 +54,9 @@ impl Job<'_> {
         let mut work = WORK + 4.0 * asked;
         let mut fails = self.last_hopeless(last, at);
         let (mut works, first) = (None, fails);
-        let farthest = steps((MOST_TIMES * at(first) as f64).max(MOST_AT_LEAST));
+        // Where the number is left to the drawing all that are allowed are tried.
+        let at_least = if self.options.automatic { self.options.max_triangles as f64 } else { MOST_AT_LEAST };
+        let farthest = steps((MOST_TIMES * at(first) as f64).max(at_least));
         let mut leaps = LEAPS;
         let ahead_of = |job: &Self, step: i32| at(step) as f64 + EDGE * job.boundary_edges(at(step));
         while works.is_none() && fails < last {
