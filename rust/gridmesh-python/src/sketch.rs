@@ -92,8 +92,8 @@ use crate::{options, reports};
 ///     of which only bodies are made. Without effect on triangles.
 /// least : bool
 ///     True: the refusal of a drawing too thin for its mesh (kind "too_coarse") names the least number of triangles
-///     that works, in steps of a tenth, up to 40 times the number asked for or 20,000; the search may take some seconds. False: it is
-///     refused at once.
+///     that works, in steps of a tenth, up to 40 times the number asked for or that the length of the outline alone asks for, or 20,000;
+///     the search may take some seconds. False: it is refused at once.
 /// progress : callable, optional
 ///     Called with a fraction from 0 to 1; cancels by returning False. What it raises is raised here.
 ///

@@ -42,8 +42,8 @@ pub use crate::sketch::kept::Kept;
 ///
 /// # Errors
 /// [`Error::TooCoarse`] if no valid patch of about the size asked for was found, with a number of triangles that works, the
-/// least one where that is found in time, unless [`SketchOptions::least`] is off, the search takes too long, or none up to 40 times the number asked for
-/// (or 20,000) works;
+/// least one where that is found in time, unless [`SketchOptions::least`] is off, the search takes too long, or
+/// none works up to 40 times the number asked for or that the length of the outline alone asks for, nor up to 20,000;
 /// [`Error::NoPatch`] if there is none at any size up to [`MAX_TRIANGLES`]; [`Error::Inverted`] without
 /// relaxation; and the errors of [`ClosedCurve::new`] and [`SketchOptions::check`].
 ///

@@ -24,8 +24,8 @@ const STATES: f64 = 10.0;
 const LEAPS: usize = 2;
 const LEAP: i32 = 9;
 
-/// No number beyond so many times the one asked for, or the first that is not hopeless, is tried, nor one beyond the second if that
-/// is more: nobody waits for a mesh of half a million faces who asked for two thousand.
+/// No number beyond so many times the one asked for, or the last that is hopeless if that is more, is tried, but up to the second in
+/// any case: nobody waits for a mesh of half a million faces who asked for two thousand.
 const MOST_TIMES: f64 = 40.0;
 const MOST_AT_LEAST: f64 = 20_000.0;
 
@@ -37,7 +37,7 @@ impl Job<'_> {
     /// triangles that works, searched in steps of a tenth, a placement or a few each.
     ///
     /// The search ends where a mesh is found, at the largest size there is, where a finer mesh would not be
-    /// symmetric though that was asked for, at [`MOST_TIMES`] the number, or after a bounded amount of work.
+    /// symmetric though that was asked for, at the largest number that is told, or after a bounded amount of work.
     pub(super) fn least_that_works(
         &mut self,
         asked: f64,
@@ -56,18 +56,17 @@ impl Job<'_> {
         let (mut works, first) = (None, fails);
         // Where the number is left to the drawing all that are allowed are tried.
         let at_least = if self.options.automatic { self.options.max_triangles as f64 } else { MOST_AT_LEAST };
-        let farthest = steps((MOST_TIMES * at(first) as f64).max(at_least));
+        let farthest = steps((MOST_TIMES * at(first) as f64).max(at_least)).min(last);
         let mut leaps = LEAPS;
         let ahead_of = |job: &Self, step: i32| at(step) as f64 + EDGE * job.boundary_edges(at(step));
         while works.is_none() && fails < last {
             // Small steps first, for drawings that nearly fit; larger ones after them, and leaps where no work is left for more.
-            let mut step = (fails + 2 + (fails - first) / 2).min(last);
+            let mut step = (fails + 2 + (fails - first) / 2).min(farthest);
             if work < ahead_of(self, step) && leaps > 0 {
-                step = step.max(fails + LEAP).min(last);
+                step = step.max(fails + LEAP).min(farthest);
                 leaps -= 1;
                 work = WORK.max(ahead_of(self, step).min(MOST_OF_LEAP));
             }
-            step = step.min(farthest);
             let ahead = ahead_of(self, step);
             if work < ahead || step <= fails {
                 return Ok(Error::TooCoarse {
