@@ -15,6 +15,11 @@ const TANGLED: f64 = 1e-3;
 /// After so many sweeps two rings of vertices around the tangled ones move.
 const WIDER: usize = 8;
 
+/// The energy around tangled triangles is regularised over this `det` at least. After [`WIDER`] sweeps it is half as much in
+/// each, down to the second: a triangle that is hardly inverted stays so otherwise, as its energy is little there.
+const SOFT: f64 = 0.2;
+const SHARP: f64 = 0.005;
+
 /// Sweeps of two rings over quads in which neither fewer vertices are tangled nor the worst corner is less so, after which it is
 /// given up: they are hardly ever untangled later, and stronger means are at hand.
 const STILL: usize = 3;
@@ -84,6 +89,7 @@ where
     pub fn untangle(&mut self, sweeps: usize, done: &mut usize, progress: Progress<'_>) -> Result<bool> {
         let mut tangled = self.tangled();
         let (mut fewest, mut mildest, mut still) = (usize::MAX, f64::MIN, 0);
+        let mut over = SOFT;
         for sweep in 0..sweeps {
             let Tangled { vertices, least } = tangled;
             if vertices.is_empty() {
@@ -97,7 +103,10 @@ where
                 break;
             }
             *done += 1;
-            let eps = (0.04 + least * least).sqrt();
+            if sweep > WIDER {
+                over = (0.5 * over).max(SHARP);
+            }
+            let eps = (over * over + least * least).sqrt();
             let rings = if sweep < WIDER { 1 } else { 2 };
             let moved = Active::near(&self.band, vertices, rings);
             self.sweep(&Regularised { eps }, &mut moved.clone(), f64::INFINITY, progress)?;
