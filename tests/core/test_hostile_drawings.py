@@ -10,6 +10,7 @@ import gridmesh
 import numpy as np
 import pytest
 from checks import check_patch
+from quad_checks import check_quad_patch
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
 import bodies
@@ -110,6 +111,27 @@ def test_no_number_is_told_that_nobody_wants():
     error = refused(two_disks(0.001), quads=100)
     assert error.kind == "too_coarse"
     assert error.least is None or error.least <= 20_000
+
+
+def coast(seed, power, size=200):
+    """The largest outline of noise whose spectrum falls by a power of the frequency, an island with inlets of every size."""
+    frequencies = np.fft.fftfreq(size)
+    frequency = np.hypot(*np.meshgrid(frequencies, frequencies))
+    frequency[0, 0] = 1
+    noise = np.fft.fft2(np.random.default_rng(seed).standard_normal((size, size)))
+    height = np.fft.ifft2(noise * frequency**-power).real
+    y, x = np.mgrid[-1 : 1 : size * 1j, -1 : 1 : size * 1j]
+    height = height / height.std() - 6 * (x * x + y * y) + 1.5
+    traced = gridmesh.trace_image(np.clip(128 + 60 * height, 0, 255).astype(np.uint8))
+    return max((outline for outline, _ in traced), key=len)
+
+
+@pytest.mark.parametrize(("seed", "power"), [(13, 1.1), (15, 1.1), (14, 1.2), (15, 1.2)])
+def test_jagged_coasts_are_meshed_in_quads(seed, power):
+    """Each placement left some quad nearly convex: the energy that untangles them had its minimum there."""
+    outline = coast(seed, power)
+    patch = gridmesh.mesh_sketch(outline, quads=1000)
+    check_quad_patch(patch, [outline])
 
 
 def test_a_hole_is_not_flattened_onto_one_of_its_sides():
