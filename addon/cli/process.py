@@ -50,7 +50,8 @@ class Worker:
         self.number = 0
         """Of the last process."""
         self.said = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115 (closed with the worker)
-        self._answers: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        # Not a SimpleQueue: where a signal is handled for longer than its get() was to wait, that waits without end.
+        self._answers: queue.Queue[str | None] = queue.Queue()
         self._ready = False
         self._reason: tuple[str, str] | None = None
         self._ended = False
@@ -180,7 +181,7 @@ class Worker:
             creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
         )
         self.number = self.process.pid
-        self._answers = queue.SimpleQueue()
+        self._answers = queue.Queue()
         threading.Thread(target=_read, args=(self.process.stdout, self._answers), daemon=True).start()
         if self._ended:  # the signal came meanwhile
             self.kill()
@@ -215,7 +216,7 @@ def _named(code: int) -> str:
     return f"code {code}"
 
 
-def _read(stream: Any, answers: queue.SimpleQueue[str | None]) -> None:
+def _read(stream: Any, answers: queue.Queue[str | None]) -> None:
     """Pass on what a process says; None at its end."""
     try:
         with stream:

@@ -201,6 +201,31 @@ def test_two_signals_end_whatever_it_does(ask, monkeypatch, number, script):
     assert signal.getsignal(number) == handler
 
 
+@posix
+def test_a_signal_that_is_handled_for_long_does_not_end_the_watch(ask):
+    """The wait for an answer had no end after it, and no limit was looked at any more."""
+    handled = []
+
+    def handle(*_):
+        assert not handled, "the watch has ended"
+        handled.append(1)
+        threading.Event().wait(10 * process._PERIOD)
+
+    before = signal.signal(signal.SIGUSR1, handle)
+    # The second only comes where nothing stops the worker.
+    timers = [threading.Timer(after, os.kill, (os.getpid(), signal.SIGUSR1)) for after in (0.5, 30.0)]
+    for timer in timers:
+        timer.start()
+    try:
+        answer = ask("while True: pass", seconds=2.0)
+    finally:
+        for timer in timers:
+            timer.cancel()
+        signal.signal(signal.SIGUSR1, before)
+    assert handled == [1]
+    assert (answer["kind"], "--max-seconds" in answer["message"]) == ("stopped", True)
+
+
 def test_after_the_second_signal_nothing_is_started():
     worker = process.Worker(process.Limits(), scripts=False)
     worker.kill()
