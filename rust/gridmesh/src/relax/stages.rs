@@ -15,8 +15,8 @@ const TANGLED: f64 = 1e-3;
 /// After so many sweeps two rings of vertices around the tangled ones move.
 const WIDER: usize = 8;
 
-/// The energy around tangled triangles is regularised over this `det` at least. After [`WIDER`] sweeps it is half as much in
-/// each, down to the second: a triangle that is hardly inverted stays so otherwise, as its energy is little there.
+/// The least regularisation of the energy around tangled triangles, a `det`, at first; after [`WIDER`] sweeps each halves it, down to
+/// [`SHARP`]. An energy that stays soft has its minimum where a triangle is hardly inverted, and leaves it there.
 const SOFT: f64 = 0.2;
 const SHARP: f64 = 0.005;
 
@@ -89,7 +89,7 @@ where
     pub fn untangle(&mut self, sweeps: usize, done: &mut usize, progress: Progress<'_>) -> Result<bool> {
         let mut tangled = self.tangled();
         let (mut fewest, mut mildest, mut still) = (usize::MAX, f64::MIN, 0);
-        let mut over = SOFT;
+        let mut softness = SOFT;
         for sweep in 0..sweeps {
             let Tangled { vertices, least } = tangled;
             if vertices.is_empty() {
@@ -104,9 +104,9 @@ where
             }
             *done += 1;
             if sweep > WIDER {
-                over = (0.5 * over).max(SHARP);
+                softness = (0.5 * softness).max(SHARP);
             }
-            let eps = (over * over + least * least).sqrt();
+            let eps = (softness * softness + least * least).sqrt();
             let rings = if sweep < WIDER { 1 } else { 2 };
             let moved = Active::near(&self.band, vertices, rings);
             self.sweep(&Regularised { eps }, &mut moved.clone(), f64::INFINITY, progress)?;
