@@ -73,6 +73,8 @@ def join(
         ob = target.apply(context, made, transaction, crease=crease, keep=options.keep_parts)
     if made.report["overlapping"]:
         notes.append(f"overlapping pieces of meshes, joined like parts: {made.report['overlapping']}")
+    if made.report["separated"]:
+        notes.append(f"vertices added where faces met in one point or edge alone: {made.report['separated']}")
     return Done(ob, len(objects), made.report, notes, uniting.warnings_of(made.report))
 
 

@@ -615,6 +615,9 @@ _JOINS = {
     ),
     "inside out, and turned round: {}": "von innen nach außen gekehrt und umgedreht: {0}",
     "overlapping pieces of meshes, joined like parts: {}": "überlappende Stücke von Meshes, wie Teile verbunden: {0}",
+    "vertices added where faces met in one point or edge alone: {}": (
+        "Vertices hinzugefügt, wo Flächen sich nur in einem Punkt oder einer Kante trafen: {0}"
+    ),
     "joined without their modifiers: {}": "ohne ihre Modifikatoren verbunden: {0}",
     "the mesh of '{}' is being edited; leave Edit Mode first": (
         "das Mesh von „{0}“ wird bearbeitet; erst den Bearbeitungsmodus verlassen"
@@ -1094,7 +1097,6 @@ _LIBRARY_PARTS = {
     "an edge has a face on one side only": "eine Kante hat nur auf einer Seite eine Fläche",
     "two faces at an edge are wound against each other": "zwei Flächen an einer Kante laufen gegeneinander",
     "an edge joins more than two faces": "eine Kante verbindet mehr als zwei Flächen",
-    "faces meet in one vertex only": "Flächen treffen sich nur in einem Punkt",
     "a piece of it is inside out, and its normals are to be flipped,": (
         "ein Stück ist umgestülpt, seine Normalen sind umzukehren,"
     ),

@@ -212,6 +212,23 @@ def test_a_part_inside_out_is_turned_and_named(capfd):
     assert "nside out, and turned round: Head" in capfd.readouterr().out
 
 
+def test_cubes_that_share_an_edge_are_taken_apart_there(capfd):
+    cubes = []
+    for place in (0, 2):
+        bpy.ops.mesh.primitive_cube_add(location=(place, place, 0))
+        cubes.append(bpy.context.object)
+    both = merged(*cubes)
+    edit = bmesh.new()
+    edit.from_mesh(both.data)
+    bmesh.ops.remove_doubles(edit, verts=edit.verts, dist=0.01)
+    edit.to_mesh(both.data)
+    edit.free()
+    assert len(both.data.vertices) == 14
+    whole = join(ball("Body", -1.0, 1.2), both)
+    check_sound(whole)
+    assert "faces met in one point or edge alone: 2" in capfd.readouterr().out
+
+
 def test_objects_that_share_a_mesh_are_joined_and_others_keep_it():
     body = ball("Body")
     twin, third = body.copy(), body.copy()

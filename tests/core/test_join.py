@@ -511,10 +511,40 @@ def test_parts_that_are_not_closed_are_refused_with_the_place():
     turned = triangles.copy()
     turned[5] = turned[5, ::-1]
     assert kind_of((vertices, turned))[0] == "not_closed"
-    pinched = np.vstack([triangles, triangles + len(vertices)])
-    pinched[pinched == len(vertices)] = 0
-    double = np.vstack([vertices, vertices - vertices[0] * 2])
-    assert kind_of((double, pinched))[0] == "not_closed"
+
+
+def test_faces_that_meet_in_one_vertex_alone_are_taken_apart_there():
+    vertices, triangles = ball()
+    n = len(vertices)
+    pinched = np.vstack([triangles, triangles[:, ::-1] + n])
+    pinched[pinched == n] = 0
+    both = np.vstack([vertices, 2 * vertices[0] - vertices])
+    other = ball((0, 0, 0.9))
+    made = gridmesh.join([(both, pinched), other])
+    assert (made.report["separated"], made.report["exact"]) == (1, 0)
+    assert joins.close(joins.polygon_sides(made))
+    kept = made.vertex_part == 0
+    assert np.array_equal(made.vertices[kept], both[made.source_vertex[kept]])
+    assert np.count_nonzero(made.source_vertex[kept] == 0) == 2
+    assert made.report["volume"] == pytest.approx(made.report["exact_volume"], rel=0.03)
+
+
+def test_an_edge_of_four_faces_around_which_nothing_goes_is_taken_apart():
+    cube = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+    # The edge from 6 to 7 of the first is that from 0 to 1 of the second.
+    names = np.array([6, 7, *range(8, 14)])
+    part = (np.vstack([cube, cube[2:] + [1, 1, 0]]), np.vstack([quads, names[quads]]))
+    made = gridmesh.join([part, ball((0, 0, 0), 0.3)], blend=0)
+    assert (made.report["separated"], made.report["components"]) == (2, 2)
+    assert joins.close(joins.polygon_sides(made))
+    # Two rooms that meet along one edge, with a wall around both.
+    hollow = quads[:, ::-1]
+    walls = np.vstack([quads + 14, hollow, names[hollow]])
+    around = np.vstack([part[0], cube * 4 - 1])
+    made = gridmesh.join([(around, walls), ball((3, 3, 3), 0.3)], blend=0)
+    assert (made.report["separated"], made.report["components"], made.report["genus"]) == (2, 3, 0)
+    assert made.report["exact_volume"] > 61
 
 
 @pytest.mark.parametrize(

@@ -181,7 +181,8 @@ fn read(k: usize, part: &Bound<'_, PyAny>) -> PyResult<(Vec<DVec3>, Vec<u32>, Ve
 ///     For each patch its rims: closed loops of old vertices, as the old faces along them run.
 /// report : dict
 ///     Plain numbers: "watertight", "components", "genus", "alone" (parts that meet no other), "swallowed" (parts within
-///     others, and pieces that overlap others of the same part), "overlapping" (pieces that overlap others of the same part), "turned" (parts given inside out), "curves" (closed lines in which surfaces meet), "collars" (patches), "tubes" and
+///     others, and pieces that overlap others of the same part), "overlapping" (pieces that overlap others of the same part), "turned" (parts given inside out), "separated" (vertices added where
+///     faces of a part meet in a vertex or along an edge alone: each side has its own), "curves" (closed lines in which surfaces meet), "collars" (patches), "tubes" and
 ///     "fills" (of those, lattices between two rims and in one), "creased" (of those, with the line as a crease, where any blend
 ///     would meet something or take most of a part away), "exact" (of those, triangles of the exact union as they are, where that did
 ///     not help either), "collar_triangles", "collar_vertices" and "collar_irregular" (new
@@ -341,6 +342,7 @@ fn report(py: Python<'_>, report: &JoinReport) -> PyResult<Py<PyDict>> {
     dict.set_item("swallowed", report.swallowed)?;
     dict.set_item("overlapping", report.overlapping)?;
     dict.set_item("turned", report.turned)?;
+    dict.set_item("separated", report.separated)?;
     dict.set_item("curves", report.curves)?;
     dict.set_item("collars", report.collars)?;
     dict.set_item("tubes", report.tubes)?;

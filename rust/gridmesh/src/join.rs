@@ -10,6 +10,7 @@
 mod assemble;
 mod border;
 mod collar;
+mod fans;
 mod options;
 mod overlap;
 mod parts;
@@ -61,7 +62,8 @@ const SLIM: f64 = 0.7;
 /// stays as a crease, and in the end the union's own triangles stay.
 ///
 /// The result is closed and manifold and has the topology of the exact union; this is checked. Elsewhere all vertices and faces are
-/// those of the parts, bit for bit, quads and polygons too (a part given inside out is turned). Parts that meet no other stay
+/// those of the parts, bit for bit, quads and polygons too (a part given inside out is turned; where faces of a part meet in a
+/// vertex or along an edge alone, each side gets a vertex of its own). Parts that meet no other stay
 /// pieces of their own, parts within others vanish; the report counts both. Where the collars of two lines would run
 /// into each other, they become narrower; if that is not enough, they become one.
 ///
@@ -141,6 +143,7 @@ fn joined(given: &[Part<'_>], options: &JoinOptions, progress: Progress<'_>) -> 
     let curves = Curves::new(parts, &union, &seams);
     let mut report = JoinReport {
         turned: parts.turned,
+        separated: parts.separated,
         curves: curves.count,
         overlapping: parts.overlapping(),
         ..JoinReport::default()

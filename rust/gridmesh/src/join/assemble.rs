@@ -82,7 +82,7 @@ impl Joined {
                     name[v as usize] = made.vertices.len() as u32;
                     made.vertices.push(parts.vertices[v as usize]);
                     made.vertex_part.push(part as i32);
-                    made.source_vertex.push((v - parts.first[part][0]) as i32);
+                    made.source_vertex.push(parts.numbers[v as usize] as i32);
                 }
             }
         }

@@ -84,6 +84,8 @@ pub struct JoinReport {
     pub overlapping: usize,
     /// Parts given inside out, which were turned.
     pub turned: usize,
+    /// Vertices added where faces of a part meet in a vertex or along an edge alone, so that each side has its own.
+    pub separated: usize,
     /// Closed lines in which surfaces meet, and lines that branch, each with all its branches.
     pub curves: usize,
     /// Patches between the parts.
