@@ -148,6 +148,22 @@ def test_arrays_are_shared_and_read_only():
     assert np.isfinite(kept).all()
 
 
+@pytest.mark.parametrize("drawing", DRAWINGS.values(), ids=DRAWINGS.keys())
+@pytest.mark.parametrize("asked", [{"triangles": 2000}, {"quads": 1000}, {"quads": 2000}], ids=str)
+def test_no_vertex_of_a_body_sticks_out(drawing, asked):
+    """A height's square is nowhere far above its neighbours', even beside thin and obtuse triangles of the patch."""
+    body = gridmesh.inflate(gridmesh.mesh_sketch(drawing["points"], **asked))
+    faces = body.quads if len(body.quads) else body.triangles
+    ends = np.concatenate([faces[:, [k, (k + 1) % faces.shape[1]]] for k in range(faces.shape[1])])
+    ends = np.concatenate([ends, ends[:, ::-1]])
+    here, there = body.vertices[ends[:, 0]], body.vertices[ends[:, 1]]
+    most = np.zeros(len(body.vertices))
+    apart = ((here - there)[:, :2] ** 2).sum(axis=1)
+    np.maximum.at(most, ends[:, 0], there[:, 2] ** 2 + 2 * apart)
+    edge = np.median(np.linalg.norm(here - there, axis=1))
+    assert (np.abs(body.vertices[:, 2]) - np.sqrt(most)).max() < 0.1 * edge
+
+
 def with_inner_corners():
     """Outlines with inner corners of 200 to 310 degrees: stars, a cross, gears."""
     for n, inner in ((4, 0.45), (5, 0.5), (8, 0.7)):

@@ -106,6 +106,7 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         topology: &topology,
         value: height.value.iter().map(|f| f * squared).collect(),
         gradient: height.gradient.iter().map(|g| *g * squared).collect(),
+        squared_depth: squared,
         section: None,
     };
     field.section = Section::new(options.curve.as_deref(), field.highest());

@@ -5,6 +5,10 @@ use glam::DVec2;
 use super::section::Section;
 use crate::geometry::topology::{NONE, Topology};
 
+/// How much a field is above its linear interpolant, in squared depths by the squared distance from the corners of a triangle:
+/// twice what it is where it bends in one direction only.
+const MOST_BENT: f64 = 4.0;
+
 /// The squared height over the flat patch: values and gradients at its vertices, between them a
 /// blend that reproduces every quadratic function.
 ///
@@ -16,6 +20,8 @@ pub(crate) struct Field<'a> {
     pub topology: &'a Topology,
     pub value: Vec<f64>,
     pub gradient: Vec<DVec2>,
+    /// The square of the depth: minus a quarter of the sum of its second derivatives.
+    pub squared_depth: f64,
     /// What reshapes the heights of this field to those of the body, if anything.
     pub section: Option<Section>,
 }
@@ -95,19 +101,29 @@ impl Field<'_> {
     /// Value and gradient of the field, before anything reshapes it, at `point`, which lies at `place`.
     ///
     /// The value is kept above a quarter of the linear interpolant, so that it is positive inside
-    /// wherever the vertex values are.
+    /// wherever the vertex values are, and no farther above it than a bent field can be: gradients mean little at
+    /// triangles that are much longer than wide.
     pub fn plain(&self, point: DVec2, place: Place) -> (f64, DVec2) {
         let corners = self.triangles[place.triangle as usize];
         let [a, b, c] = corners.map(|v| self.vertices[v as usize]);
         let doubled = (b - a).perp_dot(c - a);
         let slopes = [(c - b).perp() / doubled, (a - c).perp() / doubled, (b - a).perp() / doubled];
-        let (mut value, mut linear, mut gradient) = (0.0, 0.0, DVec2::ZERO);
+        let bent = MOST_BENT * self.squared_depth;
+        let (mut value, mut linear, mut most) = (0.0, 0.0, 0.0);
+        let (mut gradient, mut gradient_of_most) = (DVec2::ZERO, DVec2::ZERO);
         for k in 0..3 {
             let v = corners[k] as usize;
-            let share = self.value[v] + 0.5 * self.gradient[v].dot(point - self.vertices[v]);
-            value += place.weights[k] * share;
-            linear += place.weights[k] * self.value[v];
-            gradient += slopes[k] * share + 0.5 * place.weights[k] * self.gradient[v];
+            let (own, weight, away) = (self.value[v], place.weights[k], point - self.vertices[v]);
+            let share = own + 0.5 * self.gradient[v].dot(away);
+            value += weight * share;
+            linear += weight * own;
+            gradient += slopes[k] * share + 0.5 * weight * self.gradient[v];
+            let share = own + bent * away.length_squared();
+            most += weight * share;
+            gradient_of_most += slopes[k] * share + 2.0 * bent * weight * away;
+        }
+        if value > most {
+            return (most, gradient_of_most);
         }
         (value.max(0.25 * linear), gradient)
     }
@@ -158,6 +174,7 @@ mod tests {
             topology: &topology,
             value: vertices.map(f).to_vec(),
             gradient: vertices.map(slope).to_vec(),
+            squared_depth: 1.0,
             section: None,
         };
         let point = DVec2::new(1.9, 1.5);
@@ -167,5 +184,27 @@ mod tests {
         assert!((value - f(point)).abs() < 1e-12);
         assert!(gradient.distance(slope(point)) < 1e-12);
         assert!(field.locate(DVec2::new(-1.0, 0.0), 1).is_none());
+    }
+
+    #[test]
+    fn steep_gradients_do_not_lift_the_field() {
+        let vertices = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y));
+        let triangles = [[0, 1, 2]];
+        let topology = Topology::new(3, &triangles);
+        let field = Field {
+            vertices: &vertices,
+            triangles: &triangles,
+            topology: &topology,
+            value: vec![1.0; 3],
+            gradient: vertices.map(|p| 1e3 * (DVec2::ONE / 3.0 - p)).to_vec(),
+            squared_depth: 1.0,
+            section: None,
+        };
+        let at = |p: DVec2| field.at(p, field.locate(p, 0).unwrap());
+        let (point, step) = (DVec2::new(0.4, 0.3), 1e-6);
+        let (value, gradient) = at(point);
+        assert!(value < 1.0 + MOST_BENT);
+        let slope = |way: DVec2| (at(point + step * way).0 - at(point - step * way).0) / (2.0 * step);
+        assert!(gradient.distance(DVec2::new(slope(DVec2::X), slope(DVec2::Y))) < 1e-6);
     }
 }

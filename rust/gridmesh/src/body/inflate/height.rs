@@ -17,6 +17,9 @@ const DRAG: f64 = 2.5;
 /// 0.58.
 const LEAST_WEIGHT: f64 = 1e-3;
 
+/// What rounding may add to a value, relative to the most that it may be.
+const SLACK: f64 = 1e-9;
+
 /// Operators of one flat patch, shared by all solves.
 pub(crate) struct Flat<'a> {
     pub patch: &'a Patch,
@@ -48,10 +51,11 @@ impl<'a> Flat<'a> {
         self.topology.range(v).map(|slot| weights[slot] * of(self.topology.near[slot] as usize)).sum()
     }
 
-    /// Four times the circumcentric area of `v`: the load for which the exact solution on a circle,
-    /// the radius squared minus the distance squared, is met at every vertex of any triangulation.
-    fn load(&self, v: usize) -> f64 {
-        self.around(&self.cotangent, v, |u| (self.vertices[u] - self.vertices[v]).length_squared())
+    /// Four times the circumcentric area of `v`, by cotangent weights: the load for which the exact solution on a circle,
+    /// the radius squared minus the distance squared, is met at every vertex of any triangulation. By positive weights
+    /// no value of a solution is more than the largest around it plus the square of the distance from there.
+    fn load(&self, weights: &[f64], v: usize) -> f64 {
+        self.around(weights, v, |u| self.vertices[u].distance_squared(self.vertices[v]))
     }
 
     /// Factors the equations of the interior vertices.
@@ -87,8 +91,14 @@ impl<'a> Flat<'a> {
         Ok(full)
     }
 
-    fn is_positive(&self, data: &[f64]) -> bool {
-        data[self.first..].iter().all(|&x| x > 0.0)
+    /// True if all values are between zero and what the largest value around and the load allow, as they are where no
+    /// weight is negative.
+    fn is_bounded(&self, data: &[f64]) -> bool {
+        (self.first..data.len()).all(|v| {
+            let near = self.topology.range(v).map(|slot| self.topology.near[slot] as usize);
+            let most = |u: usize| data[u] + self.vertices[u].distance_squared(self.vertices[v]);
+            data[v] > 0.0 && data[v] <= (1.0 + SLACK) * near.map(most).fold(0.0, f64::max)
+        })
     }
 }
 
@@ -154,15 +164,16 @@ fn torsion(flat: &Flat<'_>, terms: Option<Terms<'_>>) -> Result<(Vec<f64>, bool)
     let (share, drag) = terms.unwrap_or((&|_| 1.0, &|_| 0.0));
     let areas = lumped_areas(flat.vertices, &flat.patch.triangles);
     flat.progress.report(0.5)?;
-    let factor = flat.factor(&flat.cotangent, |v| drag(v) * areas[v])?;
-    let value = flat.solve(&factor, |v| flat.load(v) * share(v))?;
-    if flat.is_positive(&value) {
+    let solved = |weights: &[f64]| {
+        let factor = flat.factor(weights, |v| drag(v) * areas[v])?;
+        flat.solve(&factor, |v| flat.load(weights, v) * share(v))
+    };
+    let value = solved(&flat.cotangent)?;
+    if flat.is_bounded(&value) {
         return Ok((value, false));
     }
-    // A matrix of positive weights has a positive inverse.
     let weights = flat.cotangent.iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-    let factor = flat.factor(&weights, |v| drag(v) * areas[v])?;
-    Ok((flat.solve(&factor, |v| 4.0 * areas[v] * share(v))?, true))
+    Ok((solved(&weights)?, true))
 }
 
 /// How a squared height bends at a vertex.
@@ -222,7 +233,8 @@ fn gradients(flat: &Flat<'_>, value: &[f64], share: &dyn Fn(usize) -> f64, corne
                 continue;
             }
             let Some(outward) = circle_normal(a, vertices[v], b) else { continue };
-            let flux = flat.around(&flat.cotangent, v, |u| value[v] - value[u]) - flat.load(v) * share(v);
+            let flux = flat.around(&flat.cotangent, v, |u| value[v] - value[u])
+                - flat.load(&flat.cotangent, v) * share(v);
             let width = outward.dot(-0.5 * (b - a).perp());
             if width > 0.0 && flux < 0.0 {
                 gradient[v] = outward * (flux / width);
