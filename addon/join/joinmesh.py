@@ -41,8 +41,10 @@ def perform(bm: Any, made: United, places: np.ndarray, *, mirrored: bool, crease
     mark edges of collars that turn sharply.
     """
     vertices, faces = _by_source(bm.verts, "point"), _by_source(bm.faces, "face")
-    kept = {faces[source] for source in _pairs(made.face_part, made.source_face)}
     old = [vertices[source] for source in _pairs(made.vertex_part, made.source_vertex) if source[0] >= 0]
+    stays = [faces[source] for source in _pairs(made.face_part, made.source_face)]
+    _take_apart(bm, made.apart.tolist(), stays, old)
+    kept = set(stays)
     gone = [face for face in bm.faces if face not in kept]
     materials = _Materials(bm, gone)
     smooth = 2 * sum(face.smooth for face in bm.faces) > len(bm.faces)
@@ -57,6 +59,25 @@ def perform(bm: Any, made: United, places: np.ndarray, *, mirrored: bool, crease
             elements.layers.int.remove(elements.layers.int[name.format(domain)])
     for face in bm.faces:
         face.normal_update()
+
+
+def _take_apart(bm: Any, apart: list[list[int]], faces: list[Any], vertices: list[Any]) -> None:
+    """Put faces with vertices of their own in place of those that share them. apart : see `United`."""
+    indices = {index for _, index in apart}
+    own = {index: bm.verts.new(vertices[index].co, vertices[index]) for index in sorted(indices)}
+    changes: dict[int, dict[Any, Any]] = {}
+    for face, index in apart:
+        changes.setdefault(face, {})[vertices[index]] = own[index]
+    for face, change in changes.items():
+        loops = list(faces[face].loops)
+        faces[face] = bm.faces.new([change.get(loop.vert, loop.vert) for loop in loops], faces[face])
+        for new, loop in zip(list(faces[face].loops), loops, strict=True):
+            # What is copied to is no longer known to Python.
+            if new.edge != loop.edge:
+                new.edge.copy_from(loop.edge)
+            new.copy_from(loop)
+    for index, vertex in own.items():
+        vertices[index] = vertex
 
 
 def _pairs(parts: np.ndarray, numbers: np.ndarray) -> list[tuple[int, int]]:

@@ -52,6 +52,9 @@ class United:
     """(k,) the part of each face that stays."""
     source_face: np.ndarray
     """(k,) its number there."""
+    apart: np.ndarray
+    """(d, 2) corners of faces that stay that have a vertex of their own where the part has one for several: the face's place among
+    those that stay, and the vertex, the second of its source or a later one."""
     collars: np.ndarray
     """(t, 3) new triangles."""
     collar_part: np.ndarray
@@ -98,12 +101,19 @@ def unite(
         raise JoinError(_named(str(error), parts), error.kind) from error
     stays = made.source_part >= 0
     new = ~stays[: len(made.triangles)]
+    n_old = int((made.vertex_part >= 0).sum())
+    sources = np.column_stack([made.vertex_part[:n_old], made.source_vertex[:n_old]])
+    later = np.setdiff1d(np.arange(n_old), np.unique(sources, axis=0, return_index=True)[1])
+    at = np.flatnonzero(np.isin(made.corners, later))
+    face = np.searchsorted(made.offsets, at, side="right") - 1
+    at, face = at[stays[face]], face[stays[face]]
     return United(
         vertices=made.vertices,
         vertex_part=made.vertex_part,
         source_vertex=made.source_vertex,
         face_part=made.source_part[stays],
         source_face=made.source_face[stays],
+        apart=np.column_stack([np.cumsum(stays)[face] - 1, made.corners[at]]),
         collars=made.triangles[new],
         collar_part=made.near_part[: len(new)][new],
         rims=[np.asarray(rim) for rims in made.collars for rim in rims],

@@ -221,12 +221,29 @@ def test_cubes_that_share_an_edge_are_taken_apart_there(capfd):
     edit = bmesh.new()
     edit.from_mesh(both.data)
     bmesh.ops.remove_doubles(edit, verts=edit.verts, dist=0.01)
+    assert len(edit.verts) == 14
+    bmesh.ops.subdivide_edges(edit, edges=edit.edges, cuts=3, use_grid_fill=True)
     edit.to_mesh(both.data)
     edit.free()
-    assert len(both.data.vertices) == 14
-    whole = join(ball("Body", -1.0, 1.2), both)
+    both.data.polygons.foreach_set("use_smooth", np.arange(len(both.data.polygons)) % 2 == 0)
+    before = corners_in_space(both)
+    whole = join(both, ball("Body", -1.0, 0.5))
     check_sound(whole)
-    assert "faces met in one point or edge alone: 2" in capfd.readouterr().out
+    assert "faces met in one point or edge alone: 5" in capfd.readouterr().out
+    kept = {corner for corner in before if corner[0] > -0.9}
+    assert kept <= set(corners_in_space(whole))
+
+
+def corners_in_space(ob):
+    """Where each corner of a mesh with UVs is, its UV, and how its face is shaded."""
+    mesh, matrix = ob.data, ob.matrix_world
+    corners = []
+    for polygon in mesh.polygons:
+        for index in polygon.loop_indices:
+            at = matrix @ mesh.vertices[mesh.loops[index].vertex_index].co
+            uv = mesh.uv_layers[0].data[index].uv
+            corners.append((*np.round([*at, *uv], 5).tolist(), polygon.use_smooth))
+    return corners
 
 
 def test_objects_that_share_a_mesh_are_joined_and_others_keep_it():
