@@ -91,8 +91,8 @@ impl<'a> Flat<'a> {
         Ok(full)
     }
 
-    /// True if all values are between zero and what the largest value around and the load allow, as they are where no
-    /// weight is negative.
+    /// True if every value is above zero and no larger than the values around and the load allow (see [`Self::load`]), as all are
+    /// where no weight is negative.
     fn is_bounded(&self, data: &[f64]) -> bool {
         (self.first..data.len()).all(|v| {
             let near = self.topology.range(v).map(|slot| self.topology.near[slot] as usize);
@@ -108,7 +108,7 @@ pub(crate) struct Height {
     pub value: Vec<f64>,
     /// Its gradient.
     pub gradient: Vec<DVec2>,
-    /// True if obtuse triangles made the cotangent solution negative somewhere and a solve with
+    /// True if obtuse triangles made the cotangent solution negative or much too large somewhere, and a solve with
     /// weights limited to positive values replaced it.
     pub limited: bool,
     /// Vertices whose height was lifted to a least positive value.

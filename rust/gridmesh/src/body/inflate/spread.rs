@@ -138,7 +138,7 @@ fn settle(
         if round == 0 {
             guide.corners.iter().for_each(|&corners| judge(corners));
         } else {
-            // Rounds may be many, each for a few vertices.
+            // Of large patches rounds are many, each for a few vertices.
             let near = moved.iter().flat_map(|&slot| incident.of(slot));
             near.for_each(|&k| judge(guide.corners[k as usize]));
         }
