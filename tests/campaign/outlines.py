@@ -25,7 +25,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "core"))
 
-from checks import check_body, check_patch
+from checks import check_body, check_patch, sticking_out
 from json_lines import outlines, resumed, rows_of
 from quad_checks import check_quad_body, check_quad_patch
 
@@ -69,6 +69,7 @@ def done(task: Task) -> dict[str, Any]:
             "irregular": report.get("irregular", report.get("poles")) / len(patch.vertices),
             "angle": float(np.degrees(report["min_angle"])),
             "body_angle": float(np.degrees(body.report["min_angle"])),
+            "sticks_out": max(sticking_out(body), 0.0),
             "deviation": report["max_deviation"],
             "meets_itself": not body.report["embedded"],
             "states": report["search_states"],
@@ -115,9 +116,10 @@ def summed_up(rows: list[dict[str, Any]]) -> None:
             ("body_angle", 1),
             ("irregular", 100),
             ("deviation", 1),
+            ("sticks_out", 1),
             ("cpu", 1000),
         ):
-            values = np.sort([unit * row[key] for row in fine])
+            values = np.sort([unit * row[key] for row in fine if key in row])
             if not len(values):
                 continue
             low = key.endswith("angle")

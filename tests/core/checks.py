@@ -240,3 +240,16 @@ def check_mirrored(surface, patch) -> None:
     front, back = surface.vertices[n_boundary:n], surface.vertices[n:]
     assert np.array_equal(front * [1, 1, -1], back)
     assert (front[:, 2] >= 0).all()
+
+
+def sticking_out(body) -> float:
+    """How far a vertex of a body of depth 1 or less is higher than the squared heights around allow, at most, in edges."""
+    faces = body.quads if len(body.quads) else body.triangles
+    ends = np.concatenate([np.column_stack([faces[:, k - 1], faces[:, k]]) for k in range(faces.shape[1])])
+    ends = np.concatenate([ends, ends[:, ::-1]])
+    here, there = body.vertices[ends[:, 0]], body.vertices[ends[:, 1]]
+    allowed = np.zeros(len(body.vertices))
+    apart = ((here - there)[:, :2] ** 2).sum(axis=1)
+    np.maximum.at(allowed, ends[:, 0], there[:, 2] ** 2 + 2 * apart)
+    beyond = np.abs(body.vertices[:, 2]) - np.sqrt(allowed)
+    return float(beyond.max() / np.median(np.linalg.norm(here - there, axis=1)))
