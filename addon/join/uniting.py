@@ -101,24 +101,29 @@ def unite(
         raise JoinError(_named(str(error), parts), error.kind) from error
     stays = made.source_part >= 0
     new = ~stays[: len(made.triangles)]
-    n_old = int((made.vertex_part >= 0).sum())
-    sources = np.column_stack([made.vertex_part[:n_old], made.source_vertex[:n_old]])
-    later = np.setdiff1d(np.arange(n_old), np.unique(sources, axis=0, return_index=True)[1])
-    at = np.flatnonzero(np.isin(made.corners, later))
-    face = np.searchsorted(made.offsets, at, side="right") - 1
-    at, face = at[stays[face]], face[stays[face]]
     return United(
         vertices=made.vertices,
         vertex_part=made.vertex_part,
         source_vertex=made.source_vertex,
         face_part=made.source_part[stays],
         source_face=made.source_face[stays],
-        apart=np.column_stack([np.cumsum(stays)[face] - 1, made.corners[at]]),
+        apart=_taken_apart(made) if made.report["separated"] else np.zeros((0, 2), np.int64),
         collars=made.triangles[new],
         collar_part=made.near_part[: len(new)][new],
         rims=[np.asarray(rim) for rims in made.collars for rim in rims],
         report=dict(made.report),
     )
+
+
+def _taken_apart(made: Any) -> np.ndarray:
+    """See `United.apart`."""
+    n_old = np.count_nonzero(made.vertex_part >= 0)
+    sources = np.column_stack([made.vertex_part, made.source_vertex])[:n_old]
+    later = np.setdiff1d(np.arange(n_old), np.unique(sources, axis=0, return_index=True)[1])
+    corners = np.flatnonzero(np.isin(made.corners, later))
+    faces = np.searchsorted(made.offsets, corners, side="right") - 1
+    stays = made.source_part >= 0
+    return np.column_stack([np.cumsum(stays)[faces] - 1, made.corners[corners]])[stays[faces]]
 
 
 def volume(vertices: np.ndarray, corners: np.ndarray, offsets: np.ndarray) -> float:

@@ -123,13 +123,8 @@ pub fn inflate(patch: &Patch, options: &InflateOptions, progress: Progress<'_>) 
         let extent = (high - low).max_element();
         let least_area = 4.0 * f64::from(f32::EPSILON) * extent * patch.lattice.edge_length;
         let bends = bends(&flat, &field.value, &field.gradient, depth);
-        let guide = Guide::new(
-            (&field, patch, &corners),
-            |v| bends[v].limb,
-            Inlets::new(patch, middle),
-            depth,
-            least_area,
-        );
+        let guide =
+            Guide::new(&field, patch, |v| bends[v].limb, Inlets::new(patch, middle), depth, least_area);
         spread(&mut front, &guide, progress.part(0.4, 0.8))?;
         if let Some(twins) = &twins {
             progress.report(0.8)?;

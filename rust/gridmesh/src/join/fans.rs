@@ -22,19 +22,16 @@ impl Parts {
         let [vertex, face, _] = self.first[part];
         let mut around = self.around(vertex, face);
         let mut crowded = self.crowded(part, &around)?;
-        if crowded.is_empty() {
-            self.divide_fans(part, &around, &Beyond::default());
-        }
         for inside in [true, false] {
-            if crowded.is_empty() {
-                break;
-            }
             let mut beyond = Beyond::default();
             for &edge in &crowded {
                 let paired = self.pair(edge, inside, &around, &mut beyond);
                 paired.ok_or_else(|| self.not_closed(part, CROWDED, edge[0]))?;
             }
             self.divide_fans(part, &around, &beyond);
+            if crowded.is_empty() {
+                return Ok(());
+            }
             around = self.around(vertex, face);
             crowded = self.crowded(part, &around)?;
         }
@@ -100,7 +97,8 @@ impl Parts {
         }
         faces.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
         let same = |a: &(f64, bool, u32), b: &(f64, bool, u32)| {
-            (b.0 - a.0).rem_euclid(TAU).min((a.0 - b.0).rem_euclid(TAU)) < SAME
+            let turn = (b.0 - a.0).rem_euclid(TAU);
+            turn.min(TAU - turn) < SAME
         };
         let n = faces.len();
         let start = (0..n)
@@ -111,9 +109,9 @@ impl Parts {
                 faces.swap(k, k + 1);
             }
         }
-        // Going around the edge, what is enclosed begins at a face that runs backward.
-        let last = faces[0].1 == inside;
-        faces.rotate_left(usize::from(last));
+        // Going around the edge, what is enclosed begins at a face that runs backward, what is empty at one that runs forward.
+        let ends = faces[0].1 == inside;
+        faces.rotate_left(usize::from(ends));
         for pair in faces.chunks(2) {
             let &[(_, first, one), (_, second, two)] = pair else { return None };
             if first == inside || second != inside {

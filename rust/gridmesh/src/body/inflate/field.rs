@@ -5,8 +5,8 @@ use glam::DVec2;
 use super::section::Section;
 use crate::geometry::topology::{NONE, Topology};
 
-/// How much a field is above its linear interpolant, in squared depths by the squared distance from the corners of a triangle:
-/// twice what it is where it bends in one direction only.
+/// How far a field may be above its linear interpolant, in squared depths by the mean squared distance from the corners of a
+/// triangle: twice as far as where it bends in one direction only.
 const MOST_BENT: f64 = 4.0;
 
 /// The squared height over the flat patch: values and gradients at its vertices, between them a

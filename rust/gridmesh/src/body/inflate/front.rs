@@ -135,9 +135,7 @@ pub(crate) struct Guide<'a> {
     pub field: &'a Field<'a>,
     /// The flat patch.
     pub patch: &'a Patch,
-    /// The triangles that stay positive in projection: the field's own, or those at the corners of quads.
-    pub corners: &'a [[u32; 3]],
-    /// Those around each interior vertex.
+    /// The triangles around each interior vertex, which stay positive in projection: the field's own, or those at the corners of quads.
     pub around: Around<'a>,
     /// Height of the surface above the middle of a circle of radius one.
     pub depth: f64,
@@ -156,7 +154,8 @@ pub(crate) struct Guide<'a> {
 impl<'a> Guide<'a> {
     /// `limb` is 0 where the surface is round and 1 in a limb.
     pub fn new(
-        (field, patch, corners): (&'a Field<'a>, &'a Patch, &'a [[u32; 3]]),
+        field: &'a Field<'a>,
+        patch: &'a Patch,
         limb: impl Fn(usize) -> f64,
         inlets: Inlets,
         depth: f64,
@@ -167,7 +166,6 @@ impl<'a> Guide<'a> {
         Guide {
             field,
             patch,
-            corners,
             around: Around::new(patch, field.topology),
             depth,
             goal: (0..field.value.len()).map(goal).collect(),

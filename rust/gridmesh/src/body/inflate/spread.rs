@@ -1,7 +1,5 @@
 //! Slides vertices along the lifted surface until its triangles are even.
 
-use std::ops::Range;
-
 use glam::DVec2;
 
 use super::lengthen::lengthen;
@@ -19,9 +17,8 @@ use crate::progress::Progress;
 /// positive in projection, so that the front stays a graph over the drawing. Near-linear.
 pub(crate) fn spread(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_>) -> Result<()> {
     const LEGS: usize = 3;
-    let incident = Incident::new(guide.corners, front.first..front.flat.len());
     for leg in 0..LEGS {
-        slide(front, guide, &incident, 1.0 / (LEGS - leg) as f64, progress)?;
+        slide(front, guide, 1.0 / (LEGS - leg) as f64, progress)?;
         sweep(front, guide, progress)?;
         progress.report(0.2 * (leg + 1) as f64)?;
     }
@@ -40,13 +37,7 @@ pub(crate) fn spread(front: &mut Front, guide: &Guide<'_>, progress: Progress<'_
 }
 
 /// Slides every vertex down the slope by `share` of the way from its height to `goal`.
-fn slide(
-    front: &mut Front,
-    guide: &Guide<'_>,
-    incident: &Incident,
-    share: f64,
-    progress: Progress<'_>,
-) -> Result<()> {
+fn slide(front: &mut Front, guide: &Guide<'_>, share: f64, progress: Progress<'_>) -> Result<()> {
     let Guide { field, goal, crease, .. } = guide;
     let first = front.first;
     let target = (first..front.flat.len())
@@ -93,17 +84,11 @@ fn slide(
             Ok(point)
         })
         .collect::<Result<Vec<_>>>()?;
-    settle(front, guide, incident, &target, progress)
+    settle(front, guide, &target, progress)
 }
 
 /// Moves the vertices in the plane as far towards `target` as the triangles allow.
-fn settle(
-    front: &mut Front,
-    guide: &Guide<'_>,
-    incident: &Incident,
-    target: &[DVec2],
-    progress: Progress<'_>,
-) -> Result<()> {
+fn settle(front: &mut Front, guide: &Guide<'_>, target: &[DVec2], progress: Progress<'_>) -> Result<()> {
     const HALVINGS: u32 = 6;
     let field = guide.field;
     let first = front.first;
@@ -129,18 +114,14 @@ fn settle(
         }
         let mut bad: Vec<u32> =
             moved.iter().copied().filter(|&slot| guide.inlets.hold(flat[first + slot as usize])).collect();
-        let mut judge = |corners: [u32; 3]| {
-            let [a, b, c] = corners.map(|v| flat[v as usize]);
-            if (b - a).perp_dot(c - a) < guide.least_area {
-                bad.extend(corners.iter().filter_map(|&v| v.checked_sub(first as u32)));
+        // Of large patches rounds are many, each for a few vertices: only what is around those can have become bad.
+        for v in moved.iter().map(|slot| slot + first as u32) {
+            for (a, b, _) in guide.around.fan(v as usize).iter() {
+                let [p, q, r] = [v, a, b].map(|u| flat[u as usize]);
+                if (q - p).perp_dot(r - p) < guide.least_area {
+                    bad.extend([v, a, b].iter().filter_map(|u| u.checked_sub(first as u32)));
+                }
             }
-        };
-        if round == 0 {
-            guide.corners.iter().for_each(|&corners| judge(corners));
-        } else {
-            // Of large patches rounds are many, each for a few vertices.
-            let near = moved.iter().flat_map(|&slot| incident.of(slot));
-            near.for_each(|&k| judge(guide.corners[k as usize]));
         }
         bad.sort_unstable();
         bad.dedup();
@@ -164,38 +145,4 @@ fn settle(
     front.flat = flat;
     front.place = place;
     Ok(())
-}
-
-/// The triangles at each of some vertices.
-struct Incident {
-    start: Vec<u32>,
-    triangles: Vec<u32>,
-}
-
-impl Incident {
-    fn new(triangles: &[[u32; 3]], vertices: Range<usize>) -> Self {
-        let slots = |t: [u32; 3]| {
-            t.into_iter().map(|v| v as usize).filter(|v| vertices.contains(v)).map(|v| v - vertices.start)
-        };
-        let mut start = vec![0; vertices.len() + 1];
-        triangles.iter().flat_map(|&t| slots(t)).for_each(|slot| start[slot + 1] += 1);
-        for slot in 0..vertices.len() {
-            start[slot + 1] += start[slot];
-        }
-        let mut next = start.clone();
-        let mut at = vec![0; start[vertices.len()] as usize];
-        for (k, &t) in (0..).zip(triangles) {
-            for slot in slots(t) {
-                at[next[slot] as usize] = k;
-                next[slot] += 1;
-            }
-        }
-        Incident { start, triangles: at }
-    }
-
-    /// Those at the vertex of this place among them.
-    fn of(&self, slot: u32) -> &[u32] {
-        let [from, to] = [slot, slot + 1].map(|k| self.start[k as usize] as usize);
-        &self.triangles[from..to]
-    }
 }
