@@ -9,7 +9,7 @@
 
     uv run tests/run.py [PART ...]
 
-Parts (all but `window` without a name): fmt clippy cargo doc ruff core core313 blender45 blender52 blender50 zip installed45 installed52
+Parts (all but `window` without a name): fmt clippy doc cargo ruff core core313 blender45 blender52 blender50 zip installed45 installed52
 installed50 real window. The module is built once, as the wheel that is shipped; every Python environment lives in `.venv/` and is
 made when it is missing. Two parts run at a time where there are two processors; each line of output begins with the name of its
 part. `zip` builds the extension; the parts after it install that zip, in the `bpy` modules and in a
@@ -74,12 +74,15 @@ BY_NAME = {"window"}
 """Run only when they are named: simulated events need a machine that answers in time."""
 SKIPPED = 77
 """Exit code of a script that could not test anything."""
+# In order: those of one profile compile its dependencies one after the other, beside the wheel, whose profile is another.
+# Two that share a folder of a profile would wait for each other.
 RUST_PARTS = {
     "fmt": ["cargo", "fmt", "--all", "--check"],
     "clippy": [
         "cargo",
         "clippy",
-        "--release",
+        "--profile",
+        "checked",
         "--locked",
         "--workspace",
         "--all-targets",
@@ -87,8 +90,8 @@ RUST_PARTS = {
         "-D",
         "warnings",
     ],
+    "doc": ["cargo", "doc", "--profile", "checked", "--locked", "--no-deps"],
     "cargo": ["cargo", "test", "--profile", "checked", "--locked", "--features", "svg"],
-    "doc": ["cargo", "doc", "--release", "--locked", "--no-deps"],
 }
 RUFF = ["addon", "docs", "tests", "rust/gridmesh-python"]
 
@@ -199,7 +202,7 @@ def run_pytest(part: str, environments: dict[str, Environment], wheel: Built) ->
     record = OUT / f"{part}.xml"
     record.unlink(missing_ok=True)
     command = [environment.script("python"), "-m", "pytest", "-q", f"--junitxml={record}", *arguments]
-    result, _ = run(part, command)
+    result, _ = run(part, command, compiling_once())
     if not record.exists():
         result.status, result.note = "failed", "pytest left no record; it crashed or was killed"
         return result
@@ -210,6 +213,15 @@ def run_pytest(part: str, environments: dict[str, Environment], wheel: Built) ->
     if result.counts["failed"] or not result.counts["passed"]:
         result.status = "failed"
     return result
+
+
+def compiling_once() -> dict[str, str]:
+    """Environment variables with which Python keeps what it compiles, outside the source tree.
+
+    Tests of the command line start Blender again and again, and two thirds of a start can be Python's compiler.
+    """
+    kept = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    return kept | {"PYTHONPYCACHEPREFIX": str(OUT / "bytecode")}
 
 
 class Built:

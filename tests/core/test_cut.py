@@ -461,9 +461,12 @@ def crossings(triangles: np.ndarray) -> int:
     """How often an edge of one of the triangles passes through another one that has no corner in common with it."""
     count = 0
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
     for corners in triangles:
-        apart = ~(triangles[:, :, None] == corners).all(axis=-1).any(axis=(1, 2))
-        others, normal = triangles[apart], normals[apart]
+        near = ((low <= corners.max(axis=0)) & (high >= corners.min(axis=0))).all(axis=1)
+        others, normal = triangles[near], normals[near]
+        apart = ~(others[:, :, None] == corners).all(axis=-1).any(axis=(1, 2))
+        others, normal = others[apart], normal[apart]
         for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
             height = [((end - others[:, 0]) * normal).sum(axis=1) for end in (a, b)]
             through = height[0] * height[1] < 0
