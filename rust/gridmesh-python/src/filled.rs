@@ -192,7 +192,7 @@ impl Fill {
         let fields = (
             arrays::indices(py, parts.loop_.into_iter()),
             parts.reversed,
-            parts.bridged.iter().map(|later| (later.first, later.reversed, later.pull)).collect::<Vec<_>>(),
+            parts.bridged.iter().map(|b| (b.first, b.reversed, b.pull, b.arch)).collect::<Vec<_>>(),
             smooth,
             parts.vertices,
             arrays::plane_points(py, &parts.flat)?,
@@ -214,7 +214,7 @@ pub fn _fill(
     py: Python<'_>,
     r#loop: PyReadonlyArray1<'_, i32>,
     backwards: bool,
-    later: Vec<(usize, bool, f64)>,
+    later: Vec<(usize, bool, f64, bool)>,
     smooth: &str,
     vertices: usize,
     flat: PyReadonlyArray2<'_, f64>,
@@ -240,7 +240,9 @@ pub fn _fill(
     let parts = FillParts {
         loop_: numbers(&r#loop),
         reversed: backwards,
-        bridged: later.into_iter().map(|(first, reversed, pull)| Bridged { first, reversed, pull }).collect(),
+        bridged: (later.into_iter())
+            .map(|(first, reversed, pull, arch)| Bridged { first, reversed, pull, arch })
+            .collect(),
         smooth,
         vertices,
         flat: flat.as_array().rows().into_iter().map(|p| DVec2::new(p[0], p[1])).collect(),

@@ -6,6 +6,7 @@
 //! squares (`squares`), placed in the same way.
 
 pub(in crate::fill) mod align;
+mod arch;
 mod choose;
 mod loft;
 mod options;

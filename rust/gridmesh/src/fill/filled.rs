@@ -41,6 +41,8 @@ pub struct Bridged {
     pub reversed: bool,
     /// How far the surface of a tube between two loops goes on as it leaves them, 1 as far as arcs do.
     pub pull: f64,
+    /// That tube is a handle: it turns round between loops that look the same way.
+    pub arch: bool,
 }
 
 /// What is needed to solve the same patch again.

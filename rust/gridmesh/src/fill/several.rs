@@ -207,7 +207,12 @@ impl Several<'_> {
         Shape {
             flat: vec![DVec2::ZERO; work.end],
             bridged: (work.later.iter().zip(&self.checked[1..]))
-                .map(|(&first, checked)| Bridged { first, reversed: checked.reversed, pull: 1.0 })
+                .map(|(&first, checked)| Bridged {
+                    first,
+                    reversed: checked.reversed,
+                    pull: 1.0,
+                    arch: false,
+                })
                 .collect(),
             work,
             loop_: border.vertices.clone(),

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::align::Ring;
+use super::arch::Arch;
 
 /// Where a curve leaves its loop it bends within this many mean radii of the loop, so that a tube between
 /// parallel sheets does not close in its middle. Between ends of pipes that look the same way there is no such limit: the bend
@@ -14,7 +15,7 @@ const ALIKE: f64 = 0.8;
 
 /// A closed curve through the vertices of a loop, with the slope of the surface along it.
 #[derive(Clone, Debug)]
-struct Rail {
+pub(super) struct Rail {
     /// Ascending, over one round.
     around: Vec<f64>,
     points: Vec<DVec3>,
@@ -45,7 +46,7 @@ pub(super) struct Spot {
 
 impl Rail {
     /// `across`: derivatives across the curve at its vertices, from the lower loop to the upper one.
-    fn new(around: Vec<f64>, points: Vec<DVec3>, across: Vec<DVec3>) -> Rail {
+    pub fn new(around: Vec<f64>, points: Vec<DVec3>, across: Vec<DVec3>) -> Rail {
         let n = points.len();
         let width =
             |k: usize| if k + 1 < n { around[k + 1] - around[k] } else { around[0] + 1.0 - around[k] };
@@ -78,6 +79,12 @@ impl Rail {
         Rail { points, index, around, spans }
     }
 
+    /// One without derivatives across.
+    pub fn flat(around: &[f64], points: Vec<DVec3>) -> Rail {
+        let none = vec![DVec3::ZERO; points.len()];
+        Rail::new(around.to_vec(), points, none)
+    }
+
     /// The vertex before a place, and the share of the way to the next.
     fn segment(&self, around: f64) -> (usize, f64) {
         let n = self.points.len();
@@ -93,7 +100,7 @@ impl Rail {
     }
 
     /// The point, the derivative along, the one across, and how that changes along.
-    fn at(&self, around: f64) -> [DVec3; 4] {
+    pub fn at(&self, around: f64) -> [DVec3; 4] {
         let (k, t) = self.segment(around);
         let Cubic { powers: [p, u, c, d], across, turn, width, inverse } = self.spans[k];
         let point = p + t * (u + t * (c + t * d));
@@ -107,8 +114,38 @@ impl Rail {
 pub(super) struct Loft {
     lower: Rail,
     upper: Rail,
+    /// Of a handle, whose rails have the directions in which the surface goes on for slopes.
+    arch: Option<Arch>,
     /// As given.
     pub pull: f64,
+}
+
+/// Cubics between two curves, by one parameter along these.
+pub(super) struct Curves {
+    pub ends: [DVec3; 2],
+    /// Derivatives of the ends along the curves.
+    pub along: [DVec3; 2],
+    /// Derivatives across, over the whole way from one curve to the other.
+    pub slopes: [DVec3; 2],
+    /// Derivatives along the curves of the slopes.
+    pub turns: [DVec3; 2],
+}
+
+impl Curves {
+    /// The point at a height, where the first curve lies at the start of the range and the second one at its end.
+    pub fn at(&self, height: f64, range: [f64; 2]) -> Spot {
+        let Curves { ends: [p, q], along: [dp, dq], slopes: [u, v], turns: [du, dv] } = *self;
+        let width = range[1] - range[0];
+        let t = (height - range[0]) / width;
+        let (h, k) = (t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t));
+        let (f, df) = (t * (1.0 - t) * (1.0 - t), (1.0 - t) * (1.0 - 3.0 * t));
+        let (g, dg) = (t * t * (t - 1.0), t * (3.0 * t - 2.0));
+        Spot {
+            point: p + (q - p) * h + u * f + v * g,
+            along: dp + (dq - dp) * h + du * f + dv * g,
+            across: ((q - p) * k + u * df + v * dg) / width,
+        }
+    }
 }
 
 /// One loop of a loft.
@@ -121,12 +158,15 @@ pub(super) struct Edge<'a> {
 }
 
 impl Loft {
-    /// `pull`: how far the curves go on as they leave the loops, 1 as far as arcs do; the less, the tighter they are.
-    pub fn new(lower: &Edge<'_>, upper: &Edge<'_>, pull: f64) -> Loft {
-        let straight = |edge: &Edge<'_>| {
-            let none = vec![DVec3::ZERO; edge.around.len()];
-            Rail::new(edge.around.to_vec(), edge.ring.points.clone(), none)
-        };
+    /// `pull`: how far the curves go on as they leave the loops, 1 as far as arcs do; the less, the tighter they are. `arch`: whether
+    /// it is the surface of a handle, see [`super::arch`].
+    pub fn new(lower: &Edge<'_>, upper: &Edge<'_>, pull: f64, arch: bool) -> Loft {
+        let straight = |edge: &Edge<'_>| Rail::flat(edge.around, edge.ring.points.clone());
+        if arch {
+            let rail = |e: &Edge<'_>| Rail::new(e.around.to_vec(), e.ring.points.clone(), e.onward.to_vec());
+            let arch = Some(Arch::new([lower, upper], pull));
+            return Loft { lower: rail(lower), upper: rail(upper), arch, pull };
+        }
         let (a, b) = (straight(lower), straight(upper));
         let [from, to] = [lower, upper].map(|edge| ahead(edge.onward));
         let turns = from.length().min(to.length()) > ALIKE && from.dot(to) > 0.0;
@@ -147,28 +187,24 @@ impl Loft {
         Loft {
             lower: Rail::new(a.around, a.points, lower_slopes),
             upper: Rail::new(b.around, b.points, upper_slopes),
+            arch: None,
             pull,
         }
     }
 
     pub fn at(&self, around: f64, height: f64) -> Spot {
-        let [p, dp, u, du] = self.lower.at(around);
-        let [q, dq, v, dv] = self.upper.at(around);
-        let t = height;
-        let (h, k) = (t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t));
-        let (f, df) = (t * (1.0 - t) * (1.0 - t), (1.0 - t) * (1.0 - 3.0 * t));
-        let (g, dg) = (t * t * (t - 1.0), t * (3.0 * t - 2.0));
-        Spot {
-            point: p + (q - p) * h + u * f + v * g,
-            along: dp + (dq - dp) * h + du * f + dv * g,
-            across: (q - p) * k + u * df + v * dg,
+        if let Some(arch) = &self.arch {
+            return arch.at([&self.lower, &self.upper], around, height);
         }
+        let ([p, dp, u, du], [q, dq, v, dv]) = (self.lower.at(around), self.upper.at(around));
+        let curves = Curves { ends: [p, q], along: [dp, dq], slopes: [u, v], turns: [du, dv] };
+        curves.at(height, [0.0, 1.0])
     }
 
     /// The length of the curve across.
     pub fn length(&self, around: f64) -> f64 {
-        const STEPS: usize = 6;
-        let points = (0..=STEPS).map(|k| self.at(around, k as f64 / STEPS as f64).point).collect::<Vec<_>>();
+        let steps = if self.arch.is_some() { 24 } else { 6 };
+        let points = (0..=steps).map(|k| self.at(around, k as f64 / steps as f64).point).collect::<Vec<_>>();
         points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
     }
 }
@@ -245,7 +281,7 @@ mod tests {
         let (up, down) = (vec![DVec3::Z; 60], vec![-DVec3::Z; 60]);
         let lower = Edge { ring: &a, around: &s, onward: &up };
         let upper = Edge { ring: &b, around: &t, onward: &down };
-        let loft = Loft::new(&lower, &upper, 1.0);
+        let loft = Loft::new(&lower, &upper, 1.0, false);
         for k in 0..100 {
             let spot = loft.at(0.01 * f64::from(k), 0.37);
             assert!((spot.point.truncate().length() - 1.0).abs() < 1e-3);
@@ -260,7 +296,7 @@ mod tests {
         let far = b.points.iter().map(|p| DVec3::new(12.0 - p.x, p.y, p.z)).collect();
         let (b, up) = (Ring::new(far), vec![DVec3::Z; 60]);
         let edge = |ring| Edge { ring, around: &s, onward: &up };
-        let loft = Loft::new(&edge(&a), &edge(&b), 1.0);
+        let loft = Loft::new(&edge(&a), &edge(&b), 1.0, false);
         let middle = [0.0, 0.5].map(|around| loft.at(around, 0.5).point.z);
         assert!(middle[0] > 2.0 && middle[1] > middle[0] + 1.0, "{middle:?}");
     }
@@ -271,7 +307,7 @@ mod tests {
         t.iter_mut().for_each(|t| *t += 0.13);
         let (up, none) = (vec![DVec3::new(0.6, 0.0, 0.8); 17], vec![DVec3::ZERO; 31]);
         let lower = Edge { ring: &a, around: &s, onward: &up };
-        let loft = Loft::new(&lower, &Edge { ring: &b, around: &t, onward: &none }, 1.0);
+        let loft = Loft::new(&lower, &Edge { ring: &b, around: &t, onward: &none }, 1.0, false);
         let d = 1e-6;
         for (x, y) in [(0.1, 0.2), (0.5, 0.9), (1.3, 0.4)] {
             let (here, along, across) = (loft.at(x, y), loft.at(x + d, y), loft.at(x, y + d));

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use rustc_hash::FxHashSet;
 
 use super::align::{Ring, best_fit, facing};
+use super::arch::is_arch;
 use super::choose::{Bank, Chooser, Chosen};
 use super::loft::{Loft, onward};
 use super::options::BridgeOptions;
@@ -67,6 +68,8 @@ pub(super) struct Span<'a> {
     /// The loop with fewer vertices.
     lower: usize,
     conflicts: usize,
+    /// Whether the tube is a handle.
+    arch: bool,
 }
 
 /// A tube in space.
@@ -92,14 +95,16 @@ impl<'a> Span<'a> {
         let faced = |k: usize| loops[k].vertices.len() - loops[k].wire;
         let facing = facing(&low, &high);
         let free = |k: usize| faced(k) == 0;
-        if facing <= -1.0 || (facing < 0.0 && (free(0) || free(1))) {
+        // Which side of a loop is outside its faces tell.
+        let arch = !free(0) && !free(1) && is_arch(&low, &high);
+        if !arch && facing <= -1.0 || (facing < 0.0 && (free(0) || free(1))) {
             // The loop with fewer faces gives way.
             let turned = usize::from(faced(1) <= faced(0));
             conflicts += faced(turned) - 2 * loops[turned].conflicts;
             loops[turned].vertices.reverse();
             loops[turned].reversed ^= true;
         }
-        Span { vertices, rim, options, loops, lower, conflicts }
+        Span { vertices, rim, options, loops, lower, conflicts, arch }
     }
 
     pub fn fill(&self, rest: &FillOptions, progress: Progress<'_>) -> Result<Fill> {
@@ -115,7 +120,7 @@ impl<'a> Span<'a> {
         };
         let onward = self.onward();
         let (below, above) = (&onward[self.lower], reversed(&onward[1 - self.lower]));
-        let pulled = |pull: f64| Loft::new(&edge(lower, below), &edge(upper, &above), pull);
+        let pulled = |pull: f64| Loft::new(&edge(lower, below), &edge(upper, &above), pull, self.arch);
         let loft = pulled(1.0);
         clock.stage("surface");
         let mut chosen = None;
@@ -259,7 +264,12 @@ impl<'a> Span<'a> {
             work,
             loop_,
             reversed: self.loops[0].reversed,
-            bridged: vec![Bridged { first, reversed: self.loops[1].reversed, pull: loft.pull }],
+            bridged: vec![Bridged {
+                first,
+                reversed: self.loops[1].reversed,
+                pull: loft.pull,
+                arch: self.arch,
+            }],
             flat,
             smooth: self.options.smooth,
             vertices: self.vertices.len(),
