@@ -1,7 +1,7 @@
 //! The Python class `Fill`.
 
 use glam::{DVec2, DVec3};
-use gridmesh::fill::{Bridged, Fill as CoreFill, FillParts, FillReport, Smooth};
+use gridmesh::fill::{Bridged, Fill as CoreFill, FillParts, FillReport, Leaving, Smooth};
 use numpy::{
     AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods, PyReadonlyArray1,
     PyReadonlyArray2, PyUntypedArrayMethods,
@@ -192,7 +192,11 @@ impl Fill {
         let fields = (
             arrays::indices(py, parts.loop_.into_iter()),
             parts.reversed,
-            parts.bridged.iter().map(|b| (b.first, b.reversed, b.pull, b.arch)).collect::<Vec<_>>(),
+            parts
+                .bridged
+                .iter()
+                .map(|b| (b.first, b.reversed, b.pull, outwards(b.leaving)))
+                .collect::<Vec<_>>(),
             smooth,
             parts.vertices,
             arrays::plane_points(py, &parts.flat)?,
@@ -214,7 +218,7 @@ pub fn _fill(
     py: Python<'_>,
     r#loop: PyReadonlyArray1<'_, i32>,
     backwards: bool,
-    later: Vec<(usize, bool, f64, bool)>,
+    later: Vec<(usize, bool, f64, Option<bool>)>,
     smooth: &str,
     vertices: usize,
     flat: PyReadonlyArray2<'_, f64>,
@@ -241,7 +245,14 @@ pub fn _fill(
         loop_: numbers(&r#loop),
         reversed: backwards,
         bridged: (later.into_iter())
-            .map(|(first, reversed, pull, arch)| Bridged { first, reversed, pull, arch })
+            .map(|(first, reversed, pull, outwards)| {
+                let leaving = match outwards {
+                    None => Leaving::Direct,
+                    Some(true) => Leaving::Outwards,
+                    Some(false) => Leaving::Inwards,
+                };
+                Bridged { first, reversed, pull, leaving }
+            })
             .collect(),
         smooth,
         vertices,
@@ -255,6 +266,15 @@ pub fn _fill(
     };
     let inner = CoreFill::from_parts(parts, FillReport::default()).map_err(|_| broken())?;
     Fill::made(py, inner, report)
+}
+
+/// As [`_fill`] takes it.
+fn outwards(leaving: Leaving) -> Option<bool> {
+    match leaving {
+        Leaving::Direct => None,
+        Leaving::Outwards => Some(true),
+        Leaving::Inwards => Some(false),
+    }
 }
 
 fn report(py: Python<'_>, report: &FillReport) -> PyResult<Py<PyDict>> {

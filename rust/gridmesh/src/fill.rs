@@ -30,7 +30,7 @@ use self::several::fill_several;
 use crate::error::{Error, Result};
 pub use crate::fill::bridge::{BridgeOptions, Pair, bridge, bridge_pairs, look_apart};
 use crate::fill::filled::NO_ITEM;
-pub use crate::fill::filled::{Bridged, Fill};
+pub use crate::fill::filled::{Bridged, Fill, Leaving};
 use crate::fill::job::Job;
 pub use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::holes;

@@ -6,9 +6,9 @@
 //! squares (`squares`), placed in the same way.
 
 pub(in crate::fill) mod align;
-mod arch;
 mod choose;
 mod loft;
+mod necks;
 mod options;
 mod pairs;
 mod refit;

@@ -41,8 +41,20 @@ pub struct Bridged {
     pub reversed: bool,
     /// How far the surface of a tube between two loops goes on as it leaves them, 1 as far as arcs do.
     pub pull: f64,
-    /// That tube is a handle: it turns round between loops that look the same way.
-    pub arch: bool,
+    /// How that tube leaves the loops.
+    pub leaving: Leaving,
+}
+
+/// How a tube between two loops leaves them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Leaving {
+    /// As the surface around goes on, or towards the other loop.
+    #[default]
+    Direct,
+    /// By necks on the outside of the surface.
+    Outwards,
+    /// By necks on its inside.
+    Inwards,
 }
 
 /// What is needed to solve the same patch again.

@@ -25,7 +25,7 @@ use crate::fill::even::polish::polish;
 use crate::fill::even::regular::regularize;
 use crate::fill::even::remesh::{Ground, adapt, flip_valences, mend_thin, refine, remesh};
 use crate::fill::even::untangle::{Near, tangled, unfold, untangle};
-use crate::fill::filled::{Bridged, Fill, Shape};
+use crate::fill::filled::{Bridged, Fill, Leaving, Shape};
 use crate::fill::job::{Job, SOUND_RINGS};
 use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::check::{Checked, check_loops, check_near};
@@ -211,7 +211,7 @@ impl Several<'_> {
                     first,
                     reversed: checked.reversed,
                     pull: 1.0,
-                    arch: false,
+                    leaving: Leaving::Direct,
                 })
                 .collect(),
             work,

@@ -3,15 +3,16 @@
 use glam::DVec3;
 
 use super::align::Ring;
-use super::arch::Arch;
+use super::necks::Necks;
+use crate::fill::filled::Leaving;
 
 /// Where a curve leaves its loop it bends within this many mean radii of the loop, so that a tube between
 /// parallel sheets does not close in its middle. Between ends of pipes that look the same way there is no such limit: the bend
 /// between them would have no room in it.
 const REACH: f64 = 2.0;
 
-/// A loop is the end of a pipe if the surface goes on from its vertices in directions whose mean is longer than this.
-const ALIKE: f64 = 0.8;
+/// A loop is the end of a pipe if the surface goes on from its vertices in directions whose mean is at least this long.
+pub(super) const PIPE: f64 = 0.8;
 
 /// A closed curve through the vertices of a loop, with the slope of the surface along it.
 #[derive(Clone, Debug)]
@@ -114,8 +115,8 @@ impl Rail {
 pub(super) struct Loft {
     lower: Rail,
     upper: Rail,
-    /// Of a handle, whose rails have the directions in which the surface goes on for slopes.
-    arch: Option<Arch>,
+    /// With them the slopes of the rails are the directions in which the surface goes on.
+    necks: Option<Necks>,
     /// As given.
     pub pull: f64,
 }
@@ -158,18 +159,17 @@ pub(super) struct Edge<'a> {
 }
 
 impl Loft {
-    /// `pull`: how far the curves go on as they leave the loops, 1 as far as arcs do; the less, the tighter they are. `arch`: whether
-    /// it is the surface of a handle, see [`super::arch`].
-    pub fn new(lower: &Edge<'_>, upper: &Edge<'_>, pull: f64, arch: bool) -> Loft {
-        let straight = |edge: &Edge<'_>| Rail::flat(edge.around, edge.ring.points.clone());
-        if arch {
+    /// `pull`: how far the curves go on as they leave the loops, 1 as far as arcs do; the less, the tighter they are.
+    pub fn new(lower: &Edge<'_>, upper: &Edge<'_>, pull: f64, leaving: Leaving) -> Loft {
+        if leaving != Leaving::Direct {
             let rail = |e: &Edge<'_>| Rail::new(e.around.to_vec(), e.ring.points.clone(), e.onward.to_vec());
-            let arch = Some(Arch::new([lower, upper], pull));
-            return Loft { lower: rail(lower), upper: rail(upper), arch, pull };
+            let necks = Some(Necks::new([lower, upper], leaving == Leaving::Inwards, pull));
+            return Loft { lower: rail(lower), upper: rail(upper), necks, pull };
         }
+        let straight = |edge: &Edge<'_>| Rail::flat(edge.around, edge.ring.points.clone());
         let (a, b) = (straight(lower), straight(upper));
         let [from, to] = [lower, upper].map(|edge| ahead(edge.onward));
-        let turns = from.length().min(to.length()) > ALIKE && from.dot(to) > 0.0;
+        let turns = from.length().min(to.length()) >= PIPE && from.dot(to) > 0.0;
         let reach = if turns { f64::INFINITY } else { REACH };
         let slopes = |own: &Edge<'_>, other: &Edge<'_>, there: &Rail, sign: f64| {
             let facing = straight_onward(other, there);
@@ -187,14 +187,14 @@ impl Loft {
         Loft {
             lower: Rail::new(a.around, a.points, lower_slopes),
             upper: Rail::new(b.around, b.points, upper_slopes),
-            arch: None,
+            necks: None,
             pull,
         }
     }
 
     pub fn at(&self, around: f64, height: f64) -> Spot {
-        if let Some(arch) = &self.arch {
-            return arch.at([&self.lower, &self.upper], around, height);
+        if let Some(necks) = &self.necks {
+            return necks.at([&self.lower, &self.upper], around, height);
         }
         let ([p, dp, u, du], [q, dq, v, dv]) = (self.lower.at(around), self.upper.at(around));
         let curves = Curves { ends: [p, q], along: [dp, dq], slopes: [u, v], turns: [du, dv] };
@@ -203,7 +203,7 @@ impl Loft {
 
     /// The length of the curve across.
     pub fn length(&self, around: f64) -> f64 {
-        let steps = if self.arch.is_some() { 24 } else { 6 };
+        let steps = if self.necks.is_some() { 24 } else { 6 };
         let points = (0..=steps).map(|k| self.at(around, k as f64 / steps as f64).point).collect::<Vec<_>>();
         points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
     }
@@ -281,7 +281,7 @@ mod tests {
         let (up, down) = (vec![DVec3::Z; 60], vec![-DVec3::Z; 60]);
         let lower = Edge { ring: &a, around: &s, onward: &up };
         let upper = Edge { ring: &b, around: &t, onward: &down };
-        let loft = Loft::new(&lower, &upper, 1.0, false);
+        let loft = Loft::new(&lower, &upper, 1.0, Leaving::Direct);
         for k in 0..100 {
             let spot = loft.at(0.01 * f64::from(k), 0.37);
             assert!((spot.point.truncate().length() - 1.0).abs() < 1e-3);
@@ -296,7 +296,7 @@ mod tests {
         let far = b.points.iter().map(|p| DVec3::new(12.0 - p.x, p.y, p.z)).collect();
         let (b, up) = (Ring::new(far), vec![DVec3::Z; 60]);
         let edge = |ring| Edge { ring, around: &s, onward: &up };
-        let loft = Loft::new(&edge(&a), &edge(&b), 1.0, false);
+        let loft = Loft::new(&edge(&a), &edge(&b), 1.0, Leaving::Direct);
         let middle = [0.0, 0.5].map(|around| loft.at(around, 0.5).point.z);
         assert!(middle[0] > 2.0 && middle[1] > middle[0] + 1.0, "{middle:?}");
     }
@@ -307,7 +307,7 @@ mod tests {
         t.iter_mut().for_each(|t| *t += 0.13);
         let (up, none) = (vec![DVec3::new(0.6, 0.0, 0.8); 17], vec![DVec3::ZERO; 31]);
         let lower = Edge { ring: &a, around: &s, onward: &up };
-        let loft = Loft::new(&lower, &Edge { ring: &b, around: &t, onward: &none }, 1.0, false);
+        let loft = Loft::new(&lower, &Edge { ring: &b, around: &t, onward: &none }, 1.0, Leaving::Direct);
         let d = 1e-6;
         for (x, y) in [(0.1, 0.2), (0.5, 0.9), (1.3, 0.4)] {
             let (here, along, across) = (loft.at(x, y), loft.at(x + d, y), loft.at(x, y + d));

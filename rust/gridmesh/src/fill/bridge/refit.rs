@@ -55,7 +55,7 @@ impl Shape {
         let mut banks = [bank(0..first), bank(first..work.n)];
         banks.sort_by_key(|bank| bank.0);
         let [(_, lower, below), (_, upper, above)] = &banks;
-        let loft = Loft::new(&edge(lower, below), &edge(upper, above), bridged.pull, bridged.arch);
+        let loft = Loft::new(&edge(lower, below), &edge(upper, above), bridged.pull, bridged.leaving);
         for v in work.inner() {
             positions[v] = loft.at(self.flat[v].x, self.flat[v].y).point;
         }

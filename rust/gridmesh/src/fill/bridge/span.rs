@@ -4,14 +4,14 @@ use glam::{DVec2, DVec3};
 use rustc_hash::FxHashSet;
 
 use super::align::{Ring, best_fit, facing};
-use super::arch::is_arch;
 use super::choose::{Bank, Chooser, Chosen};
 use super::loft::{Loft, onward};
+use super::necks::leaving;
 use super::options::BridgeOptions;
 use super::refit::{edge, reversed, work_positions};
 use super::settle::settle;
 use crate::error::{Error, Result};
-use crate::fill::filled::{Bridged, Fill, Shape};
+use crate::fill::filled::{Bridged, Fill, Leaving, Shape};
 use crate::fill::job::SOUND_RINGS;
 use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::check::{Checked, check_loops, check_near};
@@ -68,8 +68,9 @@ pub(super) struct Span<'a> {
     /// The loop with fewer vertices.
     lower: usize,
     conflicts: usize,
-    /// Whether the tube is a handle.
-    arch: bool,
+    /// See [`onward`], for both loops.
+    onward: [Vec<DVec3>; 2],
+    leaving: Leaving,
 }
 
 /// A tube in space.
@@ -95,16 +96,29 @@ impl<'a> Span<'a> {
         let faced = |k: usize| loops[k].vertices.len() - loops[k].wire;
         let facing = facing(&low, &high);
         let free = |k: usize| faced(k) == 0;
+        let onward = |k: usize| match options.smooth {
+            Smooth::Flat => vec![DVec3::ZERO; loops[k].vertices.len()],
+            _ => onward_of(&loops[k].vertices, rim, vertices),
+        };
+        let mut onward = [onward(0), onward(1)];
         // Which side of a loop is outside its faces tell.
-        let arch = !free(0) && !free(1) && is_arch(&low, &high);
-        if !arch && facing <= -1.0 || (facing < 0.0 && (free(0) || free(1))) {
+        let both_faced = !free(0) && !free(1);
+        let leaves = |low: &Ring, high: &Ring, onward: &[Vec<DVec3>; 2]| match both_faced {
+            true => leaving(low, high, [&onward[0], &onward[1]]),
+            false => Leaving::Direct,
+        };
+        let mut leaving = leaves(&low, &high, &onward);
+        if leaving == Leaving::Direct && (facing <= -1.0 || (facing < 0.0 && !both_faced)) {
             // The loop with fewer faces gives way.
             let turned = usize::from(faced(1) <= faced(0));
             conflicts += faced(turned) - 2 * loops[turned].conflicts;
             loops[turned].vertices.reverse();
             loops[turned].reversed ^= true;
+            onward[turned].reverse();
+            let [low, high] = rings(&loops, lower, vertices);
+            leaving = leaves(&low, &high, &onward);
         }
-        Span { vertices, rim, options, loops, lower, conflicts, arch }
+        Span { vertices, rim, options, loops, lower, conflicts, onward, leaving }
     }
 
     pub fn fill(&self, rest: &FillOptions, progress: Progress<'_>) -> Result<Fill> {
@@ -118,9 +132,8 @@ impl<'a> Span<'a> {
             let sides = tube.tube.facets().flat_map(|t| edges(&t));
             !sides.filter(|[a, b]| *a < m && *b >= m && *b < both).any(|[a, b]| joined.contains(&[a, b - m]))
         };
-        let onward = self.onward();
-        let (below, above) = (&onward[self.lower], reversed(&onward[1 - self.lower]));
-        let pulled = |pull: f64| Loft::new(&edge(lower, below), &edge(upper, &above), pull, self.arch);
+        let (below, above) = (&self.onward[self.lower], reversed(&self.onward[1 - self.lower]));
+        let pulled = |pull: f64| Loft::new(&edge(lower, below), &edge(upper, &above), pull, self.leaving);
         let loft = pulled(1.0);
         clock.stage("surface");
         let mut chosen = None;
@@ -200,14 +213,6 @@ impl<'a> Span<'a> {
         joined
     }
 
-    /// See [`onward`], for both loops.
-    fn onward(&self) -> [Vec<DVec3>; 2] {
-        [0, 1].map(|k| match self.options.smooth {
-            Smooth::Flat => vec![DVec3::ZERO; self.loops[k].vertices.len()],
-            _ => onward_of(&self.loops[k].vertices, self.rim, self.vertices),
-        })
-    }
-
     fn placed(
         &self,
         banks: &[Bank; 2],
@@ -268,7 +273,7 @@ impl<'a> Span<'a> {
                 first,
                 reversed: self.loops[1].reversed,
                 pull: loft.pull,
-                arch: self.arch,
+                leaving: self.leaving,
             }],
             flat,
             smooth: self.options.smooth,

@@ -1,0 +1,224 @@
+//! Tubes from holes in sheets. Beside a hole the surface goes on by a quarter of a circle into a neck, which stands on the hole, and
+//! the tube goes from neck to neck by an arc. Between loops that look the same way it is a handle.
+
+use glam::DVec3;
+
+use super::align::Ring;
+use super::loft::{Curves, Edge, PIPE, Rail, Spot, ahead};
+use crate::fill::filled::Leaving;
+
+/// Loops look the same way if the cosine of the angle between their normals is above this.
+const ALIKE: f64 = 0.25;
+
+/// Two loops see each other if each has the other one in front of it, by this cosine, or each behind it.
+const SEEN: f64 = 0.3;
+
+/// Loops that look the same way look at each other, too, as the walls of a valley do, if this is the cosine for both.
+const FACING: f64 = 0.5;
+
+/// One of two loops that look the same way stands behind the other if half the difference of these cosines is above this: then
+/// an arc from one to the other would go through what is around the other.
+const BEHIND: f64 = 0.8;
+
+/// The radius of the quarters of circles, in mean radii of the loop, and at most in distances of the loops.
+const FILLET: f64 = 0.35;
+const SHARE: f64 = 0.3;
+
+/// Necks are smoothed in so many rounds at most, one for each so many vertices.
+const ROUNDS: usize = 4;
+const VERTICES_A_ROUND: usize = 12;
+
+/// A slope of a quarter of a circle of radius 1, as a cubic has it.
+const QUARTER: f64 = 1.657;
+
+/// How a tube leaves two loops with faces, both given as the tube runs. `onward`: see [`Edge`].
+pub(super) fn leaving(lower: &Ring, upper: &Ring, onward: [&[DVec3]; 2]) -> Leaving {
+    let way = (upper.centre - lower.centre).normalize_or_zero();
+    let (a, b) = (lower.axis.dot(way), upper.axis.dot(way));
+    let alike = lower.axis.dot(upper.axis) < -ALIKE;
+    let is_sheet =
+        |onward: &[DVec3]| onward.iter().any(|&v| v != DVec3::ZERO) && ahead(onward).length() < PIPE;
+    let sheets = onward.into_iter().any(is_sheet);
+    let pipes = onward.into_iter().all(|onward| ahead(onward).length() >= PIPE);
+    if alike && a.min(b) < FACING && (a - b).abs() < 2.0 * BEHIND && !pipes {
+        Leaving::Outwards
+    } else if sheets && a.min(b) > SEEN {
+        Leaving::Outwards
+    } else if sheets && a.max(b) < -SEEN {
+        Leaving::Inwards
+    } else {
+        Leaving::Direct
+    }
+}
+
+/// The curves of a tube that leaves its loops by necks.
+#[derive(Clone, Debug)]
+pub(super) struct Necks {
+    ends: [End; 2],
+    /// How far the curves between the necks go on as they leave them, in chords.
+    reach: f64,
+    /// Where the necks end on the way from 0 to 1.
+    knots: [f64; 2],
+}
+
+/// One end of such a tube.
+#[derive(Clone, Debug)]
+struct End {
+    /// Along the tube.
+    axis: DVec3,
+    /// Of the quarters of circles, zero where there are none.
+    radius: f64,
+    /// Where these end.
+    neck: Rail,
+    /// The surface goes on into the tube without a neck, as at the end of a pipe.
+    is_pipe: bool,
+}
+
+impl Necks {
+    /// `pull`: see [`super::loft::Loft::new`].
+    pub fn new(edges: [&Edge<'_>; 2], inwards: bool, pull: f64) -> Necks {
+        let chord = edges[1].ring.centre - edges[0].ring.centre;
+        let end = |k: usize| {
+            let Edge { ring, around, onward } = *edges[k];
+            let ahead = ahead(onward);
+            let is_pipe = ahead.length() >= PIPE;
+            let axis = if inwards { -ring.axis } else { ring.axis };
+            // From the surface into the tube.
+            let rise = match (is_pipe, k) {
+                (true, _) => ahead.normalize(),
+                (false, 0) => axis,
+                (false, _) => -axis,
+            };
+            let mean = ring.length / std::f64::consts::TAU;
+            let has_neck = !is_pipe && onward.iter().any(|&way| way != DVec3::ZERO);
+            let radius = if has_neck { pull * (FILLET * mean).min(SHARE * chord.length()) } else { 0.0 };
+            let neck = match has_neck {
+                true => neck(ring, around, radius / mean, radius * rise),
+                false => Rail::flat(around, ring.points.clone()),
+            };
+            End { axis: if k == 0 { rise } else { -rise }, radius, neck, is_pipe }
+        };
+        let ends = [end(0), end(1)];
+        let axes = ends.each_ref().map(|end| end.axis);
+        let angle = match (axes[0] + axes[1]).dot(chord) < 0.0 {
+            // They lean away from each other.
+            true => std::f64::consts::PI,
+            false => libm::acos(axes[0].dot(axes[1]).clamp(-1.0, 1.0)).max(1e-3),
+        };
+        let reach = pull * 2.0 * libm::tan(0.25 * angle) / libm::sin(0.5 * angle);
+        let quarters = ends.each_ref().map(|end| end.radius * std::f64::consts::FRAC_PI_2);
+        let arc = 0.5 * angle / libm::sin(0.5 * angle) * chord.length();
+        let whole = (quarters[0] + arc + quarters[1]).max(f64::MIN_POSITIVE);
+        Necks { ends, reach, knots: [quarters[0] / whole, 1.0 - quarters[1] / whole] }
+    }
+
+    /// The point of the surface at a place around the axis and a height. `rails`: the loops, whose slopes are the directions
+    /// in which the surface goes on.
+    pub fn at(&self, rails: [&Rail; 2], around: f64, height: f64) -> Spot {
+        let ([p, dp, u, du], [q, dq, v, dv]) = (rails[0].at(around), rails[1].at(around));
+        let [lower, upper] = &self.ends;
+        let ([p1, dp1, ..], [q1, dq1, ..]) = (lower.neck.at(around), upper.neck.at(around));
+        let [from, to] = self.knots;
+        if height < from {
+            let k = QUARTER * lower.radius;
+            let (slopes, turns) = ([k * u, k * lower.axis], [k * du, DVec3::ZERO]);
+            return Curves { ends: [p, p1], along: [dp, dp1], slopes, turns }.at(height, [0.0, from]);
+        }
+        if height > to {
+            let k = QUARTER * upper.radius;
+            let (slopes, turns) = ([k * upper.axis, -k * v], [DVec3::ZERO, -k * dv]);
+            return Curves { ends: [q1, q], along: [dq1, dq], slopes, turns }.at(height, [to, 1.0]);
+        }
+        let way = q1 - p1;
+        let (chord, change) =
+            (self.reach * way.length(), self.reach * way.normalize_or_zero().dot(dq1 - dp1));
+        let (a, da) = if lower.is_pipe { (u, du) } else { (lower.axis, DVec3::ZERO) };
+        let (b, db) = if upper.is_pipe { (-v, -dv) } else { (upper.axis, DVec3::ZERO) };
+        let turns = [change * a + chord * da, change * b + chord * db];
+        Curves { ends: [p1, q1], along: [dp1, dq1], slopes: [chord * a, chord * b], turns }
+            .at(height, [from, to])
+    }
+}
+
+/// A loop drawn together towards its centre and moved, with fewer corners than it has.
+fn neck(ring: &Ring, around: &[f64], together: f64, rise: DVec3) -> Rail {
+    let n = ring.points.len();
+    let mut points = ring.points.clone();
+    for _ in 0..(n / VERTICES_A_ROUND).min(ROUNDS) {
+        points = (0..n)
+            .map(|k| 0.25 * (points[(k + n - 1) % n] + 2.0 * points[k] + points[(k + 1) % n]))
+            .collect();
+    }
+    for point in &mut points {
+        *point += together * (ring.centre - *point).reject_from(rise) + rise;
+    }
+    Rail::flat(around, points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A circle in a plane, run through as a tube runs that leaves it upwards, or arrives there from above.
+    fn circle(centre: DVec3, leaves: bool) -> Ring {
+        let at = |k: usize| {
+            let t = std::f64::consts::TAU * k as f64 / 60.0;
+            centre + DVec3::new(t.cos(), if leaves { t.sin() } else { -t.sin() }, 0.0)
+        };
+        Ring::new((0..60).map(at).collect())
+    }
+
+    fn inward(ring: &Ring) -> Vec<DVec3> {
+        ring.points.iter().map(|&p| ring.centre - p).collect()
+    }
+
+    #[test]
+    fn tubes_leave_by_the_side_on_which_the_other_loop_is() {
+        let way = |lower: &Ring, upper: &Ring| leaving(lower, upper, [&inward(lower), &inward(upper)]);
+        let (here, beside, above) = (DVec3::ZERO, 5.0 * DVec3::X, 5.0 * DVec3::Z);
+        let leaves = circle(here, true);
+        assert_eq!(way(&leaves, &circle(beside, false)), Leaving::Outwards);
+        assert_eq!(way(&leaves, &circle(beside + DVec3::Z, false)), Leaving::Outwards, "up a step");
+        assert_eq!(way(&leaves, &circle(above, true)), Leaving::Outwards);
+        assert_eq!(way(&leaves, &circle(-above, true)), Leaving::Inwards, "through a plate");
+        assert_eq!(way(&leaves, &circle(above, false)), Leaving::Direct, "one behind the other");
+        assert_eq!(
+            way(&leaves, &circle(beside, true)),
+            Leaving::Direct,
+            "side by side in a sheet, one turned over"
+        );
+        let (up, down) = (vec![DVec3::Z; 60], vec![-DVec3::Z; 60]);
+        assert_eq!(leaving(&leaves, &circle(above, true), [&up, &down]), Leaving::Direct, "pipes");
+    }
+
+    #[test]
+    fn a_handle_leaves_the_surface_smoothly_and_derivatives_are_those_of_its_points() {
+        let (lower, upper) = (circle(DVec3::ZERO, true), circle(5.0 * DVec3::X, false));
+        let (below, above) = (inward(&lower), inward(&upper));
+        let lower = Edge { ring: &lower, around: &lower.shares, onward: &below };
+        let upper = Edge { ring: &upper, around: &upper.shares, onward: &above };
+        let necks = Necks::new([&lower, &upper], false, 1.0);
+        let rail = |e: &Edge<'_>| Rail::new(e.around.to_vec(), e.ring.points.clone(), e.onward.to_vec());
+        let rails = [rail(&lower), rail(&upper)];
+        let at = |x: f64, y: f64| necks.at([&rails[0], &rails[1]], x, y);
+        let d = 1e-7;
+        for (x, y) in [(0.1, 0.02), (0.5, 0.5), (0.3, 0.97), (0.8, 0.3)] {
+            let here = at(x, y);
+            assert!(((at(x + d, y).point - here.point) / d - here.along).length() < 1e-4, "{x} {y}");
+            assert!(((at(x, y + d).point - here.point) / d - here.across).length() < 1e-4, "{x} {y}");
+        }
+        for k in 0..12 {
+            let x = f64::from(k) / 12.0;
+            let [first, last] = [0.0, 1.0].map(|y| at(x, y).across.normalize());
+            assert!(first.dot(rails[0].at(x)[2].normalize()) > 0.999);
+            assert!(last.dot(rails[1].at(x)[2].normalize()) < -0.999);
+            assert!(at(x, 0.5).point.z > 1.0, "it has room under it");
+            // The parts of a curve go on into each other.
+            for knot in necks.knots {
+                let [before, after] = [knot - 1e-9, knot + 1e-9].map(|y| at(x, y));
+                assert!(before.point.distance(after.point) < 1e-6);
+                assert!(before.across.normalize().dot(after.across.normalize()) > 0.999);
+            }
+        }
+    }
+}
