@@ -10,7 +10,8 @@ use crate::fill::filled::Leaving;
 /// Loops look the same way if the cosine of the angle between their normals is above this.
 const ALIKE: f64 = 0.25;
 
-/// Two loops see each other if each has the other one in front of it, by this cosine, or each behind it.
+/// Loops see each other if the sum of the cosines with which each has the other one in front of it is above this, and none is
+/// below the opposite; likewise behind them. Below it they lie side by side, or one in the other.
 const SEEN: f64 = 0.3;
 
 /// Loops that look the same way look at each other, too, as the walls of a valley do, if this is the cosine for both.
@@ -42,9 +43,9 @@ pub(super) fn leaving(lower: &Ring, upper: &Ring, onward: [&[DVec3]; 2]) -> Leav
     let pipes = onward.into_iter().all(|onward| ahead(onward).length() >= PIPE);
     if alike && a.min(b) < FACING && (a - b).abs() < 2.0 * BEHIND && !pipes {
         Leaving::Outwards
-    } else if sheets && a.min(b) > SEEN {
+    } else if sheets && a + b > SEEN && a.min(b) > -SEEN {
         Leaving::Outwards
-    } else if sheets && a.max(b) < -SEEN {
+    } else if sheets && a + b < -SEEN && a.max(b) < SEEN {
         Leaving::Inwards
     } else {
         Leaving::Direct
@@ -100,11 +101,10 @@ impl Necks {
         };
         let ends = [end(0), end(1)];
         let axes = ends.each_ref().map(|end| end.axis);
-        let angle = match (axes[0] + axes[1]).dot(chord) < 0.0 {
-            // They lean away from each other.
-            true => std::f64::consts::PI,
-            false => libm::acos(axes[0].dot(axes[1]).clamp(-1.0, 1.0)).max(1e-3),
-        };
+        // By how much the tube turns: more than half a turn where the axes lean away from each other.
+        let between = libm::acos(axes[0].dot(axes[1]).clamp(-1.0, 1.0)).max(1e-3);
+        let away = (axes[0] + axes[1]).dot(chord) < 0.0;
+        let angle = if away { std::f64::consts::TAU - between } else { between };
         let reach = pull * 2.0 * libm::tan(0.25 * angle) / libm::sin(0.5 * angle);
         let quarters = ends.each_ref().map(|end| end.radius * std::f64::consts::FRAC_PI_2);
         let arc = 0.5 * angle / libm::sin(0.5 * angle) * chord.length();
