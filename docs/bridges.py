@@ -10,10 +10,11 @@
 # ///
 """Draw the picture of bridged loops in the manual, by operators in Blender.
 
-    uv run docs/bridges.py [PICTURE.png] [--quads]
+    uv run docs/bridges.py [PICTURE.png] [--quads | --handles]
 
 Above, loops joined by Blender's *Bridge Edge Loops*; below, by *Grid Bridge*, what is new in colour: pipes of different sizes
-and numbers of vertices, pipes tilted against each other, two spheres, and three pipes. With `--quads` Grid Bridge's triangles above, its quads below.
+and numbers of vertices, pipes tilted against each other, two spheres, and three pipes. With `--quads` Grid Bridge's triangles above, its quads below;
+with `--handles` holes in a cup, two balls and between two balls, Blender's faces above, quads below.
 """
 
 from __future__ import annotations
@@ -88,6 +89,43 @@ def trousers(bm) -> None:
     pipe(bm, 32, 0.95, Matrix.Translation((0, 0, 0.8)) @ Matrix.Rotation(math.pi, 4, "X"))
 
 
+def without(bm, *places, radius) -> None:
+    """Holes around places."""
+    gone = [f for f in bm.faces if min((f.calc_center_median() - place).length for place in places) < radius]
+    bmesh.ops.delete(bm, geom=gone, context="FACES")
+
+
+def cup(bm) -> None:
+    """Two holes in a wall, one above the other."""
+    bmesh.ops.create_cone(bm, segments=48, radius1=0.8, radius2=0.8, depth=1.9, cap_ends=True, cap_tris=False)
+    tall = [e for e in bm.edges if abs(e.verts[0].co.z - e.verts[1].co.z) > 1]
+    bmesh.ops.subdivide_edges(bm, edges=tall, cuts=17, use_grid_fill=True)
+    bmesh.ops.rotate(bm, verts=bm.verts, matrix=Matrix.Rotation(math.radians(-20), 3, "Z"))
+    top = [f for f in bm.faces if f.normal.z > 0.9]
+    bmesh.ops.inset_individual(bm, faces=top, thickness=0.1)
+    inner = bmesh.ops.extrude_discrete_faces(bm, faces=top)["faces"]
+    bmesh.ops.translate(bm, vec=(0, 0, -1.7), verts=inner[0].verts)
+    without(bm, Vector((0.75, -0.27, 0.45)), Vector((0.75, -0.27, -0.45)), radius=0.24)
+
+
+def handle(bm) -> None:
+    """Two holes beside each other in a ball."""
+    bmesh.ops.create_uvsphere(bm, u_segments=48, v_segments=32, radius=0.9)
+    holes = [Vector((0.9 * math.sin(a), -0.25, 0.9 * math.cos(a))) for a in (-0.55, 0.55)]
+    without(bm, *holes, radius=0.26)
+
+
+def tunnel(bm) -> None:
+    """A hole in front and one at a side of a ball."""
+    bmesh.ops.create_uvsphere(bm, u_segments=48, v_segments=32, radius=0.95)
+    without(bm, Vector((0.2, -0.93, 0)), Vector((0, 0, 0.95)), radius=0.36)
+
+
+def arm(bm) -> None:
+    """A large ball and a small one turned to it."""
+    spheres(bm)
+
+
 def joined(make, cells: str | None):
     """The mesh of `make`, its facing loops joined; the new faces get the second material. cells : None for Blender's own."""
     mesh = bpy.data.meshes.new(make.__name__)
@@ -148,22 +186,30 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("picture", nargs="?", type=Path)
     parser.add_argument("--quads", action="store_true")
+    parser.add_argument("--handles", action="store_true")
     options = parser.parse_args()
-    name = "bridges_quads.png" if options.quads else "bridges.png"
+    name = (
+        "bridges_handles.png" if options.handles else "bridges_quads.png" if options.quads else "bridges.png"
+    )
     picture = (options.picture or Path(__file__).parent / "pictures" / name).resolve()
-    rows = ("QUADS", "TRIANGLES") if options.quads else ("TRIANGLES", None)
+    rows = (
+        "QUADS" if options.handles or options.quads else "TRIANGLES",
+        "TRIANGLES" if options.quads else None,
+    )
     # The renderer's own lines show quads cut into triangles.
-    clay = quads.clay if options.quads else lambda name, colour: studio.body_material(name, colour, 0.4)
+    in_quads = options.quads or options.handles
+    clay = quads.clay if in_quads else lambda name, colour: studio.body_material(name, colour, 0.4)
     plain, tube = clay("Mesh", "#9AA3AE"), clay("Tube", "#E8963A")
     line = studio.plain_material("Line", studio.WIRE)
-    for k, make in enumerate((of_sizes, tilted, spheres, trousers)):
+    shown = (cup, handle, tunnel, arm) if options.handles else (of_sizes, tilted, spheres, trousers)
+    for k, make in enumerate(shown):
         for row, cells in enumerate(rows):
             ob = joined(make, cells)
             for material in (plain, tube):
                 ob.data.materials.append(material)
             ob.rotation_euler = (0.35, 0, 0)
             ob.location = ((k - 1.5) * STEP, 0, (row - 0.5) * RISE)
-            if options.quads:
+            if in_quads:
                 quads.wires(ob, line)
     fills.stage(4 * STEP, 2 * RISE + 0.1, 1300, 12)
     studio.render(picture)

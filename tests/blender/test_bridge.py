@@ -701,3 +701,26 @@ def test_a_shape_key_goes_on_in_all_pairs():
     assert len(ob.data.vertices) > n + 20
     basis, moved = (np.array([p.co for p in block.data]) for block in ob.data.shape_keys.key_blocks)
     assert np.allclose(moved - basis, [0, 0, 1], atol=1e-5)
+
+
+@pytest.mark.parametrize("cells", ["TRIANGLES", "QUADS"])
+@pytest.mark.parametrize("smooth", ["FLAT", "TANGENT", "CURVATURE"])
+def test_two_holes_in_a_ball_get_a_handle(smooth, cells):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=32)
+    ob = bpy.context.object
+    bm = edit(ob)
+    holes = Vector((0.85, 0, 0.5)), Vector((0.85, 0, -0.5))
+    gone = [f for f in bm.faces if min((f.calc_center_median() - hole).length for hole in holes) < 0.25]
+    bmesh.ops.delete(bm, geom=gone, context="FACES")
+    n_faces = len(bm.faces)
+    select(ob, rim(bm))
+    bridge(smooth=smooth, cells=cells)
+    bm = bmesh.from_edit_mesh(ob.data)
+    bm.faces.index_update()
+    assert all(edge.is_manifold and edge.is_contiguous for edge in bm.edges)
+    assert len(bm.verts) - len(bm.edges) + len(bm.faces) == 0, "one handle"
+    new = [face for face in bm.faces if face.index >= n_faces]
+    assert max(face.calc_center_median().x for face in new) > 1.2
+    # Its outside is outside: where it is furthest out it looks away from the ball.
+    assert max(new, key=lambda face: face.calc_center_median().x).normal.x > 0.5
+    leave()

@@ -18,7 +18,6 @@ from collections import Counter
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import fills
 import gridmesh
 import joins
 import models
@@ -202,6 +201,10 @@ def bridge(rng: np.random.Generator, mesh: Mesh, row: Row) -> Done | None:
     rest, triangles, polygons = opened(mesh, first | second)
     one, other = loops_of(joins.polygon_sides(rest))
     done = gridmesh.bridge(mesh.vertices, triangles, one, other, polygons=polygons, **options)
+    if done.report["winding_conflicts"]:
+        # Told: one hole is behind the other, and a tube between them turns what is outside in.
+        row["conflicts"] = True
+        return None
     return Done(closed(rest, done), -2, done.report["self_intersections"])
 
 
@@ -297,7 +300,12 @@ def run(seed: int, number: int) -> Row:
         if found:
             row.setdefault("wrong", []).extend(f"step {len(row['steps'])}, {name}: {it}" for it in found)
             break
-        if told == 0 and done.meets == 0 and name == "cut" and meetings(done.mesh.vertices[joins.fanned(done.mesh)[0]]):
+        if (
+            told == 0
+            and done.meets == 0
+            and name == "cut"
+            and meetings(done.mesh.vertices[joins.fanned(done.mesh)[0]])
+        ):
             step["cap_meets"] = True
             told = 1
         told += done.meets

@@ -21,7 +21,8 @@ use crate::watch::Watch;
 ///     The vertices of each loop in order, either way round, each once and in one loop only.
 /// smooth : {"flat", "tangent", "curvature"}
 ///     "flat": straight from loop to loop. "tangent": leaves both loops with the slope of the surface there.
-///     "curvature": with its slope and curvature.
+///     "curvature": with its slope and curvature. Out of a hole in a sheet it goes by a neck, around which the surface is rounded; loops
+///     that look the same way, as two holes in a wall do, are joined by a handle outside, with "flat", too.
 /// rows : int, optional
 ///     Rows of faces between the loops, at least one. None: as many as the lengths of the edges ask for, more
 ///     where the loops are further apart.

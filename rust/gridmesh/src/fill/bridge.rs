@@ -2,7 +2,7 @@
 //!
 //! Of triangles, a tube needs no irregular vertex: it is a piece of the lattice on a cylinder or a cone (`rings`). The loops are closed
 //! paths on it (`route`), chosen with the cone (`choose`), what lies between them is triangulated (`tube`), placed on a surface
-//! that goes on from both sides (`loft`) and moved within it to where faces are good (`settle`). Of quads it is rings of
+//! that goes on from both sides (`loft`; out of holes in sheets by `necks`) and moved within it to where faces are good (`settle`). Of quads it is rings of
 //! squares (`squares`), placed in the same way.
 
 pub(in crate::fill) mod align;
@@ -37,7 +37,8 @@ use self::span::tube;
 /// Each of `loop_` and `other` is as for [`fill_hole`](super::fill_hole); they must have no vertex in common. The result's boundary is
 /// exactly the two loops: no vertex of them is moved and none is added, each of their edges gets one new face, wound against
 /// its neighbour. Where the surfaces at the two loops do not agree on the winding the larger number of edges decides and the report counts the
-/// others; a loop without faces is taken the way round that does not turn the tube inside out. The tube is an annulus, and
+/// others; a loop without faces is taken the way round that does not turn the tube inside out. Between loops that look the same way, as two
+/// holes in a wall do, the tube is a handle on the side to which their faces are turned. The tube is an annulus, and
 /// no new edge or face repeats one of the mesh. Inside, every vertex has six neighbours wherever the counts allow: the
 /// report says how many do not. With [`cells`](BridgeOptions::cells) for quads the new faces are quads, and one triangle if the sum
 /// of the counts is odd; every vertex inside has four of them where the counts are equal, and where they are not two poles, of

@@ -119,6 +119,7 @@ pub(super) struct Loft {
     necks: Option<Necks>,
     /// As given.
     pub pull: f64,
+    pub leaving: Leaving,
 }
 
 /// Cubics between two curves, by one parameter along these.
@@ -164,7 +165,7 @@ impl Loft {
         if leaving != Leaving::Direct {
             let rail = |e: &Edge<'_>| Rail::new(e.around.to_vec(), e.ring.points.clone(), e.onward.to_vec());
             let necks = Some(Necks::new([lower, upper], leaving == Leaving::Inwards, pull));
-            return Loft { lower: rail(lower), upper: rail(upper), necks, pull };
+            return Loft { lower: rail(lower), upper: rail(upper), necks, pull, leaving };
         }
         let straight = |edge: &Edge<'_>| Rail::flat(edge.around, edge.ring.points.clone());
         let (a, b) = (straight(lower), straight(upper));
@@ -189,6 +190,7 @@ impl Loft {
             upper: Rail::new(b.around, b.points, upper_slopes),
             necks: None,
             pull,
+            leaving,
         }
     }
 

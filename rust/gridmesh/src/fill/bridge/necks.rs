@@ -32,24 +32,34 @@ const VERTICES_A_ROUND: usize = 12;
 /// A slope of a quarter of a circle of radius 1, as a cubic has it.
 const QUARTER: f64 = 1.657;
 
-/// How a tube leaves two loops with faces, both given as the tube runs. `onward`: see [`Edge`].
-pub(super) fn leaving(lower: &Ring, upper: &Ring, onward: [&[DVec3]; 2]) -> Leaving {
-    let way = (upper.centre - lower.centre).normalize_or_zero();
-    let (a, b) = (lower.axis.dot(way), upper.axis.dot(way));
+/// Whether a tube between two loops with faces, both given as the tube runs, is a handle. `onward`: see [`Edge`].
+pub(super) fn is_handle(lower: &Ring, upper: &Ring, onward: [&[DVec3]; 2]) -> bool {
+    let [a, b] = seen(lower, upper);
     let alike = lower.axis.dot(upper.axis) < -ALIKE;
+    let pipes = onward.into_iter().all(|onward| ahead(onward).length() >= PIPE);
+    alike && a.min(b) < FACING && (a - b).abs() < 2.0 * BEHIND && !pipes
+}
+
+/// The side on which a tube that is none would leave such loops by necks.
+pub(super) fn leaving(lower: &Ring, upper: &Ring, onward: [&[DVec3]; 2]) -> Leaving {
     let is_sheet =
         |onward: &[DVec3]| onward.iter().any(|&v| v != DVec3::ZERO) && ahead(onward).length() < PIPE;
-    let sheets = onward.into_iter().any(is_sheet);
-    let pipes = onward.into_iter().all(|onward| ahead(onward).length() >= PIPE);
-    if alike && a.min(b) < FACING && (a - b).abs() < 2.0 * BEHIND && !pipes {
+    let [a, b] = seen(lower, upper);
+    if !onward.into_iter().any(is_sheet) {
+        Leaving::Direct
+    } else if a + b > SEEN && a.min(b) > -SEEN {
         Leaving::Outwards
-    } else if sheets && a + b > SEEN && a.min(b) > -SEEN {
-        Leaving::Outwards
-    } else if sheets && a + b < -SEEN && a.max(b) < SEEN {
+    } else if a + b < -SEEN && a.max(b) < SEEN {
         Leaving::Inwards
     } else {
         Leaving::Direct
     }
+}
+
+/// The cosines with which each of two loops has the other one in front of it.
+fn seen(lower: &Ring, upper: &Ring) -> [f64; 2] {
+    let way = (upper.centre - lower.centre).normalize_or_zero();
+    [lower.axis.dot(way), upper.axis.dot(way)]
 }
 
 /// The curves of a tube that leaves its loops by necks.
@@ -65,51 +75,61 @@ pub(super) struct Necks {
 /// One end of such a tube.
 #[derive(Clone, Debug)]
 struct End {
-    /// Along the tube.
-    axis: DVec3,
     /// Of the quarters of circles, zero where there are none.
     radius: f64,
-    /// Where these end.
+    /// Where these end, and the directions along the tube there.
     neck: Rail,
-    /// The surface goes on into the tube without a neck, as at the end of a pipe.
-    is_pipe: bool,
 }
 
 impl Necks {
     /// `pull`: see [`super::loft::Loft::new`].
     pub fn new(edges: [&Edge<'_>; 2], inwards: bool, pull: f64) -> Necks {
         let chord = edges[1].ring.centre - edges[0].ring.centre;
-        let end = |k: usize| {
-            let Edge { ring, around, onward } = *edges[k];
-            let ahead = ahead(onward);
-            let is_pipe = ahead.length() >= PIPE;
-            let axis = if inwards { -ring.axis } else { ring.axis };
-            // From the surface into the tube.
-            let rise = match (is_pipe, k) {
-                (true, _) => ahead.normalize(),
-                (false, 0) => axis,
-                (false, _) => -axis,
-            };
-            let mean = ring.length / std::f64::consts::TAU;
-            let has_neck = !is_pipe && onward.iter().any(|&way| way != DVec3::ZERO);
-            let radius = if has_neck { pull * (FILLET * mean).min(SHARE * chord.length()) } else { 0.0 };
-            let neck = match has_neck {
-                true => neck(ring, around, radius / mean, radius * rise),
-                false => Rail::flat(around, ring.points.clone()),
-            };
-            End { axis: if k == 0 { rise } else { -rise }, radius, neck, is_pipe }
-        };
-        let ends = [end(0), end(1)];
-        let axes = ends.each_ref().map(|end| end.axis);
+        let is_pipe = edges.map(|edge| ahead(edge.onward).length() >= PIPE);
+        // Along the tube.
+        let axes = [0, 1].map(|k| {
+            let Edge { ring, onward, .. } = edges[k];
+            match (is_pipe[k], k, inwards) {
+                (true, 0, _) => ahead(onward).normalize(),
+                (true, _, _) => -ahead(onward).normalize(),
+                (false, _, false) => ring.axis,
+                (false, _, true) => -ring.axis,
+            }
+        });
         // By how much the tube turns: more than half a turn where the axes lean away from each other.
         let between = libm::acos(axes[0].dot(axes[1]).clamp(-1.0, 1.0)).max(1e-3);
         let away = (axes[0] + axes[1]).dot(chord) < 0.0;
         let angle = if away { std::f64::consts::TAU - between } else { between };
         let reach = pull * 2.0 * libm::tan(0.25 * angle) / libm::sin(0.5 * angle);
-        let quarters = ends.each_ref().map(|end| end.radius * std::f64::consts::FRAC_PI_2);
         let arc = 0.5 * angle / libm::sin(0.5 * angle) * chord.length();
+        let means = edges.map(|edge| edge.ring.length / std::f64::consts::TAU);
+        let radii = [0, 1].map(|k| {
+            let has_neck = !is_pipe[k] && edges[k].onward.iter().any(|&way| way != DVec3::ZERO);
+            if has_neck { pull * (FILLET * means[k]).min(SHARE * chord.length()) } else { 0.0 }
+        });
+        // By how much it grows wider on its way.
+        let growth = (means[1] - radii[1] - means[0] + radii[0]) / arc.max(f64::MIN_POSITIVE);
+        let end = |k: usize| {
+            let Edge { ring, around, onward } = *edges[k];
+            let points = match radii[k] > 0.0 {
+                true => neck(ring, radii[k] / means[k], radii[k] * if k == 0 { axes[0] } else { -axes[1] }),
+                false => ring.points.clone(),
+            };
+            let along = |(&point, &onward): (&DVec3, &DVec3)| match (is_pipe[k], k) {
+                (true, 0) => onward,
+                (true, _) => -onward,
+                (false, _) => {
+                    let out = (point - ring.centre).reject_from_normalized(axes[k]).normalize_or_zero();
+                    (axes[k] + growth * out).normalize()
+                }
+            };
+            let along = points.iter().zip(onward).map(along).collect();
+            End { radius: radii[k], neck: Rail::new(around.to_vec(), points, along) }
+        };
+        let quarters = radii.map(|radius| radius * std::f64::consts::FRAC_PI_2);
         let whole = (quarters[0] + arc + quarters[1]).max(f64::MIN_POSITIVE);
-        Necks { ends, reach, knots: [quarters[0] / whole, 1.0 - quarters[1] / whole] }
+        let knots = [quarters[0] / whole, 1.0 - quarters[1] / whole];
+        Necks { ends: [end(0), end(1)], reach, knots }
     }
 
     /// The point of the surface at a place around the axis and a height. `rails`: the loops, whose slopes are the directions
@@ -117,23 +137,21 @@ impl Necks {
     pub fn at(&self, rails: [&Rail; 2], around: f64, height: f64) -> Spot {
         let ([p, dp, u, du], [q, dq, v, dv]) = (rails[0].at(around), rails[1].at(around));
         let [lower, upper] = &self.ends;
-        let ([p1, dp1, ..], [q1, dq1, ..]) = (lower.neck.at(around), upper.neck.at(around));
+        let ([p1, dp1, a, da], [q1, dq1, b, db]) = (lower.neck.at(around), upper.neck.at(around));
         let [from, to] = self.knots;
         if height < from {
             let k = QUARTER * lower.radius;
-            let (slopes, turns) = ([k * u, k * lower.axis], [k * du, DVec3::ZERO]);
+            let (slopes, turns) = ([k * u, k * a], [k * du, k * da]);
             return Curves { ends: [p, p1], along: [dp, dp1], slopes, turns }.at(height, [0.0, from]);
         }
         if height > to {
             let k = QUARTER * upper.radius;
-            let (slopes, turns) = ([k * upper.axis, -k * v], [DVec3::ZERO, -k * dv]);
+            let (slopes, turns) = ([k * b, -k * v], [k * db, -k * dv]);
             return Curves { ends: [q1, q], along: [dq1, dq], slopes, turns }.at(height, [to, 1.0]);
         }
         let way = q1 - p1;
         let (chord, change) =
             (self.reach * way.length(), self.reach * way.normalize_or_zero().dot(dq1 - dp1));
-        let (a, da) = if lower.is_pipe { (u, du) } else { (lower.axis, DVec3::ZERO) };
-        let (b, db) = if upper.is_pipe { (-v, -dv) } else { (upper.axis, DVec3::ZERO) };
         let turns = [change * a + chord * da, change * b + chord * db];
         Curves { ends: [p1, q1], along: [dp1, dq1], slopes: [chord * a, chord * b], turns }
             .at(height, [from, to])
@@ -141,7 +159,7 @@ impl Necks {
 }
 
 /// A loop drawn together towards its centre and moved, with fewer corners than it has.
-fn neck(ring: &Ring, around: &[f64], together: f64, rise: DVec3) -> Rail {
+fn neck(ring: &Ring, together: f64, rise: DVec3) -> Vec<DVec3> {
     let n = ring.points.len();
     let mut points = ring.points.clone();
     for _ in 0..(n / VERTICES_A_ROUND).min(ROUNDS) {
@@ -152,7 +170,7 @@ fn neck(ring: &Ring, around: &[f64], together: f64, rise: DVec3) -> Rail {
     for point in &mut points {
         *point += together * (ring.centre - *point).reject_from(rise) + rise;
     }
-    Rail::flat(around, points)
+    points
 }
 
 #[cfg(test)]
@@ -173,22 +191,22 @@ mod tests {
     }
 
     #[test]
-    fn tubes_leave_by_the_side_on_which_the_other_loop_is() {
-        let way = |lower: &Ring, upper: &Ring| leaving(lower, upper, [&inward(lower), &inward(upper)]);
+    fn the_side_is_that_on_which_the_other_loop_is() {
         let (here, beside, above) = (DVec3::ZERO, 5.0 * DVec3::X, 5.0 * DVec3::Z);
-        let leaves = circle(here, true);
-        assert_eq!(way(&leaves, &circle(beside, false)), Leaving::Outwards);
-        assert_eq!(way(&leaves, &circle(beside + DVec3::Z, false)), Leaving::Outwards, "up a step");
-        assert_eq!(way(&leaves, &circle(above, true)), Leaving::Outwards);
-        assert_eq!(way(&leaves, &circle(-above, true)), Leaving::Inwards, "through a plate");
-        assert_eq!(way(&leaves, &circle(above, false)), Leaving::Direct, "one behind the other");
-        assert_eq!(
-            way(&leaves, &circle(beside, true)),
-            Leaving::Direct,
-            "side by side in a sheet, one turned over"
-        );
+        let lower = circle(here, true);
+        let ways = |upper: &Ring| {
+            let onward = [inward(&lower), inward(upper)];
+            let onward = [onward[0].as_slice(), onward[1].as_slice()];
+            (is_handle(&lower, upper, onward), leaving(&lower, upper, onward))
+        };
+        assert!(ways(&circle(beside, false)).0);
+        assert!(ways(&circle(beside + DVec3::Z, false)).0, "up a step");
+        assert_eq!(ways(&circle(above, true)), (false, Leaving::Outwards));
+        assert_eq!(ways(&circle(-above, true)), (false, Leaving::Inwards), "through a plate");
+        assert_eq!(ways(&circle(above, false)), (false, Leaving::Direct), "one behind the other");
+        assert_eq!(ways(&circle(beside, true)), (false, Leaving::Direct), "side by side, one turned over");
         let (up, down) = (vec![DVec3::Z; 60], vec![-DVec3::Z; 60]);
-        assert_eq!(leaving(&leaves, &circle(above, true), [&up, &down]), Leaving::Direct, "pipes");
+        assert_eq!(leaving(&lower, &circle(above, true), [&up, &down]), Leaving::Direct, "pipes");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use rustc_hash::FxHashSet;
 use super::align::{Ring, best_fit, facing};
 use super::choose::{Bank, Chooser, Chosen};
 use super::loft::{Loft, onward};
-use super::necks::leaving;
+use super::necks::{is_handle, leaving};
 use super::options::BridgeOptions;
 use super::refit::{edge, reversed, work_positions};
 use super::settle::settle;
@@ -31,6 +31,12 @@ const PULLS: [f64; 3] = [0.6, 0.35, 0.15];
 
 /// A lattice whose least angle is below this, in radians, is compared with rings of any lengths.
 const THIN: f64 = 0.2;
+
+/// Triangles have good corners above this, in radians; quads above half as much again.
+const GOOD: f64 = 0.35;
+
+/// Faces of a tube that turn from those around it by more than this go on as an edge, not smoothly.
+const SMOOTH: f64 = 0.5;
 
 /// A tube that does not know yet what it meets.
 pub(super) fn tube(
@@ -70,7 +76,9 @@ pub(super) struct Span<'a> {
     conflicts: usize,
     /// See [`onward`], for both loops.
     onward: [Vec<DVec3>; 2],
-    leaving: Leaving,
+    both_faced: bool,
+    /// The tube is a handle.
+    handle: bool,
 }
 
 /// A tube in space.
@@ -103,28 +111,60 @@ impl<'a> Span<'a> {
         let mut onward = [onward(0), onward(1)];
         // Which side of a loop is outside its faces tell.
         let both_faced = !free(0) && !free(1);
-        let leaves = |low: &Ring, high: &Ring, onward: &[Vec<DVec3>; 2]| match both_faced {
-            true => leaving(low, high, [&onward[0], &onward[1]]),
-            false => Leaving::Direct,
-        };
-        let mut leaving = leaves(&low, &high, &onward);
-        if leaving == Leaving::Direct && (facing <= -1.0 || (facing < 0.0 && !both_faced)) {
+        let handle = both_faced && is_handle(&low, &high, onward.each_ref().map(Vec::as_slice));
+        if !handle && (facing <= -1.0 || (facing < 0.0 && !both_faced)) {
             // The loop with fewer faces gives way.
             let turned = usize::from(faced(1) <= faced(0));
             conflicts += faced(turned) - 2 * loops[turned].conflicts;
             loops[turned].vertices.reverse();
             loops[turned].reversed ^= true;
             onward[turned].reverse();
-            let [low, high] = rings(&loops, lower, vertices);
-            leaving = leaves(&low, &high, &onward);
         }
-        Span { vertices, rim, options, loops, lower, conflicts, onward, leaving }
+        Span { vertices, rim, options, loops, lower, conflicts, onward, both_faced, handle }
     }
 
     pub fn fill(&self, rest: &FillOptions, progress: Progress<'_>) -> Result<Fill> {
         let mut clock = Clock::new();
         let banks = self.banks(&rest.polygons);
-        let [lower, upper] = &banks;
+        let [low, high] = banks.each_ref().map(|bank| &bank.ring);
+        let leaving = match self.both_faced {
+            true => leaving(low, high, self.onward.each_ref().map(Vec::as_slice)),
+            false => Leaving::Direct,
+        };
+        if self.handle {
+            let handle = self.attempt(&banks, Leaving::Outwards, &mut clock, progress)?;
+            return Ok(self.finish(handle, clock));
+        }
+        let mut best = self.attempt(&banks, Leaving::Direct, &mut clock, progress.part(0.0, 0.5))?;
+        let good = match self.options.cells {
+            CellShape::Triangle => GOOD,
+            CellShape::Quad => 1.5 * GOOD,
+        };
+        // Good up to 1.
+        let badness = |tube: &Attempt| {
+            let edge = rim_angle(&tube.shape.work, &tube.shape.positions) / SMOOTH;
+            edge.max(good / tube.angles[0].max(f64::MIN_POSITIVE))
+        };
+        let here = badness(&best);
+        // Where its loops zigzag, or lie far off, the surface does not come round well enough out of a sheet.
+        if leaving != Leaving::Direct && (best.folds > 0 || here > 1.0) {
+            let other = self.attempt(&banks, leaving, &mut clock, progress.part(0.5, 1.0))?;
+            if other.folds < best.folds || (other.folds == best.folds && badness(&other) < here) {
+                best = other;
+            }
+        }
+        Ok(self.finish(best, clock))
+    }
+
+    /// The best tube that leaves the loops in one way.
+    fn attempt(
+        &self,
+        banks: &[Bank; 2],
+        leaving: Leaving,
+        clock: &mut Clock,
+        progress: Progress<'_>,
+    ) -> Result<Attempt> {
+        let [lower, upper] = banks;
         let joined = self.joined();
         let apart = |tube: &Chosen| {
             let m = lower.around.len() as u32;
@@ -133,7 +173,7 @@ impl<'a> Span<'a> {
             !sides.filter(|[a, b]| *a < m && *b >= m && *b < both).any(|[a, b]| joined.contains(&[a, b - m]))
         };
         let (below, above) = (&self.onward[self.lower], reversed(&self.onward[1 - self.lower]));
-        let pulled = |pull: f64| Loft::new(&edge(lower, below), &edge(upper, &above), pull, self.leaving);
+        let pulled = |pull: f64| Loft::new(&edge(lower, below), &edge(upper, &above), pull, leaving);
         let loft = pulled(1.0);
         clock.stage("surface");
         let mut chosen = None;
@@ -159,28 +199,31 @@ impl<'a> Span<'a> {
             });
         };
         clock.stage("grid");
-        let mut best = self.placed(&banks, &loft, &found, progress.part(0.6, 0.8))?;
+        let mut best = self.placed(banks, &loft, &found, progress.part(0.6, 0.8))?;
         for (k, pull) in PULLS.into_iter().enumerate() {
             if best.folds == 0 {
                 break;
             }
             let at = |k: usize| 0.8 + 0.1 * k as f64 / PULLS.len() as f64;
-            let other = self.placed(&banks, &pulled(pull), &found, progress.part(at(k), at(k + 1)))?;
+            let other = self.placed(banks, &pulled(pull), &found, progress.part(at(k), at(k + 1)))?;
             if other.folds < best.folds {
                 best = other;
             }
         }
-        if self.options.cells == CellShape::Triangle && best.lattice && best.angles[0] < THIN {
+        let bad = best.folds > 0 || best.angles[0] < THIN;
+        if self.options.cells == CellShape::Triangle && best.lattice && bad {
             let other = chooser.stacked();
             if apart(&other) {
-                let other = self.placed(&banks, &loft, &other, progress.part(0.9, 1.0))?;
-                if other.angles[0] > 1.5 * best.angles[0] {
+                let other = self.placed(banks, &loft, &other, progress.part(0.9, 1.0))?;
+                if other.folds < best.folds
+                    || (other.folds == best.folds && other.angles[0] > 1.5 * best.angles[0])
+                {
                     best = other;
                 }
             }
         }
         clock.stage("fair");
-        Ok(self.finish(best, clock))
+        Ok(best)
     }
 
     /// The two loops run to the right, the lower one first.
@@ -273,7 +316,7 @@ impl<'a> Span<'a> {
                 first,
                 reversed: self.loops[1].reversed,
                 pull: loft.pull,
-                leaving: self.leaving,
+                leaving: loft.leaving,
             }],
             flat,
             smooth: self.options.smooth,
