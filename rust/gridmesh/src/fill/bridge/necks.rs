@@ -21,6 +21,9 @@ const FACING: f64 = 0.5;
 /// an arc from one to the other would go through what is around the other.
 const BEHIND: f64 = 0.8;
 
+/// A tube turns by no more than this: handles between loops that look the same way are below.
+const MOST: f64 = 4.6;
+
 /// The radius of the quarters of circles, in mean radii of the loop, and at most in distances of the loops.
 const FILLET: f64 = 0.35;
 const SHARE: f64 = 0.3;
@@ -37,7 +40,18 @@ pub(super) fn is_handle(lower: &Ring, upper: &Ring, onward: [&[DVec3]; 2]) -> bo
     let [a, b] = seen(lower, upper);
     let alike = lower.axis.dot(upper.axis) < -ALIKE;
     let pipes = onward.into_iter().all(|onward| ahead(onward).length() >= PIPE);
-    alike && a.min(b) < FACING && (a - b).abs() < 2.0 * BEHIND && !pipes
+    let nested = encloses(lower, upper.centre) || encloses(upper, lower.centre);
+    alike && a.min(b) < FACING && (a - b).abs() < 2.0 * BEHIND && !pipes && !nested
+}
+
+/// Whether a loop goes around a point, seen along its axis.
+fn encloses(ring: &Ring, point: DVec3) -> bool {
+    let from = |k: usize| (ring.points[k % ring.points.len()] - point).reject_from_normalized(ring.axis);
+    let angle = |k: usize| {
+        let (a, b) = (from(k), from(k + 1));
+        libm::atan2(a.cross(b).dot(ring.axis), a.dot(b))
+    };
+    (0..ring.points.len()).map(angle).sum::<f64>().abs() > std::f64::consts::PI
 }
 
 /// The side on which a tube that is none would leave such loops by necks.
@@ -45,7 +59,8 @@ pub(super) fn leaving(lower: &Ring, upper: &Ring, onward: [&[DVec3]; 2]) -> Leav
     let is_sheet =
         |onward: &[DVec3]| onward.iter().any(|&v| v != DVec3::ZERO) && ahead(onward).length() < PIPE;
     let [a, b] = seen(lower, upper);
-    if !onward.into_iter().any(is_sheet) {
+    let no_axis = lower.axis == DVec3::ZERO || upper.axis == DVec3::ZERO;
+    if no_axis || !onward.into_iter().any(is_sheet) {
         Leaving::Direct
     } else if a + b > SEEN && a.min(b) > -SEEN {
         Leaving::Outwards
@@ -99,7 +114,7 @@ impl Necks {
         // By how much the tube turns: more than half a turn where the axes lean away from each other.
         let between = libm::acos(axes[0].dot(axes[1]).clamp(-1.0, 1.0)).max(1e-3);
         let away = (axes[0] + axes[1]).dot(chord) < 0.0;
-        let angle = if away { std::f64::consts::TAU - between } else { between };
+        let angle = if away { std::f64::consts::TAU - between } else { between }.min(MOST);
         let reach = pull * 2.0 * libm::tan(0.25 * angle) / libm::sin(0.5 * angle);
         let arc = 0.5 * angle / libm::sin(0.5 * angle) * chord.length();
         let means = edges.map(|edge| edge.ring.length / std::f64::consts::TAU);
@@ -201,6 +216,7 @@ mod tests {
         };
         assert!(ways(&circle(beside, false)).0);
         assert!(ways(&circle(beside + DVec3::Z, false)).0, "up a step");
+        assert!(!ways(&circle(0.5 * DVec3::X, false)).0, "one in the other");
         assert_eq!(ways(&circle(above, true)), (false, Leaving::Outwards));
         assert_eq!(ways(&circle(-above, true)), (false, Leaving::Inwards), "through a plate");
         assert_eq!(ways(&circle(above, false)), (false, Leaving::Direct), "one behind the other");
