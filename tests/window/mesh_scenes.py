@@ -65,6 +65,49 @@ def fill():
     assert faces() == filled, "the redo panel did not fill again"
 
 
+def handle():
+    """Two holes in a ball become a handle by the panel's button; undone, by the Edge menu, with other options in the redo panel."""
+    yield from fresh()
+    with stage.override():
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=32)
+        ob = bpy.context.object
+        bpy.ops.object.shade_smooth()
+        bpy.ops.object.mode_set(mode="EDIT")
+    import bmesh
+
+    bm = bmesh.from_edit_mesh(ob.data)
+    holes = Vector((0.85, 0, 0.5)), Vector((0.85, 0, -0.5))
+    gone = [f for f in bm.faces if min((f.calc_center_median() - hole).length for hole in holes) < 0.25]
+    bmesh.ops.delete(bm, geom=gone, context="FACES")
+    bm.select_mode = {"EDGE"}
+    for edge in bm.edges:
+        edge.select_set(edge.is_boundary)
+    bmesh.update_edit_mesh(ob.data)
+    turn_view(1.1, 0.0, 0.5)
+    bpy.ops.ed.undo_push(message="holes")
+    yield from stage.open_sidebar()
+    open_faces = faces()
+    yield from stage.press_button("UI", "gridmesh_bridge", "")
+    joined = faces()
+    assert joined > open_faces, "the panel's button joined nothing"
+    yield from stage.picture("handle_1_joined")
+    reach = max(vertex.co.x for vertex in ob.data.vertices)
+    assert reach > 1.2, "the tube does not stand on the outside"
+    yield from stage.move(*stage.middle())
+    yield from stage.key("Z", ctrl=True)
+    yield 0.8
+    assert faces() == open_faces, "undo left the tube"
+    yield from stage.move(*stage.middle())
+    yield from stage.key("E", ctrl=True)
+    yield 0.5
+    yield from stage.choose("Grid Bridge")
+    assert faces() == joined, "the Edge menu joined nothing"
+    hud = yield from stage.open_redo_panel()
+    assert (yield from numbers_of(hud, "rows", "12")), "Rows could not be changed"
+    assert open_faces < faces() < joined, "the redo panel did not join again"
+    yield from stage.picture("handle_2_rows")
+
+
 def ball(**options):
     """A sphere in Object Mode, the only object."""
     with stage.override():
@@ -176,4 +219,4 @@ def cut_side():
         yield from tool("builtin.select_box")
 
 
-SCENES = (fill, cut, cut_drawn, cut_side)
+SCENES = (fill, handle, cut, cut_drawn, cut_side)
