@@ -160,7 +160,7 @@ class Job:
                 if self.is_tube
                 else f"{faces} at the loops look the other way than the patch; recalculate the normals"
             )
-        if any(report["grid"] == "graded" for report in self.reports):
+        if any(report["grid"] == "graded" and report["irregular"] for report in self.reports):
             warnings.append(
                 "No regular lattice suits these numbers of edges; choose other rows or subdivide a loop"
             )

@@ -705,7 +705,7 @@ def test_a_shape_key_goes_on_in_all_pairs():
 
 @pytest.mark.parametrize("cells", ["TRIANGLES", "QUADS"])
 @pytest.mark.parametrize("smooth", ["FLAT", "TANGENT", "CURVATURE"])
-def test_two_holes_in_a_ball_get_a_handle(smooth, cells):
+def test_two_holes_in_a_ball_get_a_handle(smooth, cells, capfd):
     bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=32)
     ob = bpy.context.object
     bm = edit(ob)
@@ -715,6 +715,7 @@ def test_two_holes_in_a_ball_get_a_handle(smooth, cells):
     n_faces = len(bm.faces)
     select(ob, rim(bm))
     bridge(smooth=smooth, cells=cells)
+    assert "No regular lattice" not in capfd.readouterr().out, "there is no irregular vertex"
     bm = bmesh.from_edit_mesh(ob.data)
     bm.faces.index_update()
     assert all(edge.is_manifold and edge.is_contiguous for edge in bm.edges)
