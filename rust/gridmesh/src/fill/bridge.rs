@@ -2,7 +2,7 @@
 //!
 //! Of triangles, a tube needs no irregular vertex: it is a piece of the lattice on a cylinder or a cone (`rings`). The loops are closed
 //! paths on it (`route`), chosen with the cone (`choose`), what lies between them is triangulated (`tube`), placed on a surface
-//! that goes on from both sides (`loft`; out of holes in sheets by `necks`) and moved within it to where faces are good (`settle`). Of quads it is rings of
+//! that goes on from both sides (`rail`, `loft`; out of holes in sheets by `necks`) and moved within it to where faces are good (`settle`). Of quads it is rings of
 //! squares (`squares`), placed in the same way.
 
 pub(in crate::fill) mod align;
@@ -11,6 +11,7 @@ mod loft;
 mod necks;
 mod options;
 mod pairs;
+mod rail;
 mod refit;
 mod rings;
 mod route;

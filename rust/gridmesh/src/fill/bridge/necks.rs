@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::align::Ring;
-use super::loft::{Curves, Edge, PIPE, Rail, Spot, ahead};
+use super::rail::{Curves, Edge, PIPE, Rail, Spot, ahead};
 use crate::fill::filled::Leaving;
 
 /// Loops look the same way if the cosine of the angle between their normals is above this.

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::align::Ring;
-use super::loft::ahead;
 use super::options::BridgeOptions;
+use super::rail::ahead;
 use super::span::{onward_of, tube};
 use crate::error::{Error, Result};
 use crate::fill::filled::Fill;

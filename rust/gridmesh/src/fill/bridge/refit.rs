@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::align::Ring;
 use super::choose::Bank;
-use super::loft::{Edge, Loft, onward};
+use super::loft::Loft;
+use super::rail::{Edge, onward};
 use crate::error::{Error, Result};
 use crate::fill::filled::{Bridged, Shape};
 use crate::fill::options::Smooth;

@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::loft::{Loft, Spot};
+use super::loft::Loft;
+use super::rail::Spot;
 use crate::error::Result;
 use crate::fill::surface::patchwork::Patchwork;
 use crate::geometry::corner::{Corner, EQUILATERAL, Ideal};

@@ -5,9 +5,10 @@ use rustc_hash::FxHashSet;
 
 use super::align::{Ring, best_fit, facing};
 use super::choose::{Bank, Chooser, Chosen};
-use super::loft::{Loft, onward};
+use super::loft::Loft;
 use super::necks::{is_handle, leaving};
 use super::options::BridgeOptions;
+use super::rail::onward;
 use super::refit::{edge, reversed, work_positions};
 use super::settle::settle;
 use crate::error::{Error, Result};
