@@ -116,14 +116,18 @@ def handle(bm) -> None:
 
 
 def tunnel(bm) -> None:
-    """A hole in front and one at a side of a ball."""
+    """A hole in front of a ball and one above."""
     bmesh.ops.create_uvsphere(bm, u_segments=48, v_segments=32, radius=0.95)
     without(bm, Vector((0.2, -0.93, 0)), Vector((0, 0, 0.95)), radius=0.36)
 
 
-def arm(bm) -> None:
-    """A large ball and a small one turned to it."""
-    spheres(bm)
+PIPES = (of_sizes, tilted, spheres, trousers)
+PICTURES = {
+    "": (PIPES, ("TRIANGLES", None)),
+    "_quads": (PIPES, ("QUADS", "TRIANGLES")),
+    "_handles": ((cup, handle, tunnel, spheres), ("QUADS", None)),
+}
+"""By the end of the name: what is shown, and the faces below and above; None is Blender's own bridge."""
 
 
 def joined(make, cells: str | None):
@@ -185,23 +189,17 @@ def main() -> None:
     """Make the meshes, join the loops, render."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("picture", nargs="?", type=Path)
-    parser.add_argument("--quads", action="store_true")
-    parser.add_argument("--handles", action="store_true")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--quads", dest="kind", action="store_const", const="_quads", default="")
+    kind.add_argument("--handles", dest="kind", action="store_const", const="_handles")
     options = parser.parse_args()
-    name = (
-        "bridges_handles.png" if options.handles else "bridges_quads.png" if options.quads else "bridges.png"
-    )
+    name, (shown, rows) = f"bridges{options.kind}.png", PICTURES[options.kind]
     picture = (options.picture or Path(__file__).parent / "pictures" / name).resolve()
-    rows = (
-        "QUADS" if options.handles or options.quads else "TRIANGLES",
-        "TRIANGLES" if options.quads else None,
-    )
     # The renderer's own lines show quads cut into triangles.
-    in_quads = options.quads or options.handles
+    in_quads = "QUADS" in rows
     clay = quads.clay if in_quads else lambda name, colour: studio.body_material(name, colour, 0.4)
     plain, tube = clay("Mesh", "#9AA3AE"), clay("Tube", "#E8963A")
     line = studio.plain_material("Line", studio.WIRE)
-    shown = (cup, handle, tunnel, arm) if options.handles else (of_sizes, tilted, spheres, trousers)
     for k, make in enumerate(shown):
         for row, cells in enumerate(rows):
             ob = joined(make, cells)

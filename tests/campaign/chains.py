@@ -22,7 +22,7 @@ import gridmesh
 import joins
 import models
 import numpy as np
-from json_lines import resumed, rows_of
+from json_lines import continued, rows_of
 
 Row = dict[str, Any]
 SMOOTH = ("flat", "tangent", "curvature")
@@ -107,8 +107,9 @@ def cut(rng: np.random.Generator, mesh: Mesh, row: Row) -> Done:
     done = gridmesh.cut(mesh.vertices, mesh.faces, size * line + middle, direction=direction, **options)
     pieces = [Mesh(piece.vertices, piece.corners, piece.offsets) for piece in done.pieces]
     pieces = [piece for piece in pieces if len(piece.offsets) > 1]
-    row["untold"] = True  # The report counts no meetings of a cap with others.
-    return Done(max(pieces, key=lambda piece: joins.volume(piece.vertices, joins.fanned(piece)[0])), None, 0)
+    larger = max(pieces, key=lambda piece: joins.volume(piece.vertices, joins.fanned(piece)[0]))
+    # A cap may meet what is beside it, which no report of a cut counts.
+    return Done(larger, None, meetings(larger))
 
 
 def disk(rng: np.random.Generator, mesh: Mesh, rings: int, clear: np.ndarray | None = None) -> np.ndarray:
@@ -219,8 +220,9 @@ def euler(mesh: Mesh) -> int:
     return len(mesh.vertices) - len(mesh.corners) // 2 + len(mesh.offsets) - 1
 
 
-def meetings(triangles: np.ndarray) -> int:
-    """How many pairs of triangles (n, 3, 3) without a common corner pass through each other."""
+def meetings(mesh: Mesh) -> int:
+    """How many pairs of triangles without a common corner pass through each other."""
+    triangles = mesh.vertices[joins.fanned(mesh)[0]]
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     order = np.argsort(low[:, 0])
     low, high, triangles = low[order], high[order], triangles[order]
@@ -257,8 +259,8 @@ def passes(start: np.ndarray, end: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return across
 
 
-def wrong_with(done: Done, before: Mesh, told: int, untold: bool) -> list[str]:
-    """What a mesh breaks of what is promised; `told`: how often what was before meets itself."""
+def wrong_with(done: Done, before: Mesh, told: int) -> list[str]:
+    """What a mesh breaks of what is promised; `told`: how often it and what was before are told to meet themselves."""
     mesh, found = done.mesh, []
     if not np.isfinite(mesh.vertices).all():
         return ["not finite"]
@@ -266,10 +268,9 @@ def wrong_with(done: Done, before: Mesh, told: int, untold: bool) -> list[str]:
         return ["not closed and manifold"]
     if done.euler is not None and euler(mesh) - euler(before) != done.euler:
         found.append(f"the Euler characteristic was {euler(before)} and is {euler(mesh)}")
-    triangles, _ = joins.fanned(mesh)
-    if joins.volume(mesh.vertices, triangles) <= 0:
+    if joins.volume(mesh.vertices, joins.fanned(mesh)[0]) <= 0:
         found.append("inside out")
-    if not (told or done.meets or untold) and (count := meetings(mesh.vertices[triangles])):
+    if not told and (count := meetings(mesh)):
         found.append(f"{count} pairs of triangles meet, and none was told")
     return found
 
@@ -296,19 +297,10 @@ def run(seed: int, number: int) -> Row:
         if done is None:
             step["skipped"] = True
             continue
-        found = wrong_with(done, mesh, told, step.pop("untold", False))
-        if found:
+        told += done.meets
+        if found := wrong_with(done, mesh, told):
             row.setdefault("wrong", []).extend(f"step {len(row['steps'])}, {name}: {it}" for it in found)
             break
-        if (
-            told == 0
-            and done.meets == 0
-            and name == "cut"
-            and meetings(done.mesh.vertices[joins.fanned(done.mesh)[0]])
-        ):
-            step["cap_meets"] = True
-            told = 1
-        told += done.meets
         mesh = done.mesh
         step |= {"faces": len(mesh.offsets) - 1, "meets": done.meets}
     return row
@@ -341,15 +333,10 @@ def main() -> int:
     if chosen.only is not None:
         print(json.dumps(run(chosen.seed, chosen.only), indent=1))
         return 0
-    rows = rows_of(chosen.journal) if chosen.summary else resumed(chosen.journal)
-    if not chosen.summary:
-        known = {row["case"] for row in rows}
-        with chosen.journal.open("a") as journal:
-            for number in range(chosen.cases):
-                if number not in known:
-                    rows.append(run(chosen.seed, number))
-                    journal.write(json.dumps(rows[-1]) + "\n")
-                    journal.flush()
+    if chosen.summary:
+        rows = rows_of(chosen.journal)
+    else:
+        rows = continued(chosen.journal, chosen.cases, lambda k: run(chosen.seed, k))
     summed_up(rows)
     return int(any("wrong" in row for row in rows))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,4 +28,17 @@ def resumed(journal: Path) -> list[dict[str, Any]]:
     """The rows of a journal, of which nothing else is left in the file: the next line can be appended."""
     rows = rows_of(journal)
     journal.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    return rows
+
+
+def continued(journal: Path, cases: int, run: Callable[[int], dict[str, Any]]) -> list[dict[str, Any]]:
+    """All rows of a journal, once `run` has done those of the first so many cases that are missing in it."""
+    rows = resumed(journal)
+    known = {row["case"] for row in rows}
+    with journal.open("a") as lines:
+        for number in range(cases):
+            if number not in known:
+                rows.append(run(number))
+                lines.write(json.dumps(rows[-1]) + "\n")
+                lines.flush()
     return rows

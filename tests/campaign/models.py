@@ -21,7 +21,7 @@ import fills
 import gridmesh
 import joins
 import numpy as np
-from json_lines import resumed, rows_of
+from json_lines import continued, rows_of
 
 Mesh = tuple[np.ndarray, np.ndarray]
 Row = dict[str, Any]
@@ -240,15 +240,10 @@ def main() -> int:
     if chosen.only is not None:
         print(json.dumps(run(chosen.kind, files, chosen.seed, chosen.only), indent=1))
         return 0
-    rows = rows_of(chosen.journal) if chosen.summary else resumed(chosen.journal)
-    if not chosen.summary:
-        known = {row["case"] for row in rows}
-        with chosen.journal.open("a") as journal:
-            for number in range(chosen.cases):
-                if number not in known:
-                    rows.append(run(chosen.kind, files, chosen.seed, number))
-                    journal.write(json.dumps(rows[-1]) + "\n")
-                    journal.flush()
+    if chosen.summary:
+        rows = rows_of(chosen.journal)
+    else:
+        rows = continued(chosen.journal, chosen.cases, lambda k: run(chosen.kind, files, chosen.seed, k))
     summed_up(rows)
     return int(any("wrong" in row for row in rows))
 

@@ -3,7 +3,19 @@
 import bpy
 import numpy as np
 from mathutils import Vector
-from setting import fresh, grease_pencil, mesh_objects, numbers_of, select, stage, stroke, tool, turn_view
+from setting import (
+    fresh,
+    grease_pencil,
+    mesh_objects,
+    numbers_of,
+    redo,
+    select,
+    stage,
+    stroke,
+    tool,
+    turn_view,
+    undo,
+)
 
 
 def holed_ball():
@@ -32,6 +44,18 @@ def faces():
     return len(ob.data.polygons)
 
 
+def again_by_menu(key, name, open_faces, picture):
+    """Undo, which leaves so many faces; then the operator's name out of the menu of a key."""
+    yield from stage.move(*stage.middle())
+    yield from undo()
+    assert faces() == open_faces, "undo left new faces"
+    yield from stage.move(*stage.middle())
+    yield from stage.key(key, ctrl=True)
+    yield 0.5
+    yield from stage.picture(picture)
+    yield from stage.choose(name)
+
+
 def fill():
     """Fill a hole by the panel's button, the redo panel, the Face menu, and undo."""
     yield from fresh()
@@ -46,15 +70,7 @@ def fill():
     filled = faces()
     assert filled > open_faces, "the panel's button filled nothing"
     yield from stage.picture("fill_2_filled")
-    yield from stage.move(*stage.middle())
-    yield from stage.key("Z", ctrl=True)
-    yield 0.8
-    assert faces() == open_faces, "undo left the patch"
-    yield from stage.move(*stage.middle())
-    yield from stage.key("F", ctrl=True)
-    yield 0.5
-    yield from stage.picture("fill_3_menu")
-    yield from stage.choose("Grid Patch Fill")
+    yield from again_by_menu("F", "Grid Patch Fill", open_faces, "fill_3_menu")
     assert faces() == filled, "the Face menu filled nothing"
     yield from stage.key("Z", ctrl=True)
     yield 0.8
@@ -93,19 +109,33 @@ def handle():
     yield from stage.picture("handle_1_joined")
     reach = max(vertex.co.x for vertex in ob.data.vertices)
     assert reach > 1.2, "the tube does not stand on the outside"
-    yield from stage.move(*stage.middle())
-    yield from stage.key("Z", ctrl=True)
-    yield 0.8
-    assert faces() == open_faces, "undo left the tube"
-    yield from stage.move(*stage.middle())
-    yield from stage.key("E", ctrl=True)
-    yield 0.5
-    yield from stage.choose("Grid Bridge")
+    yield from again_by_menu("E", "Grid Bridge", open_faces, "handle_2_menu")
     assert faces() == joined, "the Edge menu joined nothing"
     hud = yield from stage.open_redo_panel()
     assert (yield from numbers_of(hud, "rows", "12")), "Rows could not be changed"
     assert open_faces < faces() < joined, "the redo panel did not join again"
-    yield from stage.picture("handle_2_rows")
+    yield from stage.picture("handle_3_rows")
+    yield from stage.move(*stage.middle())
+    yield from stage.key("TAB")
+    yield 0.5
+    there = np.array([vertex.co[:] for vertex in ob.data.vertices])
+    place, size = ob.location.copy(), ob.scale.copy()
+    yield from stage.key("A")
+    for keys in (("G", "X", "2", "RET"), ("S", "2", "RET")):
+        for key in keys:
+            yield from stage.key(key)
+        yield 0.5
+    assert (ob.location - place).length > 1.9
+    assert ob.scale.x > 1.9 * size.x
+    for _ in range(2):
+        yield from undo()
+    assert (bpy.context.object.location - place).length < 1e-6
+    for _ in range(2):
+        yield from redo()
+    ob = bpy.context.object
+    assert ob.scale.x > 1.9 * size.x
+    assert np.array_equal([vertex.co[:] for vertex in ob.data.vertices], there)
+    yield from stage.picture("handle_4_scaled")
 
 
 def ball(**options):

@@ -20,6 +20,9 @@ use crate::{arrays, reports};
 pub(crate) const WORDS: [(&str, Smooth); 3] =
     [("flat", Smooth::Flat), ("tangent", Smooth::Tangent), ("curvature", Smooth::Curvature)];
 
+/// In pickles by their numbers.
+const WAYS: [Leaving; 3] = [Leaving::Direct, Leaving::Outwards, Leaving::Inwards];
+
 /// A filled hole, or a tube between two; made by `fill_hole`, `fill_holes` and `bridge`.
 ///
 /// All arrays are read-only and C-contiguous; copy them to change them. A fill can be pickled.
@@ -192,10 +195,8 @@ impl Fill {
         let fields = (
             arrays::indices(py, parts.loop_.into_iter()),
             parts.reversed,
-            parts
-                .bridged
-                .iter()
-                .map(|b| (b.first, b.reversed, b.pull, outwards(b.leaving)))
+            (parts.bridged.iter())
+                .map(|b| (b.first, b.reversed, b.pull, WAYS.iter().position(|&way| way == b.leaving)))
                 .collect::<Vec<_>>(),
             smooth,
             parts.vertices,
@@ -218,7 +219,7 @@ pub fn _fill(
     py: Python<'_>,
     r#loop: PyReadonlyArray1<'_, i32>,
     backwards: bool,
-    later: Vec<(usize, bool, f64, Option<bool>)>,
+    later: Vec<(usize, bool, f64, usize)>,
     smooth: &str,
     vertices: usize,
     flat: PyReadonlyArray2<'_, f64>,
@@ -245,15 +246,11 @@ pub fn _fill(
         loop_: numbers(&r#loop),
         reversed: backwards,
         bridged: (later.into_iter())
-            .map(|(first, reversed, pull, outwards)| {
-                let leaving = match outwards {
-                    None => Leaving::Direct,
-                    Some(true) => Leaving::Outwards,
-                    Some(false) => Leaving::Inwards,
-                };
-                Bridged { first, reversed, pull, leaving }
+            .map(|(first, reversed, pull, way)| {
+                Some(Bridged { first, reversed, pull, leaving: *WAYS.get(way)? })
             })
-            .collect(),
+            .collect::<Option<_>>()
+            .ok_or_else(broken)?,
         smooth,
         vertices,
         flat: flat.as_array().rows().into_iter().map(|p| DVec2::new(p[0], p[1])).collect(),
@@ -266,15 +263,6 @@ pub fn _fill(
     };
     let inner = CoreFill::from_parts(parts, FillReport::default()).map_err(|_| broken())?;
     Fill::made(py, inner, report)
-}
-
-/// As [`_fill`] takes it.
-fn outwards(leaving: Leaving) -> Option<bool> {
-    match leaving {
-        Leaving::Direct => None,
-        Leaving::Outwards => Some(true),
-        Leaving::Inwards => Some(false),
-    }
 }
 
 fn report(py: Python<'_>, report: &FillReport) -> PyResult<Py<PyDict>> {

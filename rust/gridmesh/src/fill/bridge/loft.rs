@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::necks::Necks;
-use super::rail::{Curves, Edge, PIPE, Rail, Spot, ahead};
+use super::rail::{Curves, Edge, Rail, Spot, ahead, arc_slope, is_pipe};
 use crate::fill::filled::Leaving;
 
 /// Where a curve leaves its loop it bends within this many mean radii of the loop, so that a tube between
@@ -34,7 +34,7 @@ impl Loft {
         let straight = |edge: &Edge<'_>| Rail::flat(edge.around, edge.ring.points.clone());
         let (a, b) = (straight(lower), straight(upper));
         let [from, to] = [lower, upper].map(|edge| ahead(edge.onward));
-        let turns = from.length().min(to.length()) >= PIPE && from.dot(to) > 0.0;
+        let turns = is_pipe(lower.onward) && is_pipe(upper.onward) && from.dot(to) > 0.0;
         let reach = if turns { f64::INFINITY } else { REACH };
         let slopes = |own: &Edge<'_>, other: &Edge<'_>, there: &Rail, sign: f64| {
             let facing = straight_onward(other, there);
@@ -92,9 +92,8 @@ fn slope(from: DVec3, onward: DVec3, to: DVec3, back: DVec3, most: f64) -> DVec3
     }
     let length = chord.length();
     let back = if back == DVec3::ZERO { chord / length.max(f64::MIN_POSITIVE) } else { -back };
-    // Of the arc that turns by as much.
     let angle = libm::acos(onward.dot(back).clamp(-1.0, 1.0)).clamp(1e-3, 2.8);
-    let slope = onward * (length * 2.0 * libm::tan(0.25 * angle) / libm::sin(0.5 * angle));
+    let slope = onward * (length * arc_slope(angle));
     let aside = slope.reject_from_normalized(chord.try_normalize().unwrap_or(onward));
     if aside.length() > most { slope * (most / aside.length()) } else { slope }
 }

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::align::Ring;
-use super::rail::{Curves, Edge, PIPE, Rail, Spot, ahead};
+use super::rail::{Curves, Edge, Rail, Spot, ahead, arc_slope, is_pipe, is_sheet};
 use crate::fill::filled::Leaving;
 
 /// Loops look the same way if the cosine of the angle between their normals is above this.
@@ -32,16 +32,33 @@ const SHARE: f64 = 0.3;
 const ROUNDS: usize = 4;
 const VERTICES_A_ROUND: usize = 12;
 
-/// A slope of a quarter of a circle of radius 1, as a cubic has it.
-const QUARTER: f64 = 1.657;
+/// The surface goes on into the tube along it at the lower end, against it at the upper one.
+const ALONG: [f64; 2] = [1.0, -1.0];
 
-/// Whether a tube between two loops with faces, both given as the tube runs, is a handle. `onward`: see [`Edge`].
+/// The ways in which a tube between two loops with faces may leave them, the best first. Both are given as the tube runs.
+pub(super) fn ways(lower: &Ring, upper: &Ring, onward: [&[DVec3]; 2]) -> Vec<Leaving> {
+    let [a, b] = seen(lower, upper);
+    let no_axis = lower.axis == DVec3::ZERO || upper.axis == DVec3::ZERO;
+    if is_handle(lower, upper, onward) {
+        vec![Leaving::Outwards]
+    } else if no_axis || !onward.into_iter().any(is_sheet) {
+        vec![Leaving::Direct]
+    } else if a + b > SEEN && a.min(b) > -SEEN {
+        vec![Leaving::Direct, Leaving::Outwards]
+    } else if a + b < -SEEN && a.max(b) < SEEN {
+        vec![Leaving::Direct, Leaving::Inwards]
+    } else {
+        vec![Leaving::Direct]
+    }
+}
+
+/// Whether such a tube is a handle: no direct tube joins the loops.
 pub(super) fn is_handle(lower: &Ring, upper: &Ring, onward: [&[DVec3]; 2]) -> bool {
     let [a, b] = seen(lower, upper);
     let alike = lower.axis.dot(upper.axis) < -ALIKE;
-    let pipes = onward.into_iter().all(|onward| ahead(onward).length() >= PIPE);
-    let nested = encloses(lower, upper.centre) || encloses(upper, lower.centre);
-    alike && a.min(b) < FACING && (a - b).abs() < 2.0 * BEHIND && !pipes && !nested
+    let pipes = onward.into_iter().all(is_pipe);
+    let nested = || encloses(lower, upper.centre) || encloses(upper, lower.centre);
+    alike && a.min(b) < FACING && (a - b).abs() < 2.0 * BEHIND && !pipes && !nested()
 }
 
 /// Whether a loop goes around a point, seen along its axis.
@@ -52,23 +69,6 @@ fn encloses(ring: &Ring, point: DVec3) -> bool {
         libm::atan2(a.cross(b).dot(ring.axis), a.dot(b))
     };
     (0..ring.points.len()).map(angle).sum::<f64>().abs() > std::f64::consts::PI
-}
-
-/// The side on which a tube that is none would leave such loops by necks.
-pub(super) fn leaving(lower: &Ring, upper: &Ring, onward: [&[DVec3]; 2]) -> Leaving {
-    let is_sheet =
-        |onward: &[DVec3]| onward.iter().any(|&v| v != DVec3::ZERO) && ahead(onward).length() < PIPE;
-    let [a, b] = seen(lower, upper);
-    let no_axis = lower.axis == DVec3::ZERO || upper.axis == DVec3::ZERO;
-    if no_axis || !onward.into_iter().any(is_sheet) {
-        Leaving::Direct
-    } else if a + b > SEEN && a.min(b) > -SEEN {
-        Leaving::Outwards
-    } else if a + b < -SEEN && a.max(b) < SEEN {
-        Leaving::Inwards
-    } else {
-        Leaving::Direct
-    }
 }
 
 /// The cosines with which each of two loops has the other one in front of it.
@@ -100,43 +100,37 @@ impl Necks {
     /// `pull`: see [`super::loft::Loft::new`].
     pub fn new(edges: [&Edge<'_>; 2], inwards: bool, pull: f64) -> Necks {
         let chord = edges[1].ring.centre - edges[0].ring.centre;
-        let is_pipe = edges.map(|edge| ahead(edge.onward).length() >= PIPE);
+        let pipes = edges.map(|edge| is_pipe(edge.onward));
+        let side = if inwards { -1.0 } else { 1.0 };
         // Along the tube.
-        let axes = [0, 1].map(|k| {
-            let Edge { ring, onward, .. } = edges[k];
-            match (is_pipe[k], k, inwards) {
-                (true, 0, _) => ahead(onward).normalize(),
-                (true, _, _) => -ahead(onward).normalize(),
-                (false, _, false) => ring.axis,
-                (false, _, true) => -ring.axis,
-            }
+        let axes = [0, 1].map(|k| match pipes[k] {
+            true => ALONG[k] * ahead(edges[k].onward).normalize(),
+            false => side * edges[k].ring.axis,
         });
         // By how much the tube turns: more than half a turn where the axes lean away from each other.
         let between = libm::acos(axes[0].dot(axes[1]).clamp(-1.0, 1.0)).max(1e-3);
         let away = (axes[0] + axes[1]).dot(chord) < 0.0;
         let angle = if away { std::f64::consts::TAU - between } else { between }.min(MOST);
-        let reach = pull * 2.0 * libm::tan(0.25 * angle) / libm::sin(0.5 * angle);
         let arc = 0.5 * angle / libm::sin(0.5 * angle) * chord.length();
         let means = edges.map(|edge| edge.ring.length / std::f64::consts::TAU);
-        let radii = [0, 1].map(|k| {
-            let has_neck = !is_pipe[k] && edges[k].onward.iter().any(|&way| way != DVec3::ZERO);
-            if has_neck { pull * (FILLET * means[k]).min(SHARE * chord.length()) } else { 0.0 }
+        let radii = [0, 1].map(|k| match is_sheet(edges[k].onward) {
+            true => pull * (FILLET * means[k]).min(SHARE * chord.length()),
+            false => 0.0,
         });
         // By how much it grows wider on its way.
         let growth = (means[1] - radii[1] - means[0] + radii[0]) / arc.max(f64::MIN_POSITIVE);
         let end = |k: usize| {
             let Edge { ring, around, onward } = *edges[k];
             let points = match radii[k] > 0.0 {
-                true => neck(ring, radii[k] / means[k], radii[k] * if k == 0 { axes[0] } else { -axes[1] }),
+                true => neck(ring, radii[k] / means[k], radii[k] * ALONG[k] * axes[k]),
                 false => ring.points.clone(),
             };
-            let along = |(&point, &onward): (&DVec3, &DVec3)| match (is_pipe[k], k) {
-                (true, 0) => onward,
-                (true, _) => -onward,
-                (false, _) => {
-                    let out = (point - ring.centre).reject_from_normalized(axes[k]).normalize_or_zero();
-                    (axes[k] + growth * out).normalize()
+            let along = |(&point, &onward): (&DVec3, &DVec3)| {
+                if pipes[k] {
+                    return ALONG[k] * onward;
                 }
+                let out = (point - ring.centre).reject_from_normalized(axes[k]).normalize_or_zero();
+                (axes[k] + growth * out).normalize()
             };
             let along = points.iter().zip(onward).map(along).collect();
             End { radius: radii[k], neck: Rail::new(around.to_vec(), points, along) }
@@ -144,7 +138,7 @@ impl Necks {
         let quarters = radii.map(|radius| radius * std::f64::consts::FRAC_PI_2);
         let whole = (quarters[0] + arc + quarters[1]).max(f64::MIN_POSITIVE);
         let knots = [quarters[0] / whole, 1.0 - quarters[1] / whole];
-        Necks { ends: [end(0), end(1)], reach, knots }
+        Necks { ends: [end(0), end(1)], reach: pull * arc_slope(angle), knots }
     }
 
     /// The point of the surface at a place around the axis and a height. `rails`: the loops, whose slopes are the directions
@@ -154,13 +148,15 @@ impl Necks {
         let [lower, upper] = &self.ends;
         let ([p1, dp1, a, da], [q1, dq1, b, db]) = (lower.neck.at(around), upper.neck.at(around));
         let [from, to] = self.knots;
+        // The slopes of a quarter of a circle.
+        let quarter = std::f64::consts::SQRT_2 * arc_slope(std::f64::consts::FRAC_PI_2);
         if height < from {
-            let k = QUARTER * lower.radius;
+            let k = quarter * lower.radius;
             let (slopes, turns) = ([k * u, k * a], [k * du, k * da]);
             return Curves { ends: [p, p1], along: [dp, dp1], slopes, turns }.at(height, [0.0, from]);
         }
         if height > to {
-            let k = QUARTER * upper.radius;
+            let k = quarter * upper.radius;
             let (slopes, turns) = ([k * b, -k * v], [k * db, -k * dv]);
             return Curves { ends: [q1, q], along: [dq1, dq], slopes, turns }.at(height, [to, 1.0]);
         }
@@ -209,20 +205,16 @@ mod tests {
     fn the_side_is_that_on_which_the_other_loop_is() {
         let (here, beside, above) = (DVec3::ZERO, 5.0 * DVec3::X, 5.0 * DVec3::Z);
         let lower = circle(here, true);
-        let ways = |upper: &Ring| {
-            let onward = [inward(&lower), inward(upper)];
-            let onward = [onward[0].as_slice(), onward[1].as_slice()];
-            (is_handle(&lower, upper, onward), leaving(&lower, upper, onward))
-        };
-        assert!(ways(&circle(beside, false)).0);
-        assert!(ways(&circle(beside + DVec3::Z, false)).0, "up a step");
-        assert!(!ways(&circle(0.5 * DVec3::X, false)).0, "one in the other");
-        assert_eq!(ways(&circle(above, true)), (false, Leaving::Outwards));
-        assert_eq!(ways(&circle(-above, true)), (false, Leaving::Inwards), "through a plate");
-        assert_eq!(ways(&circle(above, false)), (false, Leaving::Direct), "one behind the other");
-        assert_eq!(ways(&circle(beside, true)), (false, Leaving::Direct), "side by side, one turned over");
+        let to = |upper: &Ring| ways(&lower, upper, [&inward(&lower), &inward(upper)]);
+        assert_eq!(to(&circle(beside, false)), [Leaving::Outwards], "a handle");
+        assert_eq!(to(&circle(beside + DVec3::Z, false)), [Leaving::Outwards], "up a step");
+        assert_eq!(to(&circle(0.5 * DVec3::X, false)), [Leaving::Direct], "one in the other");
+        assert_eq!(to(&circle(above, true)), [Leaving::Direct, Leaving::Outwards]);
+        assert_eq!(to(&circle(-above, true)), [Leaving::Direct, Leaving::Inwards], "through a plate");
+        assert_eq!(to(&circle(above, false)), [Leaving::Direct], "one behind the other");
+        assert_eq!(to(&circle(beside, true)), [Leaving::Direct], "side by side, one turned over");
         let (up, down) = (vec![DVec3::Z; 60], vec![-DVec3::Z; 60]);
-        assert_eq!(leaving(&lower, &circle(above, true), [&up, &down]), Leaving::Direct, "pipes");
+        assert_eq!(ways(&lower, &circle(above, true), [&up, &down]), [Leaving::Direct], "pipes");
     }
 
     #[test]

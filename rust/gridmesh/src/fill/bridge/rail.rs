@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::align::Ring;
 
 /// A loop is the end of a pipe if the surface goes on from its vertices in directions whose mean is at least this long.
-pub(super) const PIPE: f64 = 0.8;
+const PIPE: f64 = 0.8;
 
 /// A closed curve through the vertices of a loop, with the slope of the surface along it.
 #[derive(Clone, Debug)]
@@ -171,4 +171,19 @@ pub(super) fn onward(points: &[DVec3], apexes: &[Option<DVec3>]) -> Vec<DVec3> {
 /// hole in a sheet.
 pub(super) fn ahead(onward: &[DVec3]) -> DVec3 {
     onward.iter().sum::<DVec3>() / onward.len() as f64
+}
+
+/// Whether a loop, by the directions in which the surface goes on from its vertices, is the end of a pipe.
+pub(super) fn is_pipe(onward: &[DVec3]) -> bool {
+    ahead(onward).length() >= PIPE
+}
+
+/// Whether it is a hole in a sheet; neither, if it has no faces.
+pub(super) fn is_sheet(onward: &[DVec3]) -> bool {
+    onward.iter().any(|&way| way != DVec3::ZERO) && !is_pipe(onward)
+}
+
+/// The derivative at the ends of a cubic that follows an arc, in chords of the arc; `angle`: by how much it turns, in radians above 0.
+pub(super) fn arc_slope(angle: f64) -> f64 {
+    2.0 * libm::tan(0.25 * angle) / libm::sin(0.5 * angle)
 }

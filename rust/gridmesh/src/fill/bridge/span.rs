@@ -6,7 +6,7 @@ use rustc_hash::FxHashSet;
 use super::align::{Ring, best_fit, facing};
 use super::choose::{Bank, Chooser, Chosen};
 use super::loft::Loft;
-use super::necks::{is_handle, leaving};
+use super::necks::{is_handle, ways};
 use super::options::BridgeOptions;
 use super::rail::onward;
 use super::refit::{edge, reversed, work_positions};
@@ -77,9 +77,8 @@ pub(super) struct Span<'a> {
     conflicts: usize,
     /// See [`onward`], for both loops.
     onward: [Vec<DVec3>; 2],
-    both_faced: bool,
-    /// The tube is a handle.
-    handle: bool,
+    /// In which the tube may leave the loops, the best first.
+    ways: Vec<Leaving>,
 }
 
 /// A tube in space.
@@ -121,40 +120,42 @@ impl<'a> Span<'a> {
             loops[turned].reversed ^= true;
             onward[turned].reverse();
         }
-        Span { vertices, rim, options, loops, lower, conflicts, onward, both_faced, handle }
+        let ways = if both_faced {
+            let [low, high] = rings(&loops, lower, vertices);
+            ways(&low, &high, onward.each_ref().map(Vec::as_slice))
+        } else {
+            vec![Leaving::Direct]
+        };
+        Span { vertices, rim, options, loops, lower, conflicts, onward, ways }
     }
 
     pub fn fill(&self, rest: &FillOptions, progress: Progress<'_>) -> Result<Fill> {
         let mut clock = Clock::new();
         let banks = self.banks(&rest.polygons);
-        let [low, high] = banks.each_ref().map(|bank| &bank.ring);
-        let leaving = match self.both_faced {
-            true => leaving(low, high, self.onward.each_ref().map(Vec::as_slice)),
-            false => Leaving::Direct,
-        };
-        if self.handle {
-            let handle = self.attempt(&banks, Leaving::Outwards, &mut clock, progress)?;
-            return Ok(self.finish(handle, clock));
-        }
-        let mut best = self.attempt(&banks, Leaving::Direct, &mut clock, progress.part(0.0, 0.5))?;
-        let good = match self.options.cells {
-            CellShape::Triangle => GOOD,
-            CellShape::Quad => 1.5 * GOOD,
-        };
-        // Good up to 1.
-        let badness = |tube: &Attempt| {
-            let edge = rim_angle(&tube.shape.work, &tube.shape.positions) / SMOOTH;
-            edge.max(good / tube.angles[0].max(f64::MIN_POSITIVE))
-        };
-        let here = badness(&best);
+        let part = |k: usize| k as f64 / self.ways.len() as f64;
+        let mut best = self.attempt(&banks, self.ways[0], &mut clock, progress.part(0.0, part(1)))?;
         // Where its loops zigzag, or lie far off, the surface does not come round well enough out of a sheet.
-        if leaving != Leaving::Direct && (best.folds > 0 || here > 1.0) {
-            let other = self.attempt(&banks, leaving, &mut clock, progress.part(0.5, 1.0))?;
-            if other.folds < best.folds || (other.folds == best.folds && badness(&other) < here) {
+        for (k, &way) in self.ways.iter().enumerate().skip(1) {
+            let rank = self.rank(&best);
+            if rank <= (0, 1.0) {
+                break;
+            }
+            let other = self.attempt(&banks, way, &mut clock, progress.part(part(k), part(k + 1)))?;
+            if self.rank(&other) < rank {
                 best = other;
             }
         }
         Ok(self.finish(best, clock))
+    }
+
+    /// How bad a tube is: its folds; and its corners and the edge along its rim, good up to 1.
+    fn rank(&self, tube: &Attempt) -> (usize, f64) {
+        let good = match self.options.cells {
+            CellShape::Triangle => GOOD,
+            CellShape::Quad => 1.5 * GOOD,
+        };
+        let edge = rim_angle(&tube.shape.work, &tube.shape.positions) / SMOOTH;
+        (tube.folds, edge.max(good / tube.angles[0].max(f64::MIN_POSITIVE)))
     }
 
     /// The best tube that leaves the loops in one way.
