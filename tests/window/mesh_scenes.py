@@ -8,12 +8,15 @@ from setting import (
     grease_pencil,
     mesh_objects,
     numbers_of,
+    points_of,
     redo,
+    reopened,
     select,
     stage,
     stroke,
     tool,
     turn_view,
+    typed,
     undo,
 )
 
@@ -72,8 +75,7 @@ def fill():
     yield from stage.picture("fill_2_filled")
     yield from again_by_menu("F", "Grid Patch Fill", open_faces, "fill_3_menu")
     assert faces() == filled, "the Face menu filled nothing"
-    yield from stage.key("Z", ctrl=True)
-    yield 0.8
+    yield from undo()
     yield from stage.press_button("UI", "gridmesh_fill", "ALL")
     assert faces() == filled, "Fill All Holes filled nothing"
     hud = yield from stage.open_redo_panel()
@@ -82,7 +84,8 @@ def fill():
 
 
 def handle():
-    """Two holes in a ball become a handle by the panel's button; undone, by the Edge menu, with other options in the redo panel."""
+    """Two holes in a ball become a handle by the panel's button; undone, by the Edge menu, with other options in the redo panel;
+    all selected, moved, scaled, undone, redone, saved, opened."""
     yield from fresh()
     with stage.override():
         bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=32)
@@ -118,23 +121,20 @@ def handle():
     yield from stage.move(*stage.middle())
     yield from stage.key("TAB")
     yield 0.5
-    there = np.array([vertex.co[:] for vertex in ob.data.vertices])
-    place, size = ob.location.copy(), ob.scale.copy()
-    yield from stage.key("A")
-    for keys in (("G", "X", "2", "RET"), ("S", "2", "RET")):
-        for key in keys:
-            yield from stage.key(key)
-        yield 0.5
-    assert (ob.location - place).length > 1.9
-    assert ob.scale.x > 1.9 * size.x
+    before = points_of(ob)
+    for keys in (("A",), ("G", "X", "2", "RET"), ("S", "2", "RET")):
+        yield from typed(*keys)
+    put = points_of(ob)
+    assert np.abs(np.ptp(put, axis=0) - 2 * np.ptp(before, axis=0)).max() < 1e-4, "scaled"
     for _ in range(2):
         yield from undo()
-    assert (bpy.context.object.location - place).length < 1e-6
+    (ob,) = mesh_objects()
+    assert np.abs(points_of(ob) - before).max() < 1e-5, "moving and scaling are two steps"
     for _ in range(2):
         yield from redo()
-    ob = bpy.context.object
-    assert ob.scale.x > 1.9 * size.x
-    assert np.array_equal([vertex.co[:] for vertex in ob.data.vertices], there)
+    yield from reopened()
+    (ob,) = mesh_objects()
+    assert np.abs(points_of(ob) - put).max() < 1e-5, "redone, saved and opened"
     yield from stage.picture("handle_4_scaled")
 
 
