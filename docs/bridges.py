@@ -10,11 +10,12 @@
 # ///
 """Draw the picture of bridged loops in the manual, by operators in Blender.
 
-    uv run docs/bridges.py [PICTURE.png] [--quads | --handles]
+    uv run docs/bridges.py [PICTURE.png] [--quads | --handles | --several]
 
 Above, loops joined by Blender's *Bridge Edge Loops*; below, by *Grid Bridge*, what is new in colour: pipes of different sizes
 and numbers of vertices, pipes tilted against each other, two spheres, and three pipes. With `--quads` Grid Bridge's triangles above, its quads below;
-with `--handles` holes in a cup, two balls and between two balls, Blender's faces above, quads below.
+with `--handles` holes in a cup, two balls and between two balls, with `--several` three holes and more of which tubes come together, Blender's
+faces above, quads below.
 """
 
 from __future__ import annotations
@@ -121,11 +122,63 @@ def tunnel(bm) -> None:
     without(bm, Vector((0.2, -0.93, 0)), Vector((0, 0, 0.95)), radius=0.36)
 
 
-PIPES = (of_sizes, tilted, spheres, trousers)
+def balls(bm) -> None:
+    """Three balls, each with a hole that looks at the middle between them."""
+    for turn in (0.5, 0.5 + math.tau / 3, 0.5 + 2 * math.tau / 3):
+        way = Vector((math.cos(turn), 0, math.sin(turn)))
+        faces = set(bm.faces)
+        new = bmesh.ops.create_uvsphere(bm, u_segments=32, v_segments=20, radius=0.45)["verts"]
+        bmesh.ops.rotate(bm, verts=new, matrix=Vector((0, 0, -1)).rotation_difference(way).to_matrix())
+        bmesh.ops.translate(bm, verts=new, vec=0.95 * way)
+        near = 0.55 * way
+        gone = [f for f in bm.faces if f not in faces and (f.calc_center_median() - near).length < 0.22]
+        bmesh.ops.delete(bm, geom=gone, context="FACES")
+
+
+def slab(bm) -> None:
+    """Four holes in the upper side of a slab."""
+    place = Matrix.Translation((0, 0, -0.45)) @ (Matrix.Rotation(0.6, 4, "X") @ Matrix.Rotation(0.5, 4, "Z"))
+    bmesh.ops.create_grid(bm, x_segments=36, y_segments=36, size=1.1)
+    upper = bmesh.ops.extrude_face_region(bm, geom=bm.faces[:])["geom"]
+    bmesh.ops.translate(bm, vec=(0, 0, 0.2), verts=[v for v in upper if isinstance(v, bmesh.types.BMVert)])
+    bmesh.ops.recalc_face_normals(bm, faces=bm.faces)
+    bmesh.ops.transform(bm, matrix=place, verts=bm.verts)
+    corners = [Vector((x, y, 0.2)) for x in (-0.57, 0.57) for y in (-0.57, 0.57)]
+    without(bm, *(place @ corner for corner in corners), radius=0.17)
+
+
+def front(bm) -> None:
+    """Three holes in the front of a ball."""
+    bmesh.ops.create_uvsphere(bm, u_segments=64, v_segments=40, radius=1)
+    ways = [Vector((math.cos(t), -1.1, math.sin(t))).normalized() for t in (0.5, 2.6, 4.7)]
+    without(bm, *ways, radius=0.32)
+
+
+def crossing(bm) -> None:
+    """Five pipes of different sizes that look at a middle."""
+    for turn, radius, segments in (
+        (0, 0.4, 24),
+        (1.2, 0.3, 20),
+        (2.4, 0.25, 16),
+        (3.7, 0.35, 24),
+        (5, 0.3, 18),
+    ):
+        way = Vector((math.cos(turn), 0.5 * math.sin(3 * turn), math.sin(turn))).normalized()
+        place = (
+            Matrix.Translation(-1.15 * way) @ Vector((0, 0, 1)).rotation_difference(way).to_matrix().to_4x4()
+        )
+        pipe(bm, segments, radius, place)
+
+
+PIPES = (of_sizes, tilted, trousers, crossing)
+"""Only their inner ends are joined."""
+
+JOINED = (of_sizes, tilted, spheres, trousers)
 PICTURES = {
-    "": (PIPES, ("TRIANGLES", None)),
-    "_quads": (PIPES, ("QUADS", "TRIANGLES")),
+    "": (JOINED, ("TRIANGLES", None)),
+    "_quads": (JOINED, ("QUADS", "TRIANGLES")),
     "_handles": ((cup, handle, tunnel, spheres), ("QUADS", None)),
+    "_several": ((balls, slab, front, crossing), ("QUADS", None)),
 }
 """By the end of the name: what is shown, and the faces below and above; None is Blender's own bridge."""
 
@@ -138,7 +191,6 @@ def joined(make, cells: str | None):
     for face in bm.faces:
         face.smooth = True
     loops = [e for e in bm.edges if e.is_boundary]
-    # Of a pipe's two ends the inner one.
     centres = [
         (sum((v.co for e in piece for v in e.verts), Vector()) / (2 * len(piece)), piece)
         for piece in pieces(loops)
@@ -146,7 +198,8 @@ def joined(make, cells: str | None):
     corners = [Vector([of(axis) for axis in zip(*(c for c, _ in centres), strict=True)]) for of in (min, max)]
     middle = (corners[0] + corners[1]) / 2
     centres.sort(key=lambda item: (item[0] - middle).length)
-    loops = [edge for _, piece in centres[: max(2, len(centres) // 2)] for edge in piece]
+    chosen = centres[: len(centres) // 2] if make in PIPES else centres
+    loops = [edge for _, piece in chosen for edge in piece]
     for edge in loops:
         edge.select_set(True)
     bm.to_mesh(mesh)
@@ -192,6 +245,7 @@ def main() -> None:
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--quads", dest="kind", action="store_const", const="_quads", default="")
     kind.add_argument("--handles", dest="kind", action="store_const", const="_handles")
+    kind.add_argument("--several", dest="kind", action="store_const", const="_several")
     options = parser.parse_args()
     name, (shown, rows) = f"bridges{options.kind}.png", PICTURES[options.kind]
     picture = (options.picture or Path(__file__).parent / "pictures" / name).resolve()

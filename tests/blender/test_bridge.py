@@ -297,19 +297,24 @@ def test_quads_join_three_loops(counts):
     assert sum(len(face) == 3 for face in patch) == odd
 
 
-def test_three_holes_of_a_plate():
-    """All in one plane, and the patch on neither side of it: it runs beside the plate."""
+@pytest.mark.parametrize("cells", ["TRIANGLES", "QUADS"])
+def test_three_holes_of_a_plate_get_tubes_that_come_together_above_it(cells, capfd):
+    """It lay in the plate, and went through itself."""
     ob = without_faces(grid(15), lambda c: not any(abs(c.x - x) < 1.1 and abs(c.y) < 1.1 for x in (-4, 0, 4)))
     before = Before(ob)
     bm = edit(ob)
     inner = [e for e in rim(bm) if all(max(abs(v.co.x), abs(v.co.y)) < 6.9 for v in e.verts)]
     around = {v.index for e in inner for v in e.verts}
     select(ob, inner)
-    bridge()
+    bridge(cells=cells)
     leave()
-    patch = before.check(ob, closed=False)
+    patch = before.check(ob, closed=False, triangles=cells == "TRIANGLES")
     assert around <= {vertex for face in patch for vertex in face}
     assert is_closed_but_for(ob, 60)
+    new = vertices(ob.data)[len(before.points) :]
+    assert new[:, 2].min() > -0.1
+    assert new[:, 2].max() > 2
+    assert "Warning" not in capfd.readouterr().out
 
 
 def test_three_wires():

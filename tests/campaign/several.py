@@ -1,7 +1,7 @@
 """Random patches between three and more loops, checked without the library's own code.
 
 `python tests/campaign/several.py --cases 60 --seed 1 --cells quads` prints how regular and well shaped they are, and which meet
-themselves. Case k of a seed is always the same; `--only K` runs it alone.
+themselves; with `--sheets` between holes in sheets, without between pieces of balls. Case k of a seed is always the same; `--only K` runs it alone.
 """
 
 from __future__ import annotations
@@ -68,6 +68,28 @@ def case(seed, number, rings=60, around=110):
             return vertices, faces, loops
 
 
+def sheets(seed, number, rings=60):
+    """A waved sheet with holes: vertices, faces, and the loops of the holes. Holes that touch are drawn anew."""
+    rng = np.random.default_rng([seed, number])
+    n = 2 * rings
+    x, y = (axis.ravel() for axis in np.meshgrid(*[np.linspace(-2, 2, n)] * 2, indexing="ij"))
+    k = np.arange(n * n).reshape(n, n)[:-1, :-1].ravel()
+    every = np.r_[np.c_[k, k + n, k + n + 1], np.c_[k, k + n + 1, k + 1]]
+    while True:
+        count = rng.integers(3, 7)
+        centres, sizes = rng.uniform(-1.4, 1.4, (count, 2)), rng.uniform(0.15, 0.45, count)
+        waves = rng.uniform(0, 0.1) * np.sin(rng.uniform(-2, 2, 2) @ [x, y]) + rng.uniform(-0.2, 0.2) * (
+            x * x + y * y
+        )
+        vertices = np.c_[x, y, waves]
+        off = np.linalg.norm(vertices[every].mean(axis=1)[:, None, :2] - centres, axis=2)
+        faces = every[(off > sizes).all(axis=1)]
+        loops = [loop for loop in boundary_loops(faces) if np.abs(vertices[loop, :2]).max() < 1.99]
+        gaps = np.linalg.norm(centres[:, None] - centres, axis=2) - sizes - sizes[:, None] + 9 * np.eye(count)
+        if len(loops) == count and gaps.min() > 0.15:
+            return vertices, faces, loops
+
+
 def faults(vertices, faces, loops, fill):
     """What a patch breaks of what is promised of it."""
     n, found = len(vertices), []
@@ -111,10 +133,14 @@ def main():
     parser.add_argument("--only", type=int)
     parser.add_argument("--cells", choices=["triangles", "quads"], default="triangles")
     parser.add_argument("--rings", type=int, default=60)
+    parser.add_argument("--sheets", action="store_true")
     options = parser.parse_args()
     rows, broken, meeting = [], {}, {}
     for number in range(options.cases) if options.only is None else [options.only]:
-        vertices, faces, loops = case(options.seed, number, options.rings, options.rings * 11 // 6)
+        if options.sheets:
+            vertices, faces, loops = sheets(options.seed, number, options.rings)
+        else:
+            vertices, faces, loops = case(options.seed, number, options.rings, options.rings * 11 // 6)
         start = time.process_time()
         fill = gridmesh.fill_hole(vertices, faces, loops, cells=options.cells)
         seconds = time.process_time() - start

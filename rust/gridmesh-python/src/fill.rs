@@ -25,8 +25,8 @@ use crate::watch::Watch;
 ///     further away than two rings of triangles need not even be finite.
 /// loop : (k,) array of int, k >= 3, or a list of such arrays
 ///     The vertices of the hole's boundary in order, either way round, each once. A list: the loops of one hole that has
-///     several; the patch has them all as its boundary. Two are joined by a tube, as `bridge` does; between three or more the faces are even, but no
-///     grid. Several loops without `sharp`.
+///     several; the patch has them all as its boundary. Two are joined by a tube, as `bridge` does; between three or more a tube leaves each loop where
+///     there is room, and where these come together, or between the loops, the faces are even, but no grid. Several loops without `sharp`.
 /// smooth : {"flat", "tangent", "curvature"}
 ///     "flat": a soap film in the loop. "tangent": continues the slope of the surface around. "curvature":
 ///     its slope and curvature. A patch that would meet something then is a film, if that meets nothing ("repaired" in

@@ -31,7 +31,8 @@ use crate::progress::Progress;
 pub use self::options::BridgeOptions;
 pub(in crate::fill) use self::pairs::apart;
 pub use self::pairs::{Pair, bridge_pairs, look_apart};
-use self::span::tube;
+pub(in crate::fill) use self::rail::{ahead, is_pipe};
+pub(in crate::fill) use self::span::{onward_of, tube};
 
 /// Joins two loops of a mesh by a tube.
 ///

@@ -74,6 +74,12 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
+    /// The patch's faces as triangles, quads cut in two.
+    pub(crate) fn facets(&self) -> Vec<[u32; 3]> {
+        let work = &self.work;
+        work.triangles[..work.n_patch].iter().map(|t| t.map(|v| self.name(v))).collect()
+    }
+
     /// What the patch's vertices are called in the mesh with the new ones after its own.
     fn name(&self, v: u32) -> u32 {
         match self.loop_.get(v as usize) {
@@ -115,8 +121,7 @@ impl Fill {
 
     /// The new faces as triangles, quads cut in two.
     pub(crate) fn facets(&self) -> Vec<[u32; 3]> {
-        let work = &self.shape.work;
-        work.triangles[..work.n_patch].iter().map(|t| t.map(|v| self.shape.name(v))).collect()
+        self.shape.facets()
     }
 
     /// The edges of the new faces, once for each face, lower vertex first.

@@ -68,7 +68,7 @@ pub enum Grid {
     Graded,
     /// Triangles for every second vertex of the loop, each cut into three quads.
     Refined,
-    /// Triangles made even, or pairs of these cut in four, between three loops or more.
+    /// Triangles made even, or pairs of these cut in four, between three loops or more, or the ends of tubes from these.
     Even,
 }
 

@@ -1,31 +1,29 @@
 //! One patch for three loops or more.
 //!
-//! No lattice fits them all: the loops are joined to one polygon (`tour`), which is triangulated with the least bending and area
-//! (`polygon`), and the triangles are made even on that surface and smooth to what lies beyond (`even`). For quads triangles of
-//! twice the size are laid on that surface, joined to pairs (`pairs`) and cut (`halves`).
+//! No lattice fits them all. Where there is room a tube runs from each loop to a circle around a point before them all (`hub`), and only between
+//! the circles (`arms`), or else between the loops themselves, lies a patch in one (`in_one`): the loops are joined to one polygon (`tour`), which is
+//! triangulated with the least bending and area (`polygon`), and the triangles are made even on that surface and smooth to what lies
+//! beyond (`even`). For quads triangles of twice the size are laid on that surface, joined to pairs (`pairs`) and cut (`halves`).
 
+mod arms;
 mod border;
 mod halves;
+mod hub;
+mod in_one;
 mod pairs;
 mod polygon;
 mod quads;
 mod rows;
 mod tour;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
-use self::border::{Border, Several};
-use self::polygon::{Outline, triangulated};
+use self::border::Several;
+use self::hub::{BENT, Hub, Limits, SHARES, STRAIGHT};
 use self::tour::turned;
 use crate::error::{Error, LoopError, Result};
 use crate::fill::bridge::apart;
-use crate::fill::even::fair::{Beyond, fair};
-use crate::fill::even::local::Local;
-use crate::fill::even::polish::polish;
-use crate::fill::even::regular::regularize;
-use crate::fill::even::remesh::{Ground, adapt, flip_valences, mend_thin, refine, remesh};
-use crate::fill::even::untangle::{Near, tangled, unfold, untangle};
-use crate::fill::filled::{Bridged, Fill, Leaving, Shape};
+use crate::fill::filled::{Fill, Shape};
 use crate::fill::job::{Job, SOUND_RINGS};
 use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::check::{Checked, check_loops, check_near};
@@ -33,24 +31,18 @@ use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::touching::check_apart;
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::report::{FillReport, Grid};
-use crate::fill::surface::fair::Membrane;
-use crate::fill::surface::fit::{Faults, LEAST_WEIGHT, folds, rim_angle};
-use crate::fill::surface::meet::Box3;
-use crate::fill::surface::patchwork::Patchwork;
+use crate::fill::surface::fit::{folds, rim_angle};
 use crate::options::CellShape;
 use crate::progress::{Clock, Progress};
 
-/// Rounds of fairing and flips.
-const ROUNDS: usize = 3;
+/// How bad a patch is: what it meets, its folds, and how far its least corner is below one that is [`enough`], in radians.
+type Rank = (usize, usize, f64);
 
-/// Times at most that the triangles are made even on a surface that is made smooth.
-const SHAPED: usize = 10;
+/// A patch between circles that lacks less of the least corner is not compared with those between others.
+const GOOD: f64 = 0.05;
 
-/// A smooth surface that has so many times the vertices of an earlier one has no end to its growth.
-const GROWN: usize = 3;
-
-/// A round that changes the number of vertices by less than this share is the last.
-const SETTLED: f64 = 0.02;
+/// A patch that is not worse is not compared with those made in other ways.
+const SOUND: Rank = (0, 0, 0.3);
 
 /// See [`fill_loops`](super::fill_loops), for three or more.
 pub(super) fn fill_several(
@@ -76,13 +68,16 @@ pub(super) fn fill_several(
     let apart = apart(vertices, triangles, loops)?;
     let span =
         Several { vertices, triangles, rim: &rim, options, checked: &checked, spanning: &spanning, apart };
-    let fill = span.fill(progress.part(0.1, 0.8))?;
-    let mut fills = [Ok(fill)];
-    Job { vertices, triangles, options }.count_meetings(&mut fills, progress.part(0.8, 1.0))?;
-    let [fill] = fills;
-    let fill = fill?;
+    let fill = span.fill(progress.part(0.1, 0.95))?;
     if fill.report.self_intersections > 0 {
         span.refuse_apart()?;
+        if options.strict {
+            // Says where.
+            let mut fills = [Ok(fill)];
+            Job { vertices, triangles, options }.count_meetings(&mut fills, progress.part(0.95, 1.0))?;
+            let [refused] = fills;
+            return refused;
+        }
     }
     progress.report(1.0)?;
     Ok(fill)
@@ -93,23 +88,105 @@ fn rings(smooth: Smooth) -> usize {
     if smooth == Smooth::Curvature { 2 } else { 1 }
 }
 
+/// Of two patches that meet nothing and have no fold, and no corner below this, neither is better. In radians.
+fn enough(cells: CellShape) -> f64 {
+    match cells {
+        CellShape::Triangle => 0.35,
+        CellShape::Quad => 0.5,
+    }
+}
+
+/// Whether to go on with something else makes no sense.
+fn is_final(error: &Error) -> bool {
+    matches!(error, Error::Cancelled | Error::Internal { .. })
+}
+
 impl Several<'_> {
+    fn rank(&self, fill: &Fill) -> Rank {
+        let report = &fill.report;
+        let lack = enough(self.options.cells) - report.min_angle;
+        // A film in place of a smooth surface counts as a fold.
+        (report.self_intersections, report.folds + report.repaired, lack.max(0.0))
+    }
+
+    fn better(&self, one: Option<Fill>, other: Fill) -> Fill {
+        one.filter(|one| self.rank(one) <= self.rank(&other)).unwrap_or(other)
+    }
+
+    /// The best of patches made in different ways.
     fn fill(&self, progress: Progress<'_>) -> Result<Fill> {
         let mut clock = Clock::new();
-        let border = self.border();
-        let mut shape = self.made(&border, &mut clock, progress.part(0.0, 0.6))?;
-        let mut repaired = 0;
-        if self.options.smooth != Smooth::Flat && self.meets(&shape, progress.part(0.6, 0.65))? {
-            // Where the surfaces around cannot go on a film may do.
-            let options = FillOptions { smooth: Smooth::Flat, ..self.options.clone() };
-            let film = Several { options: &options, ..*self };
-            let other = film.made(&border, &mut clock, progress.part(0.65, 0.95))?;
-            if !self.meets(&other, progress.part(0.95, 1.0))? {
-                (shape, repaired) = (Shape { smooth: self.options.smooth, ..other }, 1);
+        let unsound = |best: &Option<Fill>| best.as_ref().is_none_or(|fill| self.rank(fill) > SOUND);
+        let mut best = self.best_arms(&STRAIGHT, None, &mut clock, progress.part(0.0, 0.3))?;
+        let mut refused = None;
+        if unsound(&best) {
+            match self.in_one(&mut clock, progress.part(0.3, 0.6)) {
+                Ok((shape, repaired)) => {
+                    let fill = self.counted(shape, repaired, &mut clock, progress.part(0.6, 0.7))?;
+                    best = Some(self.better(best, fill));
+                }
+                Err(error) if is_final(&error) => return Err(error),
+                Err(error) => refused = Some(error),
             }
         }
-        clock.stage("fair");
-        Ok(self.finish(shape, repaired, clock))
+        if unsound(&best) {
+            best = self.best_arms(&BENT, best, &mut clock, progress.part(0.7, 1.0))?;
+        }
+        let mut fill = match (best, refused) {
+            (Some(fill), None) => fill,
+            (Some(fill), Some(_)) if fill.report.self_intersections == 0 => fill,
+            (_, Some(error)) => return Err(error),
+            (None, None) => return Err(Error::Internal { reason: "neither a patch nor an error" }),
+        };
+        fill.report.seconds = clock.seconds;
+        Ok(fill)
+    }
+
+    /// The best of a patch and those of tubes that come together.
+    fn best_arms(
+        &self,
+        limits: &Limits,
+        mut best: Option<Fill>,
+        clock: &mut Clock,
+        progress: Progress<'_>,
+    ) -> Result<Option<Fill>> {
+        let part = |k: usize| k as f64 / SHARES.len() as f64;
+        for (k, share) in SHARES.into_iter().enumerate() {
+            let part = progress.part(part(k), part(k + 1));
+            let Some(hub) = Hub::new(self, limits, share) else { continue };
+            match self.arms(&hub, clock, part.part(0.0, 0.8)) {
+                Ok((shape, least)) => {
+                    let fill = self.counted(shape, 0, clock, part.part(0.8, 1.0))?;
+                    let (meetings, folds, _) = self.rank(&fill);
+                    best = Some(self.better(best, fill));
+                    // What tubes lack in corners they lack beside any hub.
+                    if (meetings, folds) == (0, 0) && least > enough(self.options.cells) - GOOD {
+                        break;
+                    }
+                }
+                Err(error) if is_final(&error) => return Err(error),
+                // What cannot be made so is made otherwise.
+                Err(_) => {}
+            }
+        }
+        Ok(best)
+    }
+
+    /// A patch that knows what it meets.
+    fn counted(
+        &self,
+        shape: Shape,
+        repaired: usize,
+        clock: &mut Clock,
+        progress: Progress<'_>,
+    ) -> Result<Fill> {
+        let options = FillOptions { strict: false, ..self.options.clone() };
+        let job = Job { vertices: self.vertices, triangles: self.triangles, options: &options };
+        let mut fills = [Ok(self.finish(shape, repaired))];
+        job.count_meetings(&mut fills, progress)?;
+        clock.stage("intersections");
+        let [fill] = fills;
+        fill
     }
 
     /// Refuses loops that look away from each other, if any do.
@@ -119,213 +196,7 @@ impl Several<'_> {
         Err(Error::Loops(LoopError::LookApart { loops, vertices }))
     }
 
-    /// Whether a patch meets itself or what is around it.
-    fn meets(&self, shape: &Shape, progress: Progress<'_>) -> Result<bool> {
-        Ok(shape.faults(&shape.positions, 1, progress)?.meetings > 0)
-    }
-
-    /// The patch, in its place.
-    fn made(&self, border: &Border, clock: &mut Clock, progress: Progress<'_>) -> Result<Shape> {
-        if self.options.cells == CellShape::Quad {
-            return self.quads(border, clock, progress);
-        }
-        let (mut local, even) = self.even(border, clock, progress.part(0.0, 0.85))?;
-        let work = self.patchwork(border, local.positions.len(), &local.triangles)?;
-        let mut shape = self.shape(border, work);
-        shape.positions = self.placed(&shape, &even, &local.positions, progress.part(0.85, 0.95))?;
-        let near = self.near(border, &local);
-        self.mended(&mut shape, &mut local, &even, &near, progress.part(0.95, 1.0))?;
-        Ok(shape)
-    }
-
-    /// Even triangles between the places of a border on a surface that is smooth to what lies beyond, and where they were
-    /// before the last smoothing.
-    fn even(
-        &self,
-        border: &Border,
-        clock: &mut Clock,
-        progress: Progress<'_>,
-    ) -> Result<(Local, Vec<DVec3>)> {
-        let Border { loops, at, outside, taken, beyond, .. } = border;
-        let outline = Outline { loops, at, outside, taken };
-        let (positions, triangles) = triangulated(&outline, self.spanning, progress.part(0.0, 0.35))?;
-        clock.stage("surface");
-        let mut local = border.local(positions.clone(), triangles.clone());
-        // Nothing smooths a surface that has to turn round and meets itself from the first.
-        if self.apart.is_some()
-            && !tangled(&local, &self.near(border, &local), progress.part(0.35, 0.35))?.is_empty()
-        {
-            self.refuse_apart()?;
-        }
-        let mut is_flat = self.options.smooth == Smooth::Flat;
-        if !is_flat && !self.shaped(&mut local, beyond, progress.part(0.35, 0.6))? {
-            local = border.local(positions, triangles);
-            is_flat = true;
-        }
-        if is_flat {
-            let ground = Ground::of(&local);
-            remesh(&mut local, &ground, progress.part(0.35, 0.6))?;
-            regularize(&mut local, Some(&ground), progress.part(0.6, 0.7))?;
-        } else {
-            regularize(&mut local, None, progress.part(0.6, 0.7))?;
-            let near = self.near(border, &local);
-            unfold(&mut local, &near, progress.part(0.7, 0.76))?;
-        }
-        clock.stage("grid");
-        let even = local.positions.clone();
-        if !is_flat {
-            for round in 0..=ROUNDS {
-                let part = |k: usize| 0.76 + 0.18 * k as f64 / (ROUNDS + 1) as f64;
-                if round > 0 {
-                    flip_valences(&mut local);
-                    mend_thin(&mut local);
-                }
-                local.positions = fair(&local, beyond, progress.part(part(round), part(round + 1)))?;
-            }
-        }
-        let near = self.near(border, &local);
-        untangle(&mut local, &even, &near, polish, progress.part(0.94, 1.0))?;
-        Ok((local, even))
-    }
-
-    fn near(&self, border: &Border, local: &Local) -> Near {
-        let around = Box3::around(local.positions.iter().copied());
-        Near::new(around, self.vertices, self.triangles, &border.place)
-    }
-
-    /// The patch of triangles over `end` vertices, and what is around it.
-    fn patchwork(&self, border: &Border, end: usize, triangles: &[[u32; 3]]) -> Result<Patchwork> {
-        let rings = rings(self.options.smooth);
-        let mut work =
-            Patchwork::new(&border.vertices, end - border.vertices.len(), triangles, self.rim, rings)?;
-        work.later = border.loops.starts[1..].to_vec();
-        Ok(work)
-    }
-
-    /// What the patch is, but for positions.
-    fn shape(&self, border: &Border, work: Patchwork) -> Shape {
-        Shape {
-            flat: vec![DVec2::ZERO; work.end],
-            bridged: (work.later.iter().zip(&self.checked[1..]))
-                .map(|(&first, checked)| Bridged {
-                    first,
-                    reversed: checked.reversed,
-                    pull: 1.0,
-                    leaving: Leaving::Direct,
-                })
-                .collect(),
-            work,
-            loop_: border.vertices.clone(),
-            reversed: self.checked[0].reversed,
-            smooth: self.options.smooth,
-            vertices: self.vertices.len(),
-            positions: vec![],
-            creases: vec![],
-        }
-    }
-
-    /// Makes the triangles even on a surface that is made smooth: shape and triangles depend on each other. Fairing spreads the
-    /// vertices too: to project them to a surface with two sheets close to each other would mix these up.
-    ///
-    /// False if there is no end to it: each smoother surface is larger, as where what lies beyond crosses itself.
-    fn shaped(&self, local: &mut Local, beyond: &Beyond, progress: Progress<'_>) -> Result<bool> {
-        refine(local);
-        let mut least = local.positions.len();
-        for round in 0..SHAPED {
-            let part = progress.part(round as f64 / SHAPED as f64, (round + 1) as f64 / SHAPED as f64);
-            local.positions = fair(local, beyond, part)?;
-            let before = local.positions.len() as f64;
-            adapt(local);
-            least = least.min(local.positions.len());
-            if local.positions.len() > GROWN * least {
-                return Ok(false);
-            }
-            if round > 1 && (local.positions.len() as f64 - before).abs() < SETTLED * before {
-                break;
-            }
-        }
-        Ok(true)
-    }
-
-    /// Makes thin triangles of the patch in its place rounder, and takes back what meets something.
-    fn mended(
-        &self,
-        shape: &mut Shape,
-        local: &mut Local,
-        even: &[DVec3],
-        near: &Near,
-        progress: Progress<'_>,
-    ) -> Result<()> {
-        let end = shape.work.end;
-        local.positions = shape.positions[..end].to_vec();
-        let before = tangled(local, near, progress.part(0.0, 0.3))?.len();
-        let folds_before = folds(&shape.work, &shape.positions);
-        let bad = untangle(local, even, near, polish, progress.part(0.3, 1.0))?;
-        let mended = [&local.positions[..], &shape.positions[end..]].concat();
-        if bad.len() <= before && folds(&shape.work, &mended) <= folds_before {
-            shape.positions = mended;
-        }
-        Ok(())
-    }
-
-    /// The smoothest positions of all that meet least.
-    fn placed(
-        &self,
-        shape: &Shape,
-        even: &[DVec3],
-        faired: &[DVec3],
-        progress: Progress<'_>,
-    ) -> Result<Vec<DVec3>> {
-        let own = &shape.work;
-        // Quads are placed with a vertex in the middle of each.
-        let centred = if own.quads > 0 { Some(shape.centred()?) } else { None };
-        let solver = centred.as_ref().unwrap_or(shape);
-        let work = &solver.work;
-        let outer = work.outer.iter().map(|&v| self.vertices[v as usize]).collect::<Vec<_>>();
-        let all = |positions: &[DVec3]| {
-            let middle = |q: [u32; 4]| q.iter().map(|&v| positions[v as usize]).sum::<DVec3>() / 4.0;
-            let middles = own.quads().map(middle);
-            positions.iter().copied().chain(middles).chain(outer.iter().copied()).collect::<Vec<_>>()
-        };
-        let mut choices = vec![];
-        if self.options.smooth == Smooth::Flat {
-            let mut film = all(even);
-            let weights = work.cotangents(&film).into_iter().map(|w| w.max(LEAST_WEIGHT)).collect::<Vec<_>>();
-            let found =
-                Membrane::new(work, progress)?.harmonic(&weights, |v| film[v].to_array(), progress)?;
-            for (v, p) in work.inner().zip(found) {
-                film[v] = p.into();
-            }
-            choices.push(film);
-        } else {
-            let mut bent = all(faired);
-            match solver.bend(&mut bent, None, &mut vec![], progress.part(0.0, 0.5)) {
-                Ok(()) => choices.push(bent),
-                // Triangles without area spoil the equations.
-                Err(Error::Solver { .. }) => {}
-                Err(other) => return Err(other),
-            }
-            choices.push(all(faired));
-            choices.push(all(&even.iter().zip(faired).map(|(p, q)| p.midpoint(*q)).collect::<Vec<_>>()));
-        }
-        choices.push(all(even));
-        let mut best: Option<(Faults, Vec<DVec3>)> = None;
-        for mut choice in choices.into_iter().filter(|choice| choice.iter().all(|p| p.is_finite())) {
-            choice.drain(own.end..work.end);
-            let most = best.as_ref().map_or(usize::MAX, |best| best.0.meetings + 1);
-            let faults = shape.faults(&choice, most, progress.part(0.5, 1.0))?;
-            if best.as_ref().is_none_or(|best| faults < best.0) {
-                best = Some((faults, choice));
-            }
-            if best.as_ref().is_some_and(|best| best.0 == Faults::default()) {
-                break;
-            }
-        }
-        let found = best.ok_or(Error::Solver { stage: "fill", reason: "a vertex is not finite".into() })?;
-        Ok(found.1)
-    }
-
-    fn finish(&self, shape: Shape, repaired: usize, clock: Clock) -> Fill {
+    fn finish(&self, shape: Shape, repaired: usize) -> Fill {
         let work = &shape.work;
         let loops = self.checked.iter().map(|c| c.vertices.as_slice());
         let [irregular, irregular_loop] = work.irregular(loops, self.rim, &self.options.polygons);
@@ -345,7 +216,6 @@ impl Several<'_> {
             max_angle,
             folds: folds(work, &shape.positions),
             repaired,
-            seconds: clock.seconds,
             ..FillReport::default()
         };
         let given = |c: &Checked| {

@@ -169,12 +169,12 @@ pub(super) fn onward(points: &[DVec3], apexes: &[Option<DVec3>]) -> Vec<DVec3> {
 
 /// The mean of the directions in which the surface goes on from the vertices of a loop: of length 1 at the end of a pipe, zero at a
 /// hole in a sheet.
-pub(super) fn ahead(onward: &[DVec3]) -> DVec3 {
+pub(in crate::fill) fn ahead(onward: &[DVec3]) -> DVec3 {
     onward.iter().sum::<DVec3>() / onward.len() as f64
 }
 
 /// Whether a loop, by the directions in which the surface goes on from its vertices, is the end of a pipe.
-pub(super) fn is_pipe(onward: &[DVec3]) -> bool {
+pub(in crate::fill) fn is_pipe(onward: &[DVec3]) -> bool {
     ahead(onward).length() >= PIPE
 }
 

@@ -17,6 +17,13 @@ use crate::progress::Progress;
 /// Steps towards the wanted curvature.
 const CURVED: usize = 2;
 
+/// Shares of these steps that are tried.
+const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
+
+/// What has to be left of the least corner, or of a good one if that is less, in radians.
+const KEPT: f64 = 0.75;
+const GOOD: f64 = 0.35;
+
 impl Shape {
     /// Positions of a bridge for a mesh with vertices at `mesh`: on the surface between its loops where they were on
     /// the old one.
@@ -80,7 +87,8 @@ impl Shape {
         Ok(curved)
     }
 
-    /// Moves the vertices of a bridge along their normals towards the curvature of the surroundings.
+    /// Moves the vertices of a bridge along their normals towards the curvature of the surroundings: as far as corners stay good. Next to
+    /// loops that zigzag they do not.
     pub(super) fn curved(&self, start: Vec<DVec3>, progress: Progress<'_>) -> Result<Vec<DVec3>> {
         let work = &self.work;
         if work.inner().is_empty() || !work.closed[..work.n].contains(&true) {
@@ -98,11 +106,17 @@ impl Shape {
             }
             Ok(positions)
         };
-        match steps() {
+        let curved = match steps() {
             // Triangles without area spoil the equations.
-            Err(Error::Solver { .. }) => Ok(start),
-            other => other,
-        }
+            Err(Error::Solver { .. }) => return Ok(start),
+            other => other?,
+        };
+        let least = |positions: &[DVec3]| work.corner_range(positions)[0];
+        let enough = KEPT * least(&start).min(GOOD);
+        let towards =
+            |share: f64| start.iter().zip(&curved).map(|(a, b)| a.lerp(*b, share)).collect::<Vec<_>>();
+        let nearer = SHARES.into_iter().map(towards).find(|positions| least(positions) >= enough);
+        Ok(nearer.unwrap_or(start))
     }
 }
 

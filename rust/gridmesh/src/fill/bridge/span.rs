@@ -40,7 +40,7 @@ const GOOD: f64 = 0.35;
 const SMOOTH: f64 = 0.5;
 
 /// A tube that does not know yet what it meets.
-pub(super) fn tube(
+pub(in crate::fill) fn tube(
     vertices: &[DVec3],
     triangles: &[[u32; 3]],
     given: [&[u32]; 2],
@@ -371,7 +371,7 @@ impl<'a> Span<'a> {
 }
 
 /// See [`onward`], for a loop of a mesh.
-pub(super) fn onward_of(loop_: &[u32], rim: &Rim, vertices: &[DVec3]) -> Vec<DVec3> {
+pub(in crate::fill) fn onward_of(loop_: &[u32], rim: &Rim, vertices: &[DVec3]) -> Vec<DVec3> {
     let apex = |k: usize| {
         let (a, b) = (rim.local(loop_[k])?, rim.local(loop_[(k + 1) % loop_.len()])?);
         let fan = rim.around(a).iter().map(|&t| rim.triangles[t as usize]);

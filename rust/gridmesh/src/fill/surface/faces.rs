@@ -129,9 +129,7 @@ impl Shape {
         most: usize,
         progress: Progress<'_>,
     ) -> Result<Faults> {
-        let mut faults = Faults::of(&self.work, positions, most, progress)?;
-        faults.folds += self.work.concave(positions);
-        Ok(faults)
+        Faults::of(&self.work, positions, most, progress)
     }
 }
 
@@ -192,7 +190,7 @@ impl Patchwork {
     }
 
     /// How many corners of quads are beyond a straight angle, seen along the normal.
-    fn concave(&self, positions: &[DVec3]) -> usize {
+    pub fn concave(&self, positions: &[DVec3]) -> usize {
         let one = |quad: [u32; 4]| {
             let p = quad.map(|v| positions[v as usize]);
             let normal = (p[2] - p[0]).cross(p[3] - p[1]);

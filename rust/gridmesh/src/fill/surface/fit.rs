@@ -57,7 +57,7 @@ pub(in crate::fill) struct Faults {
     pub meetings: usize,
     /// The surface is not continued although it should be: the film was the only one without meetings.
     pub film: bool,
-    /// Inner edges with more than 120 degrees between the triangles.
+    /// Inner edges with more than 120 degrees between the triangles, and concave corners of quads.
     pub folds: usize,
 }
 
@@ -410,7 +410,7 @@ fn across_seams(work: &Patchwork, positions: &[DVec3]) -> Vec<(f64, f64)> {
     seams(work).into_iter().map(across).collect()
 }
 
-/// Inner edges of a patch whose triangles are more than 120 degrees apart.
+/// Inner edges of a patch whose triangles are more than 120 degrees apart, and concave corners of quads.
 pub(in crate::fill) fn folds(work: &Patchwork, positions: &[DVec3]) -> usize {
     const NONE: u32 = u32::MAX;
     let normal = |t: &[u32; 3]| {
@@ -431,5 +431,5 @@ pub(in crate::fill) fn folds(work: &Patchwork, positions: &[DVec3]) -> usize {
             }
         }
     }
-    count
+    count + work.concave(positions)
 }
