@@ -83,10 +83,8 @@ def fill():
     assert faces() == filled, "the redo panel did not fill again"
 
 
-def handle():
-    """Two holes in a ball become a handle by the panel's button; undone, by the Edge menu, with other options in the redo panel;
-    all selected, moved, scaled, undone, redone, saved, opened."""
-    yield from fresh()
+def opened_ball(*holes):
+    """A ball in Edit Mode, the rims of its holes selected."""
     with stage.override():
         bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=32)
         ob = bpy.context.object
@@ -95,8 +93,7 @@ def handle():
     import bmesh
 
     bm = bmesh.from_edit_mesh(ob.data)
-    holes = Vector((0.85, 0, 0.5)), Vector((0.85, 0, -0.5))
-    gone = [f for f in bm.faces if min((f.calc_center_median() - hole).length for hole in holes) < 0.25]
+    gone = [f for f in bm.faces if min((f.calc_center_median() - Vector(p)).length for p in holes) < 0.25]
     bmesh.ops.delete(bm, geom=gone, context="FACES")
     bm.select_mode = {"EDGE"}
     for edge in bm.edges:
@@ -104,6 +101,35 @@ def handle():
     bmesh.update_edit_mesh(ob.data)
     turn_view(1.1, 0.0, 0.5)
     bpy.ops.ed.undo_push(message="holes")
+    return ob
+
+
+def hub():
+    """Three holes in a ball get tubes that come together, by the panel's button and by the Edge menu; the view turned, undone, redone."""
+    yield from fresh()
+    ob = opened_ball((0.85, 0, 0.5), (0.7, 0.5, -0.5), (0.7, -0.5, -0.5))
+    yield from stage.open_sidebar()
+    open_faces = faces()
+    yield from stage.press_button("UI", "gridmesh_bridge", "")
+    joined = faces()
+    assert joined > open_faces, "the panel's button joined nothing"
+    yield from stage.picture("hub_1_joined")
+    assert max(vertex.co.x for vertex in ob.data.vertices) > 1.2, "the tubes do not stand on the outside"
+    yield from again_by_menu("E", "Grid Bridge", open_faces, "hub_2_menu")
+    assert faces() == joined, "the Edge menu joined nothing"
+    turn_view(0.7, 0.0, 1.2)
+    yield from stage.picture("hub_3_turned")
+    yield from undo()
+    assert faces() == open_faces, "undone"
+    yield from redo()
+    assert faces() == joined, "redone"
+
+
+def handle():
+    """Two holes in a ball become a handle by the panel's button; undone, by the Edge menu, with other options in the redo panel;
+    all selected, moved, scaled, undone, redone, saved, opened."""
+    yield from fresh()
+    ob = opened_ball((0.85, 0, 0.5), (0.85, 0, -0.5))
     yield from stage.open_sidebar()
     open_faces = faces()
     yield from stage.press_button("UI", "gridmesh_bridge", "")
@@ -249,4 +275,4 @@ def cut_side():
         yield from tool("builtin.select_box")
 
 
-SCENES = (fill, handle, cut, cut_drawn, cut_side)
+SCENES = (fill, handle, hub, cut, cut_drawn, cut_side)

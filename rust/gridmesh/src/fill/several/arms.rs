@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::border::Several;
 use super::hub::{Circle, Hub};
 use super::tour::spanning;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fill::bridge::{BridgeOptions, tube};
 use crate::fill::filled::Shape;
 use crate::fill::loops::check::check_loops;
@@ -95,10 +95,17 @@ impl Several<'_> {
     fn whole(&self, new: &[DVec3], faces: Faces) -> Result<Shape> {
         let border = self.border();
         let (n, old) = (border.vertices.len() as u32, self.vertices.len() as u32);
-        let named = |v: u32| if v < old { border.place[&v] } else { v - old + n };
+        let named = |v: u32| match border.place.get(&v) {
+            Some(&place) => Ok(place),
+            None => v
+                .checked_sub(old)
+                .map(|k| k + n)
+                .ok_or(Error::Internal { reason: "a new face has a vertex of the mesh that is of no loop" }),
+        };
+        let renamed = |[a, b, c]: [u32; 3]| Ok([named(a)?, named(b)?, named(c)?]);
         let Faces { halves, single } = faces;
         let quads = halves.len() / 2;
-        let triangles = halves.into_iter().chain(single).map(|t| t.map(named)).collect::<Vec<_>>();
+        let triangles = halves.into_iter().chain(single).map(renamed).collect::<Result<Vec<_>>>()?;
         let work = self.patchwork(&border, border.vertices.len() + new.len(), &triangles)?.of_quads(quads);
         let mut shape = self.shape(&border, work);
         let outer = shape.work.outer.iter().map(|&v| self.vertices[v as usize]);

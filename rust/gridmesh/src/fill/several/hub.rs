@@ -18,7 +18,7 @@ pub(super) struct Limits {
     keeps_near: bool,
     /// The least factor by which circles are smaller than the tubes.
     smaller: f64,
-    /// The least cosine by which tubes turn away from each other at the hub.
+    /// The least cosine between the way of a tube at the hub and that of an arc there: the ways are turned apart.
     spread: f64,
 }
 
