@@ -892,6 +892,7 @@ _LIBRARY = {
         "zwischen allen Schleifen träfe sich selbst; sie paarweise verbinden, oder Schleifen wählen, die einander ansehen"
     ),
     "two loops are not two": "zwei Schleifen sind nicht zwei",
+    "a new face has a vertex of the mesh that is of no loop": "eine neue Fläche hat einen Punkt des Netzes, der zu keiner Schleife gehört",
     "no faces were chosen; choose one connected region": (
         "keine Flächen wurden gewählt; ein zusammenhängendes Gebiet wählen"
     ),

@@ -23,7 +23,7 @@ use self::hub::{BENT, Hub, Limits, SHARES, STRAIGHT};
 use self::tour::turned;
 use crate::error::{Error, LoopError, Result};
 use crate::fill::bridge::apart;
-use crate::fill::filled::{Fill, Shape};
+use crate::fill::filled::{Fill, NO_ITEM, Shape};
 use crate::fill::job::{Job, SOUND_RINGS};
 use crate::fill::layout::unroll::Unrolling;
 use crate::fill::loops::check::{Checked, check_loops, check_near};
@@ -136,7 +136,7 @@ impl Several<'_> {
             (Some(fill), None) => fill,
             (Some(fill), Some(_)) if fill.report.self_intersections == 0 => fill,
             (_, Some(error)) => return Err(error),
-            (None, None) => return Err(Error::Internal { reason: "neither a patch nor an error" }),
+            (None, None) => return Err(NO_ITEM),
         };
         fill.report.seconds = clock.seconds;
         Ok(fill)

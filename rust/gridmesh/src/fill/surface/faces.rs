@@ -129,7 +129,9 @@ impl Shape {
         most: usize,
         progress: Progress<'_>,
     ) -> Result<Faults> {
-        Faults::of(&self.work, positions, most, progress)
+        let mut faults = Faults::of(&self.work, positions, most, progress)?;
+        faults.folds += self.work.concave(positions);
+        Ok(faults)
     }
 }
 

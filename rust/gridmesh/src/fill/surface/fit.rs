@@ -57,7 +57,7 @@ pub(in crate::fill) struct Faults {
     pub meetings: usize,
     /// The surface is not continued although it should be: the film was the only one without meetings.
     pub film: bool,
-    /// Inner edges with more than 120 degrees between the triangles, and concave corners of quads.
+    /// Inner edges with more than 120 degrees between the triangles; those of [`Shape::faults`] concave corners of quads, too.
     pub folds: usize,
 }
 
@@ -73,7 +73,7 @@ impl Faults {
         let apart = is_graph(&positions[..work.n], &positions[..work.end], own);
         let (meetings, _) = count_meetings(|v| positions[v as usize], own, around, apart, most, progress)?;
         let meetings = meetings.min(TANGLED);
-        Ok(Faults { meetings, film: false, folds: folds(work, positions) })
+        Ok(Faults { meetings, film: false, folds: folded_edges(work, positions) })
     }
 }
 
@@ -412,6 +412,10 @@ fn across_seams(work: &Patchwork, positions: &[DVec3]) -> Vec<(f64, f64)> {
 
 /// Inner edges of a patch whose triangles are more than 120 degrees apart, and concave corners of quads.
 pub(in crate::fill) fn folds(work: &Patchwork, positions: &[DVec3]) -> usize {
+    folded_edges(work, positions) + work.concave(positions)
+}
+
+fn folded_edges(work: &Patchwork, positions: &[DVec3]) -> usize {
     const NONE: u32 = u32::MAX;
     let normal = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|v| positions[v as usize]);
@@ -431,5 +435,5 @@ pub(in crate::fill) fn folds(work: &Patchwork, positions: &[DVec3]) -> usize {
             }
         }
     }
-    count + work.concave(positions)
+    count
 }
