@@ -66,21 +66,22 @@ def tilted(bm) -> None:
     pipe(bm, 32, 0.7, Matrix.Translation((0.3, 0, 0.85)) @ Matrix.Rotation(math.radians(-120), 4, "Y"))
 
 
+def holed_ball(bm, place, size, segments, way) -> None:
+    """A ball with a hole on one side."""
+    before = set(bm.verts)
+    bmesh.ops.create_uvsphere(bm, u_segments=segments, v_segments=segments // 2, radius=size)
+    new = [v for v in bm.verts if v not in before]
+    faces = {f for v in new for f in v.link_faces}
+    turn = Vector((0, 0, 1)).rotation_difference(way.normalized()).to_matrix().to_4x4()
+    gone = [f for f in faces if f.calc_center_median().normalized().z > 0.86]
+    bmesh.ops.transform(bm, matrix=Matrix.Translation(place) @ turn, verts=new)
+    bmesh.ops.delete(bm, geom=gone, context="FACES")
+
+
 def spheres(bm) -> None:
     """An arm's end beside a body, a hole in each."""
-    for place, size, segments, hole in (
-        ((-0.45, 0, -0.4), 0.85, 32, Vector((0.75, 0, 0.65))),
-        ((0.75, 0, 0.7), 0.45, 16, Vector((-0.75, 0, -0.65))),
-    ):
-        before = set(bm.verts)
-        bmesh.ops.create_uvsphere(bm, u_segments=segments, v_segments=segments // 2, radius=size)
-        new = [v for v in bm.verts if v not in before]
-        faces = {f for v in new for f in v.link_faces}
-        way = hole.normalized()
-        turn = Vector((0, 0, 1)).rotation_difference(way).to_matrix().to_4x4()
-        gone = [f for f in faces if f.calc_center_median().normalized().z > 0.86]
-        bmesh.ops.transform(bm, matrix=Matrix.Translation(place) @ turn, verts=new)
-        bmesh.ops.delete(bm, geom=gone, context="FACES")
+    holed_ball(bm, (-0.45, 0, -0.4), 0.85, 32, Vector((0.75, 0, 0.65)))
+    holed_ball(bm, (0.75, 0, 0.7), 0.45, 16, Vector((-0.75, 0, -0.65)))
 
 
 def trousers(bm) -> None:
@@ -124,15 +125,10 @@ def tunnel(bm) -> None:
 
 def balls(bm) -> None:
     """Three balls, each with a hole that looks at the middle between them."""
-    for turn in (0.5, 0.5 + math.tau / 3, 0.5 + 2 * math.tau / 3):
+    for k in range(3):
+        turn = 0.5 + k * math.tau / 3
         way = Vector((math.cos(turn), 0, math.sin(turn)))
-        faces = set(bm.faces)
-        new = bmesh.ops.create_uvsphere(bm, u_segments=32, v_segments=20, radius=0.45)["verts"]
-        bmesh.ops.rotate(bm, verts=new, matrix=Vector((0, 0, -1)).rotation_difference(way).to_matrix())
-        bmesh.ops.translate(bm, verts=new, vec=0.95 * way)
-        near = 0.55 * way
-        gone = [f for f in bm.faces if f not in faces and (f.calc_center_median() - near).length < 0.22]
-        bmesh.ops.delete(bm, geom=gone, context="FACES")
+        holed_ball(bm, 0.95 * way, 0.45, 32, -way)
 
 
 def slab(bm) -> None:

@@ -13,6 +13,7 @@ from collections import Counter
 import gridmesh
 import numpy as np
 from bridges import half_edges
+from holed import sheet, with_holes
 
 
 def ball(rings, around):
@@ -71,22 +72,18 @@ def case(seed, number, rings=60, around=110):
 def sheets(seed, number, rings=60):
     """A waved sheet with holes: vertices, faces, and the loops of the holes. Holes that touch are drawn anew."""
     rng = np.random.default_rng([seed, number])
-    n = 2 * rings
-    x, y = (axis.ravel() for axis in np.meshgrid(*[np.linspace(-2, 2, n)] * 2, indexing="ij"))
-    k = np.arange(n * n).reshape(n, n)[:-1, :-1].ravel()
-    every = np.r_[np.c_[k, k + n, k + n + 1], np.c_[k, k + n + 1, k + 1]]
+    wave, bend, along = rng.uniform(0, 0.1), rng.uniform(-0.2, 0.2), rng.uniform(-2, 2, 2)
+    vertices, quads = sheet(
+        lambda x, y: wave * np.sin(along[0] * x + along[1] * y) + bend * (x * x + y * y), 2 * rings
+    )
     while True:
         count = rng.integers(3, 7)
-        centres, sizes = rng.uniform(-1.4, 1.4, (count, 2)), rng.uniform(0.15, 0.45, count)
-        waves = rng.uniform(0, 0.1) * np.sin(rng.uniform(-2, 2, 2) @ [x, y]) + rng.uniform(-0.2, 0.2) * (
-            x * x + y * y
-        )
-        vertices = np.c_[x, y, waves]
-        off = np.linalg.norm(vertices[every].mean(axis=1)[:, None, :2] - centres, axis=2)
-        faces = every[(off > sizes).all(axis=1)]
-        loops = [loop for loop in boundary_loops(faces) if np.abs(vertices[loop, :2]).max() < 1.99]
-        gaps = np.linalg.norm(centres[:, None] - centres, axis=2) - sizes - sizes[:, None] + 9 * np.eye(count)
-        if len(loops) == count and gaps.min() > 0.15:
+        x, y = rng.uniform(-1.4, 1.4, (2, count))
+        centres = np.c_[x, y, wave * np.sin(along[0] * x + along[1] * y) + bend * (x * x + y * y)]
+        sizes = rng.uniform(0.15, 0.45, count)
+        gaps = np.linalg.norm(centres[:, None] - centres, axis=2) - sizes - sizes[:, None]
+        if gaps[np.triu_indices(count, 1)].min() > 0.15:
+            faces, _, loops = with_holes(vertices, quads, centres, sizes)
             return vertices, faces, loops
 
 

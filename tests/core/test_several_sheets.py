@@ -1,6 +1,5 @@
 """`fill_hole` between three loops and more that are holes in sheets, or ends of pipes that are far apart: tubes that come together."""
 
-import math
 import pickle
 import sys
 from pathlib import Path
@@ -12,7 +11,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "campaign"))
 
 import several
-from test_bridge_sheets import ball, followed, rims, sheet, with_holes
+from holed import ball, sheet, with_holes
 
 pytestmark = pytest.mark.native
 
@@ -61,15 +60,9 @@ HOLES = {
 }
 
 
-def sizes(radii, centres):
-    """Holes of different sizes in a plane."""
-    vertices, quads = PLANE
-    off = np.linalg.norm(vertices[quads].mean(axis=1)[:, None] - np.array(centres), axis=2)
-    kept = quads[(off > radii).all(axis=1)]
-    triangles = np.r_[kept[:, :3], kept[:, [0, 2, 3]]]
-    after = rims(triangles)
-    loops = [followed(after, min(after, key=lambda v: math.dist(vertices[v], centre))) for centre in centres]
-    return vertices, triangles, np.tile(np.arange(len(kept)), 2), loops
+def holed(vertices, quads, centres, radius):
+    """Vertices, triangles, the quad of each, and the loops of the holes."""
+    return vertices, *with_holes(vertices, quads, centres, radius)
 
 
 def pipes(*ends, length=1.0, rows=5):
@@ -105,19 +98,16 @@ def both(one, other):
 
 ARMS = pipes(((0, 0.8, 1.5), (0, -0.6, -0.8), 0.3, 23), ((0, -0.8, 1.5), (0, 0.6, -0.8), 0.25, 17))
 MIXED = {
-    "sizes": sizes([0.15, 0.15, 0.7], [[-1, -0.8, 0], [-0.4, -1, 0], [0.5, 0.7, 0]]),
-    "a hole and two pipes": both(sizes([0.4], [[0, 0, 0]]), ARMS),
-    "two holes and two pipes": both(sizes([0.4, 0.4], [[-0.8, 0, 0], [0.8, 0, 0]]), ARMS),
+    "sizes": holed(*PLANE, [[-1, -0.8, 0], [-0.4, -1, 0], [0.5, 0.7, 0]], [0.15, 0.15, 0.7]),
+    "a hole and two pipes": both(holed(*PLANE, [[0, 0, 0]], 0.4), ARMS),
+    "two holes and two pipes": both(holed(*PLANE, [[-0.8, 0, 0], [0.8, 0, 0]], 0.4), ARMS),
     "far pipes": pipes(*((2 * way, -way, 0.3, 20 + k) for k, way in enumerate(ring(4, 0.3)))),
 }
 
 
 def given(name):
     """Vertices, triangles, the quad of each, and loops."""
-    if name in MIXED:
-        return MIXED[name]
-    vertices, quads, centres, radius = HOLES[name]
-    return vertices, *with_holes(vertices, quads, centres, radius)
+    return MIXED[name] if name in MIXED else holed(*HOLES[name])
 
 
 def least(cells):

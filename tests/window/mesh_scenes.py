@@ -104,46 +104,19 @@ def opened_ball(*holes):
     return ob
 
 
-def hub():
-    """Three holes in a ball get tubes that come together, by the panel's button and by the Edge menu; the view turned, undone, redone."""
-    yield from fresh()
-    ob = opened_ball((0.85, 0, 0.5), (0.7, 0.5, -0.5), (0.7, -0.5, -0.5))
+def bridged_by_button(picture):
+    """Press the panel's button; faces before and after."""
     yield from stage.open_sidebar()
     open_faces = faces()
     yield from stage.press_button("UI", "gridmesh_bridge", "")
     joined = faces()
     assert joined > open_faces, "the panel's button joined nothing"
-    yield from stage.picture("hub_1_joined")
-    assert max(vertex.co.x for vertex in ob.data.vertices) > 1.2, "the tubes do not stand on the outside"
-    yield from again_by_menu("E", "Grid Bridge", open_faces, "hub_2_menu")
-    assert faces() == joined, "the Edge menu joined nothing"
-    turn_view(0.7, 0.0, 1.2)
-    yield from stage.picture("hub_3_turned")
-    yield from undo()
-    assert faces() == open_faces, "undone"
-    yield from redo()
-    assert faces() == joined, "redone"
+    yield from stage.picture(picture)
+    return open_faces, joined
 
 
-def handle():
-    """Two holes in a ball become a handle by the panel's button; undone, by the Edge menu, with other options in the redo panel;
-    all selected, moved, scaled, undone, redone, saved, opened."""
-    yield from fresh()
-    ob = opened_ball((0.85, 0, 0.5), (0.85, 0, -0.5))
-    yield from stage.open_sidebar()
-    open_faces = faces()
-    yield from stage.press_button("UI", "gridmesh_bridge", "")
-    joined = faces()
-    assert joined > open_faces, "the panel's button joined nothing"
-    yield from stage.picture("handle_1_joined")
-    reach = max(vertex.co.x for vertex in ob.data.vertices)
-    assert reach > 1.2, "the tube does not stand on the outside"
-    yield from again_by_menu("E", "Grid Bridge", open_faces, "handle_2_menu")
-    assert faces() == joined, "the Edge menu joined nothing"
-    hud = yield from stage.open_redo_panel()
-    assert (yield from numbers_of(hud, "rows", "12")), "Rows could not be changed"
-    assert open_faces < faces() < joined, "the redo panel did not join again"
-    yield from stage.picture("handle_3_rows")
+def handled(ob, picture):
+    """The only mesh, in Edit Mode: all selected, moved, scaled, undone, redone, saved, opened."""
     yield from stage.move(*stage.middle())
     yield from stage.key("TAB")
     yield 0.5
@@ -161,7 +134,41 @@ def handle():
     yield from reopened()
     (ob,) = mesh_objects()
     assert np.abs(points_of(ob) - put).max() < 1e-5, "redone, saved and opened"
-    yield from stage.picture("handle_4_scaled")
+    yield from stage.picture(picture)
+
+
+def handle():
+    """Two holes in a ball become a handle by the panel's button; undone, by the Edge menu, with other options in the redo panel."""
+    yield from fresh()
+    ob = opened_ball((0.85, 0, 0.5), (0.85, 0, -0.5))
+    open_faces, joined = yield from bridged_by_button("handle_1_joined")
+    reach = max(vertex.co.x for vertex in ob.data.vertices)
+    assert reach > 1.2, "the tube does not stand on the outside"
+    yield from again_by_menu("E", "Grid Bridge", open_faces, "handle_2_menu")
+    assert faces() == joined, "the Edge menu joined nothing"
+    hud = yield from stage.open_redo_panel()
+    assert (yield from numbers_of(hud, "rows", "12")), "Rows could not be changed"
+    assert open_faces < faces() < joined, "the redo panel did not join again"
+    yield from stage.picture("handle_3_rows")
+    yield from handled(ob, "handle_4_scaled")
+
+
+def hub():
+    """Three holes in a ball get tubes that come together, by the panel's button and by the Edge menu; the view turned, undone, redone."""
+    yield from fresh()
+    ob = opened_ball((0.85, 0, 0.5), (0.7, 0.5, -0.5), (0.7, -0.5, -0.5))
+    open_faces, joined = yield from bridged_by_button("hub_1_joined")
+    reach = max(vertex.co.x for vertex in ob.data.vertices)
+    assert reach > 1.2, "the tubes do not stand on the outside"
+    yield from again_by_menu("E", "Grid Bridge", open_faces, "hub_2_menu")
+    assert faces() == joined, "the Edge menu joined nothing"
+    turn_view(0.7, 0.0, 1.2)
+    yield from stage.picture("hub_3_turned")
+    yield from undo()
+    assert faces() == open_faces, "undone"
+    yield from redo()
+    assert faces() == joined, "redone"
+    yield from handled(ob, "hub_4_scaled")
 
 
 def ball(**options):

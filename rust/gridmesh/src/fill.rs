@@ -73,8 +73,9 @@ pub fn fill_hole(
 
 /// Fills one hole that has several loops: a patch whose boundary they all are.
 ///
-/// One loop is filled as by [`fill_hole`], two are joined by a tube as by [`bridge()`]. Between three or more a tube leaves each loop where there is
-/// room; where these come together, or between the loops themselves, the faces are even, but no grid. The patch is a sphere with as many holes, every loop is exact and untouched, each of its edges gets one new face, no edge of the mesh is
+/// One loop is filled as by [`fill_hole`], two are joined by a tube as by [`bridge()`]. Between three or more a tube leaves each loop
+/// where there is room; where these come together, or between the loops themselves, the faces are even, but no grid. The patch is a
+/// sphere with as many holes, every loop is exact and untouched, each of its edges gets one new face, no edge of the mesh is
 /// repeated, and the surface goes on from what is around all loops. Loops without faces are taken the way round that suits the
 /// nearest others. Quads are pairs of triangles of twice the size, each cut into four; if the loops have an odd number of edges in sum
 /// one face is a triangle. The loop of the [`Fill`] is the loops one after the other.

@@ -28,6 +28,7 @@ use crate::fill::job::Job;
 use crate::fill::parallel::steady;
 use crate::progress::Progress;
 
+pub(in crate::fill) use self::necks::ALIKE;
 pub use self::options::BridgeOptions;
 pub(in crate::fill) use self::pairs::apart;
 pub use self::pairs::{Pair, bridge_pairs, look_apart};

@@ -19,7 +19,7 @@ mod tour;
 use glam::DVec3;
 
 use self::border::Several;
-use self::hub::{BENT, Hub, Limits, SHARES, STRAIGHT};
+use self::hub::{BENT, Limits, SHARES, STRAIGHT, circles};
 use self::tour::turned;
 use crate::error::{Error, LoopError, Result};
 use crate::fill::bridge::apart;
@@ -31,11 +31,11 @@ use crate::fill::loops::mesh::Rim;
 use crate::fill::loops::touching::check_apart;
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::report::{FillReport, Grid};
+use crate::fill::surface::faces::good_corner;
 use crate::fill::surface::fit::{folds, rim_angle};
-use crate::options::CellShape;
 use crate::progress::{Clock, Progress};
 
-/// How bad a patch is: what it meets, its folds, and how far its least corner is below one that is [`enough`], in radians.
+/// How bad a patch is: what it meets, its folds, and how far its least corner is below a good one, in radians.
 type Rank = (usize, usize, f64);
 
 /// A patch between circles that lacks less of the least corner is not compared with those between others.
@@ -88,14 +88,6 @@ fn rings(smooth: Smooth) -> usize {
     if smooth == Smooth::Curvature { 2 } else { 1 }
 }
 
-/// Of two patches that meet nothing and have no fold, and no corner below this, neither is better. In radians.
-fn enough(cells: CellShape) -> f64 {
-    match cells {
-        CellShape::Triangle => 0.35,
-        CellShape::Quad => 0.5,
-    }
-}
-
 /// Whether to go on with something else makes no sense.
 fn is_final(error: &Error) -> bool {
     matches!(error, Error::Cancelled | Error::Internal { .. })
@@ -104,7 +96,7 @@ fn is_final(error: &Error) -> bool {
 impl Several<'_> {
     fn rank(&self, fill: &Fill) -> Rank {
         let report = &fill.report;
-        let lack = enough(self.options.cells) - report.min_angle;
+        let lack = good_corner(self.options.cells) - report.min_angle;
         // A film in place of a smooth surface counts as a fold.
         (report.self_intersections, report.folds + report.repaired, lack.max(0.0))
     }
@@ -153,14 +145,14 @@ impl Several<'_> {
         let part = |k: usize| k as f64 / SHARES.len() as f64;
         for (k, share) in SHARES.into_iter().enumerate() {
             let part = progress.part(part(k), part(k + 1));
-            let Some(hub) = Hub::new(self, limits, share) else { continue };
-            match self.arms(&hub, clock, part.part(0.0, 0.8)) {
+            let Some(circles) = circles(self, limits, share) else { continue };
+            match self.arms(&circles, clock, part.part(0.0, 0.8)) {
                 Ok((shape, least)) => {
                     let fill = self.counted(shape, 0, clock, part.part(0.8, 1.0))?;
                     let (meetings, folds, _) = self.rank(&fill);
                     best = Some(self.better(best, fill));
                     // What tubes lack in corners they lack beside any hub.
-                    if (meetings, folds) == (0, 0) && least > enough(self.options.cells) - GOOD {
+                    if (meetings, folds) == (0, 0) && least > good_corner(self.options.cells) - GOOD {
                         break;
                     }
                 }

@@ -8,7 +8,7 @@ use super::rail::{Curves, Edge, Rail, Spot, ahead, arc_slope, is_pipe, is_sheet}
 use crate::fill::filled::Leaving;
 
 /// Loops look the same way if the cosine of the angle between their normals is above this.
-const ALIKE: f64 = 0.25;
+pub(in crate::fill) const ALIKE: f64 = 0.25;
 
 /// Loops see each other if the sum of the cosines with which each has the other one in front of it is above this, and none is
 /// below the opposite; likewise behind them. Below it they lie side by side, or one in the other.

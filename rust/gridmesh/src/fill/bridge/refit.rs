@@ -9,9 +9,11 @@ use super::rail::{Edge, onward};
 use crate::error::{Error, Result};
 use crate::fill::filled::{Bridged, Shape};
 use crate::fill::options::Smooth;
+use crate::fill::surface::faces::good_corner;
 use crate::fill::surface::fair::{Bending, Membrane};
 use crate::fill::surface::fit::{SEAM_OF_CURVATURE, curvature_target};
 use crate::fill::surface::patchwork::Patchwork;
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Steps towards the wanted curvature.
@@ -20,9 +22,8 @@ const CURVED: usize = 2;
 /// Shares of these steps that are tried.
 const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
 
-/// What has to be left of the least corner, or of a good one if that is less, in radians.
+/// What has to be left of the least corner, or of a good one if that is less.
 const KEPT: f64 = 0.75;
-const GOOD: f64 = 0.35;
 
 impl Shape {
     /// Positions of a bridge for a mesh with vertices at `mesh`: on the surface between its loops where they were on
@@ -87,8 +88,8 @@ impl Shape {
         Ok(curved)
     }
 
-    /// Moves the vertices of a bridge along their normals towards the curvature of the surroundings: as far as corners stay good. Next to
-    /// loops that zigzag they do not.
+    /// Moves the vertices of a bridge along their normals towards the curvature of the surroundings, as far as corners stay good:
+    /// beside loops that zigzag the curvature is not smooth.
     pub(super) fn curved(&self, start: Vec<DVec3>, progress: Progress<'_>) -> Result<Vec<DVec3>> {
         let work = &self.work;
         if work.inner().is_empty() || !work.closed[..work.n].contains(&true) {
@@ -112,7 +113,7 @@ impl Shape {
             other => other?,
         };
         let least = |positions: &[DVec3]| work.corner_range(positions)[0];
-        let enough = KEPT * least(&start).min(GOOD);
+        let enough = KEPT * least(&start).min(good_corner(CellShape::Triangle));
         let towards =
             |share: f64| start.iter().zip(&curved).map(|(a, b)| a.lerp(*b, share)).collect::<Vec<_>>();
         let nearer = SHARES.into_iter().map(towards).find(|positions| least(positions) >= enough);

@@ -21,7 +21,7 @@ use crate::fill::loops::reserve::{edges, wanted};
 use crate::fill::loops::touching::check_apart;
 use crate::fill::options::{FillOptions, Smooth};
 use crate::fill::report::{FillReport, Grid};
-use crate::fill::surface::faces::cut;
+use crate::fill::surface::faces::{cut, good_corner};
 use crate::fill::surface::fit::{folds, rim_angle};
 use crate::fill::surface::patchwork::Patchwork;
 use crate::options::CellShape;
@@ -32,9 +32,6 @@ const PULLS: [f64; 3] = [0.6, 0.35, 0.15];
 
 /// A lattice whose least angle is below this, in radians, is compared with rings of any lengths.
 const THIN: f64 = 0.2;
-
-/// Triangles have good corners above this, in radians; quads above half as much again.
-const GOOD: f64 = 0.35;
 
 /// Faces of a tube that turn from those around it by more than this go on as an edge, not smoothly.
 const SMOOTH: f64 = 0.5;
@@ -150,10 +147,7 @@ impl<'a> Span<'a> {
 
     /// How bad a tube is: its folds; and its corners and the edge along its rim, good up to 1.
     fn rank(&self, tube: &Attempt) -> (usize, f64) {
-        let good = match self.options.cells {
-            CellShape::Triangle => GOOD,
-            CellShape::Quad => 1.5 * GOOD,
-        };
+        let good = good_corner(self.options.cells);
         let edge = rim_angle(&tube.shape.work, &tube.shape.positions) / SMOOTH;
         (tube.folds, edge.max(good / tube.angles[0].max(f64::MIN_POSITIVE)))
     }

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::border::Several;
-use super::hub::{Circle, Hub};
+use super::hub::Circle;
 use super::tour::spanning;
 use crate::error::{Error, Result};
 use crate::fill::bridge::{BridgeOptions, tube};
@@ -25,14 +25,18 @@ impl Several<'_> {
     ///
     /// # Errors
     /// Those of [`tube`], and of a patch between the circles.
-    pub(super) fn arms(&self, hub: &Hub, clock: &mut Clock, progress: Progress<'_>) -> Result<(Shape, f64)> {
+    pub(super) fn arms(
+        &self,
+        circles: &[Circle],
+        clock: &mut Clock,
+        progress: Progress<'_>,
+    ) -> Result<(Shape, f64)> {
         let mut mesh = Mesh::around(self);
-        let circles = hub.circles.iter().map(|circle| mesh.points(&circle.points)).collect::<Vec<_>>();
+        let loops = circles.iter().map(|circle| mesh.points(&circle.points)).collect::<Vec<_>>();
         let mut faces = Faces::default();
-        for (k, (circle, numbers)) in hub.circles.iter().zip(&circles).enumerate() {
+        for (k, (circle, loop_)) in circles.iter().zip(&loops).enumerate() {
             let part = |k: usize| 0.5 * k as f64 / circles.len() as f64;
-            let (tube, quads) =
-                self.arm(&mut mesh, k, circle, numbers, progress.part(part(k), part(k + 1)))?;
+            let (tube, quads) = self.arm(&mut mesh, k, circle, loop_, progress.part(part(k), part(k + 1)))?;
             mesh.add(&tube, quads);
             faces.add(tube, quads);
         }
@@ -44,8 +48,8 @@ impl Several<'_> {
             ..self.options.clone()
         };
         let rim =
-            Rim::new(mesh.vertices.len(), &mesh.triangles, &circles.concat(), super::rings(options.smooth))?;
-        let checked = check_loops(&circles, &mesh.vertices, &rim)?;
+            Rim::new(mesh.vertices.len(), &mesh.triangles, &loops.concat(), super::rings(options.smooth))?;
+        let checked = check_loops(&loops, &mesh.vertices, &rim)?;
         let between = Several {
             vertices: &mesh.vertices,
             triangles: &mesh.triangles,
@@ -69,18 +73,18 @@ impl Several<'_> {
         mesh: &mut Mesh,
         k: usize,
         circle: &Circle,
-        numbers: &[u32],
+        loop_: &[u32],
         progress: Progress<'_>,
     ) -> Result<(Vec<[u32; 3]>, usize)> {
         let before = [mesh.vertices.len(), mesh.triangles.len()];
-        mesh.go_on(circle, numbers);
+        mesh.go_on(circle, loop_);
         let options = BridgeOptions {
             cells: self.options.cells,
             smooth: self.options.smooth,
             ..BridgeOptions::default()
         };
         let rest = FillOptions { polygons: mesh.polygons.clone(), ..self.options.clone() };
-        let loops = [self.checked[k].vertices.as_slice(), numbers];
+        let loops = [self.checked[k].vertices.as_slice(), loop_];
         let made = tube(&mesh.vertices, &mesh.triangles, loops, &options, &rest, progress)?;
         let beyond = (mesh.vertices.len() - before[0]) as u32;
         mesh.vertices.truncate(before[0]);
@@ -153,19 +157,19 @@ impl Mesh {
         self.polygons.extend(halves.chain(quads as u32..).take(triangles.len()).map(|k| first + k));
     }
 
-    /// Adds rows of quads beyond a circle, whose vertices have these numbers.
-    fn go_on(&mut self, circle: &Circle, numbers: &[u32]) {
+    /// Adds rows of quads beyond a circle, whose vertices are a loop.
+    fn go_on(&mut self, circle: &Circle, loop_: &[u32]) {
         let step = circle.points[0].distance(circle.points[1]);
-        let mut before = numbers.to_vec();
+        let mut before = loop_.to_vec();
         for row in 1..=ROWS {
             let points = circle.points.iter().map(|&p| p + row as f64 * step * circle.way);
             let after = self.points(&points.collect::<Vec<_>>());
-            let next = |k: usize| (k + 1) % numbers.len();
-            let halves = (0..numbers.len()).flat_map(|k| {
+            let next = |k: usize| (k + 1) % loop_.len();
+            let halves = (0..loop_.len()).flat_map(|k| {
                 let [a, b, c, d] = [before[k], before[next(k)], after[next(k)], after[k]];
                 [[a, b, c], [a, c, d]]
             });
-            self.add(&halves.collect::<Vec<_>>(), numbers.len());
+            self.add(&halves.collect::<Vec<_>>(), loop_.len());
             before = after;
         }
     }

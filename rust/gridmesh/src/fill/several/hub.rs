@@ -7,7 +7,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::border::Several;
 use crate::fill::bridge::align::Ring;
-use crate::fill::bridge::{ahead, is_pipe, onward_of};
+use crate::fill::bridge::{ALIKE, ahead, is_pipe, onward_of};
 use crate::fill::loops::check::Checked;
 
 /// How far tubes may be bent to come to a hub.
@@ -31,9 +31,6 @@ pub(super) const BENT: Limits = Limits { ahead: 0.3, keeps_near: false, smaller:
 /// The least cosine between the normal of a hole in a sheet and the way to the centre, one after the other. The later ones only where
 /// all holes look the same way: the lower the centre, the more tubes lean over.
 const LEANING: [f64; 3] = [0.7, 0.5, 0.35];
-
-/// Holes look the same way if the cosine of the angle between their normals is above this.
-const ALIKE: f64 = 0.25;
 
 /// Circles take up this part of the angles between them.
 pub(super) const SHARES: [f64; 3] = [0.6, 0.5, 0.7];
@@ -64,13 +61,9 @@ const DRAWN: f64 = 0.01;
 const LIFTS: usize = 25;
 const HIGHEST: f64 = 2.5;
 
-/// The hub between loops.
-pub(super) struct Hub {
-    /// For each loop a circle, its vertices in the order of the loop's.
-    pub circles: Vec<Circle>,
-}
-
+/// Where the tube from a loop ends.
 pub(super) struct Circle {
+    /// In the order of the loop's vertices.
     pub points: Vec<DVec3>,
     /// The way the tube goes on.
     pub way: DVec3,
@@ -86,25 +79,21 @@ struct Spoke {
     is_pipe: bool,
 }
 
-impl Hub {
-    /// None where there is no place for one. `share`: one of [`SHARES`].
-    pub fn new(several: &Several<'_>, limits: &Limits, share: f64) -> Option<Hub> {
-        // Outside the surfaces, or inside.
-        let found = [1.0, -1.0].into_iter().find_map(|side| {
-            let spokes = spokes(several, side)?;
-            let alike = (0..spokes.len()).all(|b| (0..b).all(|a| spokes[a].out.dot(spokes[b].out) > ALIKE));
-            let leaning = &LEANING[..if alike && side > 0.0 { LEANING.len() } else { 1 }];
-            let centre = leaning.iter().find_map(|&least| centre(&spokes, [limits.ahead, least]))?;
-            Some((spokes, centre))
-        });
-        let (spokes, centre) = found?;
-        let Place { ways, distance, shrunk } = place(&spokes, centre, limits, share)?;
-        let circles = spokes.iter().zip(&ways).map(|(spoke, &way)| {
-            let radius = shrunk * spoke.radius;
-            spoke.circle(way, centre - distance * way, radius)
-        });
-        Some(Hub { circles: circles.collect() })
-    }
+/// A circle for each loop; none where there is no place for a hub. `share`: one of [`SHARES`].
+pub(super) fn circles(several: &Several<'_>, limits: &Limits, share: f64) -> Option<Vec<Circle>> {
+    // Outside the surfaces, or inside.
+    let found = [1.0, -1.0].into_iter().find_map(|side| {
+        let spokes = spokes(several, side)?;
+        let alike = (0..spokes.len()).all(|b| (0..b).all(|a| spokes[a].out.dot(spokes[b].out) > ALIKE));
+        let leaning = &LEANING[..if alike && side > 0.0 { LEANING.len() } else { 1 }];
+        let centre = leaning.iter().find_map(|&least| centre(&spokes, [limits.ahead, least]))?;
+        Some((spokes, centre))
+    });
+    let (spokes, centre) = found?;
+    let Place { ways, distance, shrunk } = place(&spokes, centre, limits, share)?;
+    let circle =
+        |(spoke, &way): (&Spoke, &DVec3)| spoke.circle(way, centre - distance * way, shrunk * spoke.radius);
+    Some(spokes.iter().zip(&ways).map(circle).collect())
 }
 
 impl Spoke {

@@ -13,6 +13,7 @@ use crate::fill::options::Smooth;
 use crate::fill::planar::flat_patch::quads_of;
 use crate::geometry::corner::Ideal;
 use crate::geometry::stars::{CornerStars, Stars};
+use crate::options::CellShape;
 use crate::progress::Progress;
 
 /// Share of the last step that is taken: with all of it patches of few quads bulge, since diagonals stand for curved
@@ -132,6 +133,14 @@ impl Shape {
         let mut faults = Faults::of(&self.work, positions, most, progress)?;
         faults.folds += self.work.concave(positions);
         Ok(faults)
+    }
+}
+
+/// Corners of faces are good above this, in radians.
+pub(in crate::fill) fn good_corner(cells: CellShape) -> f64 {
+    match cells {
+        CellShape::Triangle => 0.35,
+        CellShape::Quad => 0.525,
     }
 }
 
